@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Errors: a caller's mistake or an impossible state throws Error; what depends on the user's data
+// comes back as a value plus Problems.
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lodestone {
+
+/// The causes a caller can act on; the C interface's lds_status has the same numbers.
+enum class Status {
+    Ok = 0,
+    InvalidArgument = 1,
+    OutOfMemory = 2,
+    Internal = 3,
+    Cancelled = 4,
+    StaleId = 5,
+    Io = 10,
+    BadFile = 11,
+    RaysUnavailable = 20,
+    PovrayMissing = 30,
+    PovrayFailed = 31,
+};
+
+class Error : public std::runtime_error {
+public:
+    Error(Status cause, const std::string& sentence)
+        : std::runtime_error(sentence), status(cause) {}
+    Status status;
+};
+
+/// Joins its arguments as a stream would: text("vertex ", 7, " of ", 3).
+template <typename... Parts>
+std::string text(const Parts&... parts) {
+    std::ostringstream out;
+    (out << ... << parts);
+    return out.str();
+}
+
+/// Throws Error with the joined sentence.
+template <typename... Parts>
+[[noreturn]] void fail(Status status, const Parts&... parts) {
+    throw Error(status, text(parts...));
+}
+
+enum class Severity { Info = 0, Warning = 1, Error = 2 };
+
+/// Something about the user's data that is worth a line in the report; never stops a scene.
+struct Problem {
+    std::string object;  // the user's name for it
+    Severity severity = Severity::Warning;
+    std::string code;     // snake_case, stable, e.g. "non_finite_vertices"
+    std::string message;  // a sentence that says what was done about it
+};
+
+using Problems = std::vector<Problem>;
+
+}  // namespace lodestone

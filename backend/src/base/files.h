@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files: whole reads with a size limit, writes that are never torn, one writer at a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lodestone {
+
+/// The whole file. Throws Error(Io) with the reason, or when it is larger than `limit` bytes.
+std::string read_file(const std::filesystem::path& path, uint64_t limit = uint64_t{4} << 30u);
+
+/// Writes to a temporary name beside `path`, then renames: a killed run leaves the old file or the
+/// new one. Throws Error(Io); then nothing is left behind.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// True when `name` is a plain relative ASCII path of [A-Za-z0-9_./-] that stays below its folder.
+bool safe_relative_name(std::string_view name);
+
+/// Holds an exclusive advisory lock on a file for one writer; released when destroyed or killed.
+class FileLock {
+public:
+    /// Throws Error(Io) naming the file when somebody else holds it.
+    explicit FileLock(const std::filesystem::path& path);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+private:
+    int file_ = -1;
+};
+
+}  // namespace lodestone

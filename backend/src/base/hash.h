@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Content hashes: names of files and keys of caches. Not cryptographic.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace lodestone {
+
+using Hash = uint64_t;
+
+/// Accumulates bytes, eight at a time; equal input sequences give equal values on every run and
+/// machine of one byte order. Lengths of arrays are mixed in, so (ab)(c) differs from (a)(bc).
+class Hasher {
+public:
+    Hasher& bytes(const void* data, size_t size) {
+        word(size);
+        const auto* at = static_cast<const unsigned char*>(data);
+        for (; size >= 8; size -= 8, at += 8) {
+            uint64_t next;
+            std::memcpy(&next, at, 8);
+            word(next);
+        }
+        if (size > 0) {
+            uint64_t last = 0;
+            std::memcpy(&last, at, size);
+            word(last);
+        }
+        return *this;
+    }
+
+    template <typename T>
+    requires std::is_trivially_copyable_v<T> Hasher& array(std::span<const T> values) {
+        return bytes(values.data(), values.size_bytes());
+    }
+
+    template <typename T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T> Hasher& value(T value) {
+        uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof value);
+        word(bits);
+        return *this;
+    }
+
+    Hasher& text(std::string_view text) { return bytes(text.data(), text.size()); }
+
+    Hash result() const { return mix(state_ ^ count_); }
+
+private:
+    static uint64_t mix(uint64_t x) {
+        x ^= x >> 32;
+        x *= 0xd6e8feb86659fd93u;
+        x ^= x >> 32;
+        x *= 0xd6e8feb86659fd93u;
+        return x ^ (x >> 32);
+    }
+    void word(uint64_t next) {
+        const unsigned __int128 product =
+            static_cast<unsigned __int128>(state_ ^ 0xa0761d6478bd642fu) *
+            (next ^ 0xe7037ed1a0b428dbu);
+        state_ = mix(state_ + next) ^ static_cast<uint64_t>(product) ^
+                 static_cast<uint64_t>(product >> 64);
+        ++count_;
+    }
+
+    uint64_t state_ = 0x9e3779b97f4a7c15u;
+    uint64_t count_ = 0;
+};
+
+/// 16 lower-case hexadecimal digits.
+inline std::string hex16(Hash hash) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    std::string out(16, '0');
+    for (int i = 15; i >= 0; --i, hash >>= 4)
+        out[static_cast<size_t>(i)] = kDigits[hash & 15];
+    return out;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Progress and cancellation of a long call, written into memory the caller owns and polls.
+#pragma once
+
+#include "base/error.h"
+
+#include <atomic>
+#include <cstdint>
+
+namespace lodestone {
+
+/// A view of the caller's progress record. Copies share it; a default Job reports to nobody.
+/// Safe from any thread.
+class Job {
+public:
+    Job() = default;
+    /// Both pointers may be null; they must outlive every copy of the job.
+    Job(const volatile int32_t* cancel, volatile int32_t* stage, volatile double* fraction)
+        : cancel_(cancel), stage_(stage), fraction_(fraction) {}
+
+    bool cancelled() const { return cancel_ != nullptr && *cancel_ != 0; }
+
+    /// Throws Error(Cancelled) when the caller asked to stop. Call it at least every 0.1 s.
+    void check() const {
+        if (cancelled())
+            fail(Status::Cancelled, "cancelled");
+    }
+
+    /// Moves the bar to `part` (0...1) of this job's range.
+    void progress(double part) const {
+        if (fraction_ != nullptr)
+            *fraction_ = begin_ + (end_ - begin_) * (part < 0 ? 0 : (part > 1 ? 1 : part));
+    }
+
+    /// Names what is being done now; numbers are the C interface's lds_stage.
+    void stage(int32_t number) const {
+        if (stage_ != nullptr)
+            *stage_ = number;
+    }
+
+    /// The same job seen by a step that covers `begin`...`end` of the bar.
+    Job part(double begin, double end) const {
+        Job step = *this;
+        step.begin_ = begin_ + (end_ - begin_) * begin;
+        step.end_ = begin_ + (end_ - begin_) * end;
+        return step;
+    }
+
+private:
+    const volatile int32_t* cancel_ = nullptr;
+    volatile int32_t* stage_ = nullptr;
+    volatile double* fraction_ = nullptr;
+    double begin_ = 0;
+    double end_ = 1;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small maths over GLM: affine transforms, bounds, symmetric matrices.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <limits>
+#include <span>
+
+namespace lodestone {
+
+/// x -> linear * x + offset. Column-major inside (GLM), row-major 3x4 in the C interface.
+struct Affine {
+    glm::dmat3 linear{1.0};
+    glm::dvec3 offset{0.0};
+
+    glm::dvec3 operator()(const glm::dvec3& point) const { return linear * point + offset; }
+    /// (a * b)(x) = a(b(x))
+    Affine operator*(const Affine& inner) const {
+        return {linear * inner.linear, linear * inner.offset + offset};
+    }
+    static Affine from_rows(const double rows[12]);
+    void to_rows(double rows[12]) const;
+    bool finite() const;
+};
+
+/// Largest singular value of the linear part: by how much the transform can enlarge an error.
+double stretch(const Affine& transform);
+
+/// Eigenvalues (descending) and orthonormal, right-handed axes (columns) of a symmetric matrix.
+struct Eigen {
+    glm::dvec3 values{0.0};
+    glm::dmat3 axes{1.0};
+};
+Eigen eigen_symmetric(const glm::dmat3& matrix);
+
+struct Box3 {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+    bool empty() const { return low.x > high.x; }
+    void add(const glm::dvec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    void add(const Box3& other) {
+        low = glm::min(low, other.low);
+        high = glm::max(high, other.high);
+    }
+    glm::dvec3 center() const { return 0.5 * (low + high); }
+    glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : high - low; }
+};
+
+/// Where something is: a sphere and an axis-aligned box in the same frame; both contain it.
+struct Bound {
+    glm::dvec3 center{0.0};
+    double radius = 0;
+    Box3 box;
+
+    bool empty() const { return box.empty(); }
+};
+
+Bound bound_of(std::span<const glm::vec3> points);
+/// Bound of both, in one frame.
+Bound merged(const Bound& a, const Bound& b);
+/// Bound of the transformed thing (conservative; the box is the box of the transformed corners).
+Bound transformed(const Bound& bound, const Affine& transform);
+/// Distance from a point to the bound: the larger of sphere and box distance, 0 inside.
+double distance(const Bound& bound, const glm::dvec3& point);
+
+}  // namespace lodestone

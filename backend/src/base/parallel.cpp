@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/parallel.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace lodestone {
+namespace {
+
+thread_local int thread_limit = 0;
+
+}  // namespace
+
+void parallel_for(size_t count, const std::function<void(size_t)>& body) {
+    if (thread_limit == 1 || count < 2) {
+        for (size_t i = 0; i < count; ++i)
+            body(i);
+        return;
+    }
+    tbb::task_arena arena(thread_limit > 0 ? thread_limit : tbb::task_arena::automatic);
+    arena.execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<size_t>(0, count, 1),
+            [&](const tbb::blocked_range<size_t>& range) {
+                for (size_t i = range.begin(); i < range.end(); ++i)
+                    body(i);
+            },
+            tbb::simple_partitioner());
+    });
+}
+
+ThreadLimit::ThreadLimit(int threads) : previous_(thread_limit) {
+    thread_limit = threads;
+}
+
+ThreadLimit::~ThreadLimit() {
+    thread_limit = previous_;
+}
+
+}  // namespace lodestone

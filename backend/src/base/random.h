@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Seeded random numbers (PCG32): the same sequence on every machine.
+#pragma once
+
+#include <cstdint>
+
+namespace lodestone {
+
+class Random {
+public:
+    explicit Random(uint64_t seed, uint64_t stream = 0) : step_((stream << 1u) | 1u) {
+        next();
+        state_ += seed;
+        next();
+    }
+
+    uint32_t next() {
+        const uint64_t old = state_;
+        state_ = old * 6364136223846793005u + step_;
+        const auto shifted = static_cast<uint32_t>(((old >> 18u) ^ old) >> 27u);
+        const auto turn = static_cast<uint32_t>(old >> 59u);
+        return (shifted >> turn) | (shifted << ((32u - turn) & 31u));
+    }
+
+    /// Uniform in [0, 1).
+    double uniform() { return next() * 0x1p-32; }
+
+private:
+    uint64_t state_ = 0;
+    uint64_t step_;
+};
+
+}  // namespace lodestone

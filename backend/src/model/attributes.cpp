@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/attributes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone {
+
+double Attributes::radius_of_gyration() const {
+    const double trace = moments[0][0] + moments[1][1] + moments[2][2];
+    return visible_area > 0 ? std::sqrt(std::max(0.0, trace / visible_area)) : 0;
+}
+
+glm::dmat3 Attributes::inertia() const {
+    return glm::dmat3(moments[0][0] + moments[1][1] + moments[2][2]) - moments;
+}
+
+}  // namespace lodestone

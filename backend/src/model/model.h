@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Model: objects, materials, lights and cameras; a DAG rooted in one object.
+#pragma once
+
+#include "model/material.h"
+#include "model/object.h"
+#include "model/view.h"
+
+#include <functional>
+#include <vector>
+
+namespace lodestone {
+
+struct Model {
+    std::vector<Object> objects;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;
+    World world;
+    ObjectIndex root = kNoObject;
+};
+
+/// Objects reachable from the root, children before parents, each once. Throws
+/// Error(InvalidArgument) naming an object that contains itself or an index out of range.
+std::vector<ObjectIndex> bottom_up(const Model& model);
+
+/// Fills summaries of every assembly (bound, cost, hash) and source hashes from its children.
+/// `order` is bottom_up's.
+void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
+
+/// Fills bound, cost and hash of a representation from its (mesh or primitive) payload.
+void summarize(Representation& representation, const Model& model);
+
+/// Number of leaf occurrences below the root (each path of placements counts), and what they place.
+struct Totals {
+    uint64_t occurrences = 0;
+    uint64_t triangles_placed = 0;
+    uint64_t triangles_unique = 0;
+};
+Totals totals(const Model& model);
+
+/// One leaf reached along one path, in depth-first order of placements.
+struct Occurrence {
+    ObjectIndex object = kNoObject;
+    Affine world;
+    std::string path;  // placement names joined by '/'
+};
+void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit);
+
+}  // namespace lodestone

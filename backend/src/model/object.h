@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Object: the abstract thing ("the chair") and the ways to draw it.
+#pragma once
+
+#include "model/attributes.h"
+#include "model/representation.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lodestone {
+
+enum class Role : uint8_t {
+    Ordinary = 0,
+    Environment = 1,  // wall, ground or sky: simplified, never made a primitive
+};
+
+struct Object {
+    std::string uid;   // stable, unique in its model
+    std::string name;  // the user's
+    Role role = Role::Ordinary;
+    Hash source_hash = 0;  // of the finest representation and of all below it
+    std::optional<Attributes> attributes;
+    /// Index = LOD number: 0 is the finest, errors rise strictly. Only [0] may be an assembly.
+    std::vector<Representation> representations;
+
+    bool group() const {
+        return !representations.empty() && representations[0].summary.kind == Kind::Assembly;
+    }
+    const Bound& bound() const { return representations.at(0).summary.bound; }
+};
+
+}  // namespace lodestone

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cut: the result of choosing for a view; every path from the root crosses it exactly once.
+#pragma once
+
+#include "base/job.h"
+#include "model/model.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lodestone::quality {
+
+inline constexpr uint32_t kNoParent = ~uint32_t{0};
+
+/// An occurrence the choice visited: either opened (its assembly goes on below) or chosen.
+struct Node {
+    ObjectIndex object = kNoObject;
+    uint32_t parent = kNoParent;  // index of the opened node above it
+    uint32_t placement = 0;       // index in that node's assembly
+    uint32_t lod = 0;             // the chosen representation's LOD number; 0 of an opened group
+    bool opened = false;
+    double error_px = 0;  // on screen; 0 when opened
+    Affine world;
+};
+
+struct Cut {
+    std::vector<Node> nodes;       // depth-first, in order of placements
+    std::vector<uint32_t> chosen;  // indices of the nodes that are drawn, rising
+
+    uint64_t triangles = 0;  // placed
+    uint64_t bytes = 0;      // POV-Ray's memory: distinct representations and occurrences
+    double largest_error_px = 0;
+    uint32_t largest_error_node = kNoParent;
+    std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
+};
+
+/// Chooses for the camera class. Pure: depends on its arguments only. Groups good enough are never
+/// opened. Throws Error(InvalidArgument) for a view without size or a model without root.
+/// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
+Cut choose(const Model& model, const View& view, const Job& job = {});
+
+/// Names of the placements from the root to a node, joined by '/'.
+std::string path_of(const Model& model, const Cut& cut, uint32_t node);
+
+}  // namespace lodestone::quality

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the small maths: transforms, bounds, eigen-decomposition.
+#include "base/maths.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+
+namespace {
+
+Affine turned(double angle, const glm::dvec3& axis) {
+    return {glm::dmat3(glm::rotate(glm::dmat4(1.0), angle, axis)), glm::dvec3(0.0)};
+}
+
+}  // namespace
+
+TEST(Maths, RowsRoundTrip) {
+    const double rows[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    double back[12];
+    Affine::from_rows(rows).to_rows(back);
+    for (int i = 0; i < 12; ++i)
+        EXPECT_EQ(rows[i], back[i]);
+    EXPECT_EQ(Affine::from_rows(rows)(glm::dvec3(1, 1, 1)), glm::dvec3(10, 26, 42));
+}
+
+TEST(Maths, StretchIsTheLargestSingularValue) {
+    Affine scale;
+    scale.linear = glm::dmat3(2, 0, 0, 0, 5, 0, 0, 0, -3);
+    const Affine rotation = turned(0.7, glm::normalize(glm::dvec3(1, 2, 3)));
+    EXPECT_NEAR(stretch(rotation * scale * rotation), 5, 1e-12);
+    EXPECT_NEAR(stretch(rotation), 1, 1e-12);
+}
+
+TEST(Maths, EigenFindsAxesOfATurnedDiagonal) {
+    const glm::dmat3 r = turned(1.1, glm::normalize(glm::dvec3(3, -1, 2))).linear;
+    const glm::dmat3 diagonal(1, 0, 0, 0, 9, 0, 0, 0, 4);
+    const Eigen eigen = eigen_symmetric(r * diagonal * glm::transpose(r));
+    EXPECT_NEAR(eigen.values.x, 9, 1e-12);
+    EXPECT_NEAR(eigen.values.y, 4, 1e-12);
+    EXPECT_NEAR(eigen.values.z, 1, 1e-12);
+    EXPECT_NEAR(std::abs(glm::dot(eigen.axes[0], r[1])), 1, 1e-12);
+    EXPECT_NEAR(glm::determinant(eigen.axes), 1, 1e-12);
+}
+
+TEST(Maths, BoundDistanceIsTheLargerOfSphereAndBox) {
+    const glm::vec3 points[] = {{-10, -1, 0}, {10, 1, 0}};
+    const Bound bound = bound_of(points);
+    EXPECT_NEAR(distance(bound, {0, 5, 0}), 4, 1e-9);  // the box is nearer to the truth
+    EXPECT_NEAR(distance(bound, {20, 5, 0}), std::hypot(10, 4), 1e-9);
+    EXPECT_EQ(distance(bound, {0, 0.5, 0}), 0);
+    EXPECT_TRUE(bound_of({}).empty());
+}
+
+TEST(Maths, MergedBoundContainsBoth) {
+    Affine far;
+    far.offset = {100, 0, 0};
+    const glm::vec3 points[] = {{-1, -1, -1}, {1, 1, 1}};
+    const Bound a = bound_of(points);
+    const Bound both = merged(a, transformed(a, far));
+    EXPECT_NEAR(both.box.high.x, 101, 1e-9);
+    EXPECT_GE(both.radius + 1e-9, glm::length(glm::dvec3(101, 1, 1) - both.center));
+    EXPECT_EQ(merged(Bound{}, a).radius, a.radius);
+}
