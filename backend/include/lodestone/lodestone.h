@@ -1,0 +1,498 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lodestone's C interface: everything Blender, the command and other programs may call.
+
+   Holds for every function unless it says otherwise:
+   units       metres, radians, watts, seconds; right-handed, Z up; linear Rec.709 colors
+   transforms  double[12], row-major 3x4, x -> M x + t
+   status      LDS_OK (0) or the cause; the sentence that names the thing is lds_last_error_text().
+               On failure outputs are untouched
+   structs     start with struct_size; set it to sizeof the struct (lds_..._default does). Fields may
+               be added at the end in later versions
+   strings     UTF-8 in, any bytes accepted; strings handed out stay valid until the model or cut
+               they came from changes or is destroyed. A null name counts as ""
+   arrays      read during the call only, never kept; results are copied into the caller's buffers
+   threads     different models may be used from different threads at once; one model only by one
+               thread at a time (its const functions by several). Long calls use all cores
+   jobs        long calls take an lds_job* (may be null), owned by the caller, who may read it and
+               set `cancel` from any thread; a cancelled call returns LDS_ERROR_CANCELLED within
+               0.1 s and leaves nothing half done
+   errors      nothing throws or aborts */
+#ifndef LODESTONE_LODESTONE_H
+#define LODESTONE_LODESTONE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define LDS_API __attribute__((visibility("default")))
+#else
+#define LDS_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
+#define LDS_ABI_VERSION 1
+
+typedef enum lds_status {
+    LDS_OK = 0,
+    LDS_ERROR_INVALID_ARGUMENT = 1,
+    LDS_ERROR_OUT_OF_MEMORY = 2,
+    LDS_ERROR_INTERNAL = 3,
+    LDS_ERROR_CANCELLED = 4,
+    LDS_ERROR_STALE_ID = 5, /* an id of another or a destroyed model */
+    LDS_ERROR_IO = 10,
+    LDS_ERROR_BAD_FILE = 11,
+    LDS_ERROR_RAYS_UNAVAILABLE = 20, /* Embree 3 missing or unusable */
+    LDS_ERROR_POVRAY_MISSING = 30,
+    LDS_ERROR_POVRAY_FAILED = 31
+} lds_status;
+
+/* What a long call is doing now. */
+typedef enum lds_stage {
+    LDS_STAGE_NONE = 0,
+    LDS_STAGE_EXTRACT = 1,
+    LDS_STAGE_MEASURE = 2,
+    LDS_STAGE_SIMPLIFY = 3,
+    LDS_STAGE_GROUP = 4,
+    LDS_STAGE_STORE = 5,
+    LDS_STAGE_CHOOSE = 6,
+    LDS_STAGE_EXPORT = 7,
+    LDS_STAGE_PARSE = 8,
+    LDS_STAGE_TRACE = 9
+} lds_stage;
+
+typedef struct lds_job {
+    uint32_t struct_size;
+    int32_t cancel;  /* set to 1 to stop */
+    int32_t stage;   /* lds_stage */
+    double fraction; /* 0...1 of the whole call, never falling */
+} lds_job;
+
+/* ---- Library ------------------------------------------------------------------------------ */
+
+LDS_API uint32_t lds_abi_version(void);
+/* "0.1.0" */
+LDS_API const char* lds_version(void);
+/* "INVALID_ARGUMENT", ...; "UNKNOWN" for a number that is no status. */
+LDS_API const char* lds_status_name(lds_status status);
+/* The sentence of this thread's last failed call; "" after a success. Valid until its next call. */
+LDS_API const char* lds_last_error_text(void);
+/* Loads Embree and tests a known ray. LDS_ERROR_RAYS_UNAVAILABLE with the reason. */
+LDS_API lds_status lds_rays_check(void);
+
+/* ---- Model: objects, placements, materials, lights, cameras -------------------------------- */
+
+typedef struct lds_model lds_model;
+
+/* An object of one model. {0, 0} is none. */
+typedef struct lds_object {
+    uint32_t index;
+    uint32_t generation;
+} lds_object;
+
+typedef enum lds_role {
+    LDS_ROLE_ORDINARY = 0,
+    LDS_ROLE_ENVIRONMENT = 1 /* wall, ground or sky: simplified, never made a box or ellipsoid */
+} lds_role;
+
+typedef enum lds_kind {
+    LDS_KIND_MESH = 1,
+    LDS_KIND_BOX = 3,
+    LDS_KIND_ELLIPSOID = 4,
+    LDS_KIND_ASSEMBLY = 8
+} lds_kind;
+
+typedef struct lds_object_info {
+    uint32_t struct_size;
+    const char* uid;  /* stable and unique in the model; not empty */
+    const char* name; /* the user's */
+    int32_t role;     /* lds_role */
+} lds_object_info;
+
+typedef struct lds_material {
+    uint32_t struct_size;
+    const char* name;
+    double base_color[3]; /* linear, usual 0...1 */
+    double roughness;     /* 0...1 */
+    double metallic;      /* 0...1 */
+    double specular;      /* 0...1; 0.5 = index of refraction 1.45 */
+    double emission[3];   /* linear, W/(sr m^2) */
+} lds_material;
+
+/* A triangle mesh as the caller has it. Normals and uvs belong to corners: entry corners[3 t + c]
+   of corner_normals is that of corner c of triangle t. */
+typedef struct lds_mesh_view {
+    uint32_t struct_size;
+    const float* positions; /* float32[vertex_count][3] metres */
+    size_t vertex_count;
+    const uint32_t* triangles; /* uint32[triangle_count][3], < vertex_count */
+    size_t triangle_count;
+    const uint32_t* corners; /* uint32[triangle_count][3], < corner_count; null: the same as
+                                    triangles, and corner_count = vertex_count */
+    size_t corner_count;
+    const float* corner_normals; /* float32[corner_count][3]; null: flat shaded */
+    const float* corner_uvs;     /* float32[corner_count][2]; null: none */
+    const int32_t* slots;        /* int32[triangle_count]; null: all 0. Outside 0...material_count-1
+                                    counts as the nearest slot (Blender's rule) */
+} lds_mesh_view;
+
+typedef struct lds_light {
+    uint32_t struct_size;
+    const char* name;
+    int32_t kind; /* 0 sun, 1 point */
+    double color[3];
+    double power;        /* sun: W/m^2; point: W, Blender's energy units */
+    double position[3];  /* point */
+    double direction[3]; /* sun: the way the light travels */
+    int32_t shadow;      /* 0: casts none */
+} lds_light;
+
+/* Perspective: pixel (u, v) in [-1/2, 1/2]^2 looks along direction + u right + v up from position.
+   Orthographic: along direction from position + u right + v up. */
+typedef struct lds_camera {
+    uint32_t struct_size;
+    const char* name;
+    int32_t orthographic;
+    double position[3];
+    double direction[3];
+    double right[3];
+    double up[3];
+    double near_clip;
+} lds_camera;
+
+typedef struct lds_world {
+    uint32_t struct_size;
+    double color[3];     /* linear radiance, the same from everywhere */
+    int32_t transparent; /* 1: the background has alpha 0 */
+} lds_world;
+
+LDS_API lds_status lds_model_create(lds_model** out_model);
+/* Null is fine. */
+LDS_API void lds_model_destroy(lds_model* model);
+
+/* Reads a .obj, .ply, .glb or .gltf file, or a store (its folder or tileset.json). A store's meshes
+   are read when they are needed. */
+LDS_API lds_status lds_model_read(const char* path, lds_model** out_model);
+/* Writes .obj, .ply or .glb by the name's ending: finest representations. */
+LDS_API lds_status lds_model_write(lds_model* model, const char* path);
+
+/* out_index: of the new material, rising from 0. */
+LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* material,
+                                          uint32_t* out_index);
+/* Adds an object with one mesh; materials[slot] are indices of added materials (none: a grey one).
+   Vertices that are not numbers, and the triangles that use them, are left out with a problem. */
+LDS_API lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
+                                      const lds_mesh_view* mesh, const uint32_t* materials,
+                                      size_t material_count, lds_object* out_object);
+/* Adds a group without children. */
+LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* info,
+                                       lds_object* out_object);
+/* Places child in group. An object never becomes its own descendant: found when it is used. */
+LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
+                                           const double transform[12], const char* name);
+LDS_API lds_status lds_model_set_root(lds_model* model, lds_object root);
+LDS_API lds_status lds_model_add_light(lds_model* model, const lds_light* light);
+LDS_API lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera);
+LDS_API lds_status lds_model_set_world(lds_model* model, const lds_world* world);
+
+typedef struct lds_totals {
+    uint32_t struct_size;
+    uint64_t objects;          /* reachable from the root, groups included */
+    uint64_t occurrences;      /* of leaves: each path counts */
+    uint64_t triangles_placed; /* at full detail */
+    uint64_t triangles_unique;
+    uint64_t representations;
+} lds_totals;
+LDS_API lds_status lds_model_totals(lds_model* model, lds_totals* out_totals);
+
+typedef struct lds_object_summary {
+    uint32_t struct_size;
+    const char* uid;
+    const char* name;
+    int32_t role;
+    int32_t group; /* 1: its finest representation is an assembly */
+    uint32_t representation_count;
+    uint32_t child_count;
+    uint64_t source_hash;
+    double center[3]; /* bound, object's frame */
+    double radius;
+} lds_object_summary;
+LDS_API size_t lds_model_object_count(const lds_model* model);
+LDS_API lds_status lds_model_object_at(const lds_model* model, size_t position,
+                                       lds_object* out_object);
+/* out_object is {0, 0} when there is none of that uid. */
+LDS_API lds_status lds_model_find_object(const lds_model* model, const char* uid,
+                                         lds_object* out_object);
+LDS_API lds_status lds_model_object_summary(lds_model* model, lds_object object,
+                                            lds_object_summary* out_summary);
+
+/* lod 0 is the finest. */
+typedef struct lds_representation {
+    uint32_t struct_size;
+    int32_t kind;     /* lds_kind */
+    double error;     /* metres in the object's frame */
+    double max_error; /* the largest distance behind it */
+    uint64_t triangles;
+    uint64_t bytes; /* in POV-Ray's memory */
+    uint64_t hash;
+} lds_representation;
+LDS_API lds_status lds_model_representation(lds_model* model, lds_object object, uint32_t lod,
+                                            lds_representation* out_representation);
+
+/* A leaf reached along one path of placements; depth-first order. */
+typedef struct lds_occurrence {
+    lds_object object;
+    double world[12];
+} lds_occurrence;
+LDS_API lds_status lds_model_occurrence_count(lds_model* model, size_t* out_count);
+/* Copies the first min(capacity, count). */
+LDS_API lds_status lds_model_occurrence_copy(lds_model* model, lds_occurrence* out_occurrences,
+                                             size_t capacity);
+
+/* Cameras and lights that were added, or that a store or file holds. */
+LDS_API size_t lds_model_camera_count(const lds_model* model);
+LDS_API lds_status lds_model_camera(const lds_model* model, size_t position,
+                                    lds_camera* out_camera);
+
+/* Problems of the user's data, found while adding, reading, building, exporting. */
+typedef struct lds_problem {
+    uint32_t struct_size;
+    const char* object;
+    int32_t severity; /* 0 info, 1 warning, 2 error: the picture is wrong or incomplete there */
+    const char* code; /* snake_case, stable */
+    const char* message;
+} lds_problem;
+LDS_API size_t lds_model_problem_count(const lds_model* model);
+LDS_API lds_status lds_model_problem(const lds_model* model, size_t position,
+                                     lds_problem* out_problem);
+
+/* ---- Measuring ------------------------------------------------------------------------------ */
+
+/* Area, center and inertia of a triangle surface of uniform thickness.
+
+   out  out_area     float64     square metres
+        out_center   float64[3]  metres
+        out_inertia  float64[6]  xx yy zz xy yz zx, about out_center, m^4
+   errors   INVALID_ARGUMENT  a null pointer; an index >= vertex_count; total area 0
+   cost     O(triangle_count)
+   source   Sewell, Managing complex models for computer graphics: eqs. 4.20, 4.28-4.30, A.1.1
+   differs  scaling by s multiplies the tensor by s^4 (mass is area, 4.3); eq. 4.27 prints s^2 */
+LDS_API lds_status lds_surface_inertia(const float* positions, size_t vertex_count,
+                                       const uint32_t* triangles, size_t triangle_count,
+                                       double* out_area, double out_center[3],
+                                       double out_inertia[6]);
+
+typedef struct lds_measure_options {
+    uint32_t struct_size;
+    uint64_t rays;         /* fixed budget; usual 4096. More: less noise, linearly more time */
+    double relative_error; /* > 0: cast until the visible area is this sure (95 %) instead */
+    uint64_t seed;
+    int32_t threads; /* 0 = all */
+} lds_measure_options;
+LDS_API lds_measure_options lds_measure_options_default(void);
+
+typedef struct lds_attributes {
+    uint32_t struct_size;
+    double visible_area; /* VSA, m^2; open sheets count both sides */
+    double surface_area; /* that could be seen at all */
+    double centroid[3];
+    double inertia[6]; /* xx yy zz xy yz zx about the centroid, m^4 */
+    double normal_moment;
+    double color[3]; /* mean base color by visible area, linear */
+    double roughness;
+    double metallic;
+    double relative_error;
+    uint64_t rays;
+} lds_attributes;
+/* Measures an object (a group: with all it places) at full detail by rays (eqs. 4.16-4.19). */
+LDS_API lds_status lds_model_measure(lds_model* model, lds_object object,
+                                     const lds_measure_options* options, lds_job* job,
+                                     lds_attributes* out_attributes);
+
+/* ---- Simplifying ---------------------------------------------------------------------------- */
+
+typedef struct lds_simplify_options {
+    uint32_t struct_size;
+    double ratio;       /* of the triangles, 0...1; 0: not used */
+    uint64_t triangles; /* in the whole model; 0: not used */
+    double error;       /* metres: the fewest triangles within it; 0: not used */
+    int32_t measure;    /* 1: measure the error of the result */
+    uint64_t seed;
+    int32_t threads;
+} lds_simplify_options;
+LDS_API lds_simplify_options lds_simplify_options_default(void);
+
+typedef struct lds_simplify_report {
+    uint32_t struct_size;
+    uint64_t triangles_before;
+    uint64_t triangles;
+    double cpu_s;     /* of the collapse alone */
+    double error;     /* metres; negative when it was not measured */
+    double max_error; /* likewise */
+} lds_simplify_report;
+/* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error is given. */
+LDS_API lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* options,
+                                      lds_job* job, lds_simplify_report* out_report);
+
+/* ---- Building the hierarchy ----------------------------------------------------------------- */
+
+typedef struct lds_build_options {
+    uint32_t struct_size;
+    double level_ratio; /* triangles of a level over those of the finer one; usual 0.4. Larger:
+                             more levels, a closer fit to every distance, more time and disk */
+    uint64_t rays;      /* measuring an object; usual 4096 */
+    uint32_t samples;   /* measuring an error, each way; usual 4096 */
+    uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */
+    uint64_t seed;
+    int32_t threads; /* 0 = all */
+    int32_t rebuild; /* 1: also what is not stale */
+} lds_build_options;
+LDS_API lds_build_options lds_build_options_default(void);
+
+typedef struct lds_build_report {
+    uint32_t struct_size;
+    uint64_t objects;         /* reachable */
+    uint64_t built;           /* of these, new or stale */
+    uint64_t representations; /* in the store, finest included */
+    uint64_t triangles;       /* of the stale objects' finest meshes */
+    uint64_t bytes_written;
+    double wall_s;
+    double cpu_s;
+} lds_build_report;
+
+/* What lds_model_build would do: fills objects, built, triangles and wall_s (a guess). */
+LDS_API lds_status lds_model_build_estimate(lds_model* model, const char* store,
+                                            const lds_build_options* options,
+                                            lds_build_report* out_report);
+/* Gives every object its stand-ins: those of the store (a folder, made when missing) where the source
+   hash still fits, new ones elsewhere, and brings the store up to date. One writer at a time; a
+   killed build leaves the old store. */
+LDS_API lds_status lds_model_build(lds_model* model, const char* store,
+                                   const lds_build_options* options, lds_job* job,
+                                   lds_build_report* out_report);
+
+/* ---- Choosing ------------------------------------------------------------------------------- */
+
+typedef struct lds_view {
+    uint32_t struct_size;
+    lds_camera camera;
+    int32_t width; /* pixels of the final image */
+    int32_t height;
+    double pixel_error; /* T, usual 1; larger is coarser and cheaper; 0 = originals */
+    uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
+} lds_view;
+
+typedef struct lds_cut lds_cut;
+LDS_API lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job,
+                                  lds_cut** out_cut);
+LDS_API void lds_cut_destroy(lds_cut* cut);
+
+typedef struct lds_cut_summary {
+    uint32_t struct_size;
+    uint64_t occurrences; /* chosen: drawn once each */
+    uint64_t opened;      /* groups the choice went into */
+    uint64_t mesh;        /* occurrences of each kind */
+    uint64_t box;
+    uint64_t ellipsoid;
+    uint64_t originals; /* occurrences drawn at LOD 0 */
+    uint64_t triangles; /* placed */
+    uint64_t bytes;     /* in POV-Ray's memory */
+    double largest_error_px;
+    const char* largest_error_name; /* path of placements */
+} lds_cut_summary;
+LDS_API lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary);
+
+typedef struct lds_choice {
+    lds_object object;
+    uint32_t lod;
+    int32_t kind;
+    double error_px;
+    double world[12];
+} lds_choice;
+LDS_API size_t lds_cut_choice_count(const lds_cut* cut);
+LDS_API lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices,
+                                       size_t capacity);
+/* Names of the placements from the root, joined by '/'. */
+LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
+
+/* ---- POV-Ray -------------------------------------------------------------------------------- */
+
+typedef enum lds_antialias {
+    LDS_ANTIALIAS_OFF = 0,
+    LDS_ANTIALIAS_FINAL = 1,    /* adaptive, for pictures */
+    LDS_ANTIALIAS_REFERENCE = 2 /* 16 samples in every pixel */
+} lds_antialias;
+
+typedef struct lds_povray_options {
+    uint32_t struct_size;
+    int32_t antialias;   /* lds_antialias; usual FINAL */
+    int32_t false_color; /* 1: paint by kind and LOD number */
+    int32_t
+        covered_only;    /* 1: without environment objects and world (the mask of covered pixels) */
+    int32_t threads;     /* 0 = all */
+    const char* program; /* null: $LODESTONE_POVRAY, else povray on the PATH */
+} lds_povray_options;
+LDS_API lds_povray_options lds_povray_options_default(void);
+
+typedef struct lds_export_report {
+    uint32_t struct_size;
+    uint64_t bytes; /* of all files the scene uses */
+    uint64_t files;
+    uint64_t written; /* files that were not there yet */
+    double cpu_s;
+} lds_export_report;
+/* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
+LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,
+                                     const char* folder, const lds_povray_options* options,
+                                     lds_job* job, lds_export_report* out_report);
+
+typedef struct lds_povray_report {
+    uint32_t struct_size;
+    int32_t exit_code;
+    double parse_cpu_s;
+    double trace_cpu_s;
+    double wall_s;
+    uint64_t peak_bytes; /* VmHWM */
+} lds_povray_report;
+/* Renders folder/scene.ini to folder/<picture> (ending .exr or .png). POVRAY_FAILED carries
+   POV-Ray's own sentence; then and when cancelled an older picture stays as it was. */
+LDS_API lds_status lds_povray_run(const char* folder, const char* picture,
+                                  const lds_povray_options* options, lds_job* job,
+                                  lds_povray_report* out_report);
+/* The program that would be run. POVRAY_MISSING says what to do. */
+LDS_API lds_status lds_povray_find(const char* program, const char** out_path);
+/* The color lds_povray_options.false_color gives a representation (linear). */
+LDS_API lds_status lds_povray_false_color(int32_t kind, uint32_t lod, double out_color[3]);
+
+/* ---- Pictures ------------------------------------------------------------------------------- */
+
+/* Size of a PNG, JPEG or EXR. */
+LDS_API lds_status lds_image_size(const char* path, int32_t* out_width, int32_t* out_height);
+/* Linear RGBA, associated alpha. bottom_up 1: the lowest row first (Blender's order).
+   out_pixels float32[height][width][4]; capacity counts floats. */
+LDS_API lds_status lds_image_read(const char* path, int32_t bottom_up, float* out_pixels,
+                                  size_t capacity);
+/* Linear RGBA (associated alpha, top row first) -> 8-bit sRGB PNG. */
+LDS_API lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
+                                       const float* pixels);
+
+typedef struct lds_difference {
+    uint32_t struct_size;
+    double mean; /* of display-encoded values 0...1 over the compared pixels */
+    double p999;
+    double max;
+    double ssim; /* luma, 11x11 Gaussian */
+    uint64_t pixels;
+} lds_difference;
+/* mask (may be null): a picture whose alpha > 1/255 marks the covered pixels. */
+LDS_API lds_status lds_image_compare(const char* path_a, const char* path_b, const char* mask,
+                                     lds_difference* out_difference);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LODESTONE_LODESTONE_H */
