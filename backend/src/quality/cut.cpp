@@ -97,7 +97,9 @@ std::string path_of(const Model& model, const Cut& cut, uint32_t node) {
         const Object& group = model.objects[cut.nodes[here.parent].object];
         const std::string& name =
             group.representations[0].assembly().placements[here.placement].name;
-        path = path.empty() ? name : name + '/' + path;
+        if (!path.empty())
+            path.insert(path.begin(), '/');
+        path.insert(0, name);
     }
     return path;
 }
