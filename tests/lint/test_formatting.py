@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards one look of all code: clang-format, black, flake8, as the repository configures them."""
+
+import unittest
+
+from repository import CPP_ENDINGS, files_ending, run
+
+FLAKE8 = ("flake8", "--isolated", "--max-line-length=100", "--extend-ignore=E203,W503,F722,F821")
+
+
+class Formatting(unittest.TestCase):
+    def assert_silent(self, *command: str):
+        done = run(*command)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_clang_format_would_change_nothing(self):
+        sources = files_ending(*CPP_ENDINGS)
+        self.assertGreater(len(sources), 20)
+        self.assert_silent("clang-format", "--dry-run", "-Werror", *sources)
+
+    def test_black_would_change_nothing(self):
+        sources = files_ending(".py")
+        self.assertGreater(len(sources), 5)
+        self.assert_silent("black", "-q", "--diff", "-l", "100", "-t", "py310", *sources)
+        self.assert_silent("black", "-q", "--check", "-l", "100", "-t", "py310", *sources)
+
+    def test_flake8_finds_nothing(self):
+        self.assert_silent(*FLAKE8, *files_ending(".py"))
+
+
+if __name__ == "__main__":
+    unittest.main()

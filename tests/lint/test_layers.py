@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards the floors of the design: no include and no import points up, no library leaks."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import check_layers
+from repository import ROOT, files
+
+
+def broken_rules(tree: dict[str, str]) -> list[str]:
+    """The rules that a tree of files {name: text} breaks."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, text in tree.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        return check_layers.check_tree(root, sorted(tree))
+
+
+class TheCheck(unittest.TestCase):
+    def assert_right(self, name: str, text: str):
+        self.assertEqual(broken_rules({name: text}), [])
+
+    def assert_wrong(self, name: str, text: str, words: str):
+        found = broken_rules({name: text})
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(name, found[0])
+        self.assertIn(words, found[0])
+
+    def test_empty_tree_and_empty_file_break_nothing(self):
+        self.assertEqual(broken_rules({}), [])
+        self.assert_right("backend/src/base/a.h", "")
+
+    def test_includes_may_point_down_or_sideways(self):
+        self.assert_right("backend/src/model/a.cpp", '#include "base/b.h"\n#include "model/c.h"\n')
+        self.assert_right("povray_export/a.cpp", '#include "quality/cut.h"\n#include <string>\n')
+        self.assert_right("backend/src/capi/a.cpp", '#include "lodestone/lodestone.h"\n')
+
+    def test_includes_may_not_point_up(self):
+        self.assert_wrong("backend/src/base/a.h", '#include "model/mesh.h"', "above base")
+        self.assert_wrong("backend/src/build/a.h", '  # include "povray_export/x.h"', "above build")
+        self.assert_wrong("backend/src/ray/a.cpp", '#include "../capi/x.h"', "climbs out")
+        self.assert_wrong("backend/src/ray/a.cpp", '#include "ray.h"', "on no floor")
+        self.assert_wrong("backend/src/ray/a.cpp", '#include "lodestone/lodestone.h"', "only capi")
+
+    def test_a_neighbor_may_be_named_without_its_floor(self):
+        tree = {"backend/src/ray/a.cpp": '#include "b.h"', "backend/src/ray/b.h": ""}
+        self.assertEqual(broken_rules(tree), [])
+
+    def test_a_folder_that_is_no_floor_is_named(self):
+        self.assert_wrong("backend/src/helpers/a.cpp", "", "no floor of the design")
+
+    def test_the_command_sees_the_c_interface_alone(self):
+        self.assert_right("backend/tools/main.cpp", '#include "lodestone/lodestone.h"')
+        self.assert_wrong("backend/tools/main.cpp", '#include "model/mesh.h"', "its own folder")
+        self.assert_wrong("tests/capi/test_abi.c", '#include "model/mesh.h"', "its own folder")
+
+    def test_libraries_stay_in_their_folders(self):
+        for folder, header in (
+            ("ray", "embree3/rtcore.h"),
+            ("image", "png.h"),
+            ("image", "jpeglib.h"),
+            ("image", "OpenEXR/ImfRgbaFile.h"),
+            ("image", "ImfRgbaFile.h"),
+            ("format", "tiny_gltf.h"),
+            ("approximate", "OpenMesh/Core/IO/MeshIO.hh"),
+        ):
+            with self.subTest(header):
+                name = "simplify.cpp" if folder == "approximate" else "a.cpp"
+                self.assert_right(f"backend/src/{folder}/{name}", f"#include <{header}>")
+                self.assert_wrong("backend/src/base/a.cpp", f"#include <{header}>", "may not see")
+                self.assert_wrong(
+                    f"backend/src/{folder}/simplify.h", f"#include <{header}>", "in a header"
+                )
+        self.assert_right("backend/src/base/parallel.cpp", "#include <tbb/parallel_for.h>")
+        self.assert_wrong("backend/src/base/a.cpp", "#include <tbb/parallel_for.h>", "may not see")
+        self.assert_wrong("backend/src/base/a.cpp", "#include <boost/any.hpp>", "no rule")
+
+    def test_only_glm_appears_in_headers(self):
+        self.assert_right("backend/src/base/a.h", "#include <glm/vec3.hpp>\n#include <vector>")
+        self.assert_right("backend/src/base/a.cpp", "#include <nlohmann/json.hpp>")
+        self.assert_wrong("backend/src/base/a.h", "#include <nlohmann/json.hpp>", "may not see")
+        self.assert_wrong("backend/include/lodestone/lodestone.h", "#include <glm/vec3.hpp>", "")
+
+    def test_imports_may_point_down(self):
+        self.assert_right("blender_addon/lodestone/panel.py", "import bpy\nfrom .core import x\n")
+        self.assert_right("blender_addon/lodestone/bridge/mesh.py", "from ..core.cut import Cut\n")
+        self.assert_right("blender_addon/lodestone/core/a.py", "from .. import lodestone_native\n")
+        self.assert_right("backend/python/lodestone_native/a.py", "from . import types\n")
+
+    def test_imports_may_not_point_up(self):
+        place = "blender_addon/lodestone/"
+        self.assert_wrong(place + "core/a.py", "from ..bridge import mesh", "above")
+        self.assert_wrong(place + "core/a.py", "from .. import bridge", "above")
+        self.assert_wrong(place + "bridge/a.py", "from ..panels import x", "above")
+        self.assert_wrong(place + "bridge/a.py", "def f():\n    import lodestone.ui", "above")
+        self.assert_wrong("backend/python/lodestone_native/a.py", "import lodestone.core", "above")
+
+    def test_bpy_stays_above_core(self):
+        for text in ("import bpy", "from bpy.types import Mesh", "def f():\n    import mathutils"):
+            with self.subTest(text):
+                self.assert_wrong("blender_addon/lodestone/core/a.py", text, "below bridge")
+                self.assert_wrong("backend/python/lodestone_native/a.py", text, "below bridge")
+                self.assert_right("blender_addon/lodestone/bridge/a.py", text)
+
+    def test_numpy_is_nowhere(self):
+        for text in ("import numpy as np", "from numpy.linalg import norm"):
+            with self.subTest(text):
+                self.assert_wrong("blender_addon/lodestone/panel.py", text, "numpy")
+                self.assert_wrong("backend/python/lodestone_native/a.py", text, "numpy")
+
+
+class TheRepository(unittest.TestCase):
+    def test_no_rule_is_broken(self):
+        found = check_layers.check_tree(ROOT, list(files()))
+        if found:
+            self.fail("\n" + "\n".join(found))
+
+    def test_the_check_sees_every_folder_there_is(self):
+        for folder, ending in (
+            ("backend/src/base", ".cpp"),
+            ("backend/src/capi", ".cpp"),
+            ("backend/tools", ".cpp"),
+            ("povray_export", ".cpp"),
+            ("blender_addon/lodestone/core", ".py"),
+            ("backend/python/lodestone_native", ".py"),
+        ):
+            if any((ROOT / folder).glob("*" + ending)):
+                seen = [f for f in files() if f.startswith(folder + "/") and f.endswith(ending)]
+                self.assertTrue(seen, folder)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,159 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what is missing, builds, runs every test. The last line: N passed, N failed, N skipped.
+set -euo pipefail
+
+usage() {
+    cat <<'END'
+usage: tests/run.sh [--fast] [--tidy-all] [--no-install]
+
+    --fast         no Blender, no POV-Ray, no clang-tidy, no sanitizers: under 2 minutes
+                   when build/release is up to date
+    --tidy-all     clang-tidy on every .cpp file, not only on those of the last 50 commits
+    --no-install   fail on a missing package instead of installing it with apt
+
+Logs: build/tests/. Exit code 0 when nothing failed and something passed, 1 otherwise, 2 usage.
+END
+}
+
+fast=0
+install=1
+for argument in "$@"; do
+    case $argument in
+    --fast) fast=1 ;;
+    --tidy-all) export TIDY_ALL=1 ;;
+    --no-install) install=0 ;;
+    -h | --help) usage; exit 0 ;;
+    *) echo "tests/run.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
+    esac
+done
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+root=$PWD
+logs=$root/build/tests
+rm -rf "$logs"
+mkdir -p "$logs/scratch"
+exec </dev/null
+export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
+unset DISPLAY WAYLAND_DISPLAY
+
+# What the tests may rely on. Nothing of the user's Blender is read or written.
+export LODESTONE_BUILD=$root/build/release
+export LODESTONE_STAGE=$LODESTONE_BUILD/stage
+export LODESTONE_LIBRARY=$LODESTONE_STAGE/addons/lodestone/lib/liblodestone.so
+export LODESTONE_COMMAND=$LODESTONE_BUILD/lodestone
+export LODESTONE_DATA=${LODESTONE_DATA:-$root/../shared/data}
+export LODESTONE_CACHE=$logs/scratch/cache
+export BLENDER_USER_CONFIG=$logs/scratch/config
+export BLENDER_USER_DATAFILES=$logs/scratch/datafiles
+if [ "$fast" = 1 ]; then
+    export LODESTONE_FAST=1
+fi
+
+# stop NAME LOG: a step without which no test can run has failed.
+stop() {
+    tail -n 60 "$2"
+    echo "$1 failed; the whole log: ${2#"$root"/}"
+    echo "0 passed, 1 failed, 0 skipped"
+    exit 1
+}
+
+# build PRESET LOG
+build() {
+    cmake --preset "$1" >"$2" 2>&1 && cmake --build --preset "$1" >>"$2" 2>&1
+}
+
+results=()
+
+# finish NAME SECONDS: prints the outcome of a step whose result is $logs/NAME.xml.
+finish() {
+    results+=("$logs/$1.xml")
+    local outcome=0 counts
+    counts=$(/usr/bin/python3 tests/count.py "$logs/$1.xml") || outcome=$?
+    # A step may be empty of passed tests (all skipped); only failures are worth its log.
+    printf '%-12s %4d s   %s\n' "$1" "$2" "${counts##*$'\n'}"
+    if [ "$outcome" -ne 0 ] && [[ $counts != *" 0 failed, "* ]]; then
+        echo "---- the end of ${logs#"$root"/}/$1.log"
+        tail -n 60 "$logs/$1.log" || true
+        echo "----"
+    fi
+}
+
+# step NAME COMMAND...: runs a command that writes $logs/NAME.xml.
+step() {
+    local name=$1 start=$SECONDS
+    shift
+    "$@" >"$logs/$name.log" 2>&1 || echo "exit code $?" >>"$logs/$name.log"
+    finish "$name" $((SECONDS - start))
+}
+
+# python_step NAME FILE...: unittest files under the system's Python; without files, nothing.
+python_step() {
+    local name=$1
+    shift
+    if [ $# -gt 0 ]; then
+        PYTHONPATH=$root/backend/python:$root/tests \
+            step "$name" /usr/bin/python3 tests/run_python.py --junit "$logs/$name.xml" "$@"
+    fi
+}
+
+# blender_step NAME FILE...: unittest files inside one Blender that has the staged add-on.
+blender_step() {
+    local name=$1
+    shift
+    if [ $# -gt 0 ]; then
+        BLENDER_USER_SCRIPTS=$LODESTONE_STAGE step "$name" timeout --kill-after=10 600 \
+            blender -b --factory-startup --python-exit-code 1 --python tests/run_python.py \
+            -- --junit "$logs/$name.xml" "$@"
+    fi
+}
+
+# ctest_step NAME PRESET CTEST_ARGUMENT...
+ctest_step() {
+    local name=$1 preset=$2
+    shift 2
+    step "$name" ctest --test-dir "build/$preset" --parallel "$(nproc)" --output-on-failure \
+        --no-tests=ignore --output-junit "$logs/$name.xml" "$@"
+}
+
+if [ "$install" = 1 ]; then
+    bash samples/install_packages.sh samples/packages.txt tests/packages.txt
+fi
+
+start=$SECONDS
+echo "Building release"
+build release "$logs/build.log" || stop "The build" "$logs/build.log"
+printf '%-12s %4d s\n' build $((SECONDS - start))
+
+shopt -s nullglob
+if [ "$fast" = 1 ]; then
+    ctest_step backend release --label-exclude povray
+    python_step lint tests/lint/test_*.py
+    python_step python tests/python/test_*.py
+    python_step capi tests/capi/test_*.py
+else
+    ctest_step backend release
+
+    # The sanitized build takes what lint leaves of the processor; it is waited for before the
+    # tests that have time limits begin.
+    nice -n 19 bash -c 'cmake --preset sanitize && exec ninja -C build/sanitize' \
+        >"$logs/sanitize-build.log" 2>&1 &
+    sanitize=$!
+    trap 'kill "$sanitize" 2>/dev/null || true' EXIT
+    python_step lint tests/lint/test_*.py
+    python_step python tests/python/test_*.py
+    python_step capi tests/capi/test_*.py
+    start=$SECONDS
+    wait "$sanitize" || stop "The sanitized build" "$logs/sanitize-build.log"
+    trap - EXIT
+    printf '%-12s %4d s   (the rest of the sanitized build)\n' waited $((SECONDS - start))
+    ctest_step sanitize sanitize --label-exclude povray
+
+    python_step blender tests/blender/test_*.py
+    blender_step in-blender tests/blender/blender_test_*.py
+    python_step povray tests/povray/test_*.py
+    python_step end_to_end tests/end_to_end/test_*.py
+fi
+
+echo "Logs: build/tests/; $SECONDS s in all"
+/usr/bin/python3 tests/count.py "${results[@]}"
