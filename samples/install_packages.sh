@@ -12,6 +12,13 @@ if [ $# -eq 0 ]; then
     exit 2
 fi
 
+for list in "$@"; do
+    if [ ! -r "$list" ]; then
+        echo "install_packages.sh: cannot read $list" >&2
+        exit 2
+    fi
+done
+
 mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' -- "$@" | sort -u)
 if [ ${#wanted[@]} -eq 0 ]; then
     exit 0

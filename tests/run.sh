@@ -35,12 +35,12 @@ rm -rf "$logs"
 mkdir -p "$logs/scratch"
 exec </dev/null
 export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
-unset DISPLAY WAYLAND_DISPLAY
+# A library named by hand would hide that an installed add-on does not find its own.
+unset DISPLAY WAYLAND_DISPLAY LODESTONE_LIBRARY
 
 # What the tests may rely on. Nothing of the user's Blender is read or written.
 export LODESTONE_BUILD=$root/build/release
 export LODESTONE_STAGE=$LODESTONE_BUILD/stage
-export LODESTONE_LIBRARY=$LODESTONE_STAGE/addons/lodestone/lib/liblodestone.so
 export LODESTONE_COMMAND=$LODESTONE_BUILD/lodestone
 export LODESTONE_DATA=${LODESTONE_DATA:-$root/../shared/data}
 export LODESTONE_CACHE=$logs/scratch/cache
@@ -73,17 +73,20 @@ finish() {
     # A step may be empty of passed tests (all skipped); only failures are worth its log.
     printf '%-12s %4d s   %s\n' "$1" "$2" "${counts##*$'\n'}"
     if [ "$outcome" -ne 0 ] && [[ $counts != *" 0 failed, "* ]]; then
+        /usr/bin/python3 tests/count.py --why "$logs/$1.xml"
         echo "---- the end of ${logs#"$root"/}/$1.log"
-        tail -n 60 "$logs/$1.log" || true
+        tail -n 20 "$logs/$1.log" || true
         echo "----"
     fi
 }
 
-# step NAME COMMAND...: runs a command that writes $logs/NAME.xml.
+# step NAME COMMAND...: runs a command that writes $logs/NAME.xml, for 15 minutes at most.
 step() {
     local name=$1 start=$SECONDS
     shift
-    "$@" >"$logs/$name.log" 2>&1 || echo "exit code $?" >>"$logs/$name.log"
+    # The shell in between says in the log, not on the terminal, that a step crashed.
+    bash -c '"$@"; exit $?' "$name" timeout --kill-after=10 900 "$@" >"$logs/$name.log" 2>&1 ||
+        echo "exit code $?" >>"$logs/$name.log"
     finish "$name" $((SECONDS - start))
 }
 
@@ -102,7 +105,7 @@ blender_step() {
     local name=$1
     shift
     if [ $# -gt 0 ]; then
-        BLENDER_USER_SCRIPTS=$LODESTONE_STAGE step "$name" timeout --kill-after=10 600 \
+        BLENDER_USER_SCRIPTS=$LODESTONE_STAGE step "$name" \
             blender -b --factory-startup --python-exit-code 1 --python tests/run_python.py \
             -- --junit "$logs/$name.xml" "$@"
     fi

@@ -94,24 +94,31 @@ def write_junit(path: Path, suite: str, records: list[list]) -> None:
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
+def run_file(file: Path) -> list[list]:
+    """The records of all tests of one file."""
+    try:
+        suite = load(file.resolve())
+    except unittest.SkipTest as skip:
+        return [[f"{file.stem} (whole file)", "skipped", str(skip), 0.0]]
+    except BaseException:  # also a file that calls sys.exit while it is imported
+        print(traceback.format_exc(), flush=True)
+        return [[f"{file.stem} (import)", "failed", traceback.format_exc(), 0.0]]
+    runner = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Recorder)
+    return runner.run(suite).records
+
+
 def run(files: list[Path], junit: Path) -> bool:
     """Runs all files in order. True if nothing failed."""
-    runner = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Recorder)
-    records = []
+    # Written again after every file: when one takes the process down, it and those after it are
+    # on record as failed.
+    records = {file: [[f"{file.stem} (did not finish)", "failed", "", 0.0]] for file in files}
     for file in files:
+        write_junit(junit, junit.stem, sum(records.values(), []))
         print(f"==== {file}", flush=True)
-        try:
-            suite = load(file.resolve())
-        except unittest.SkipTest as skip:
-            records.append([f"{file.stem} (whole file)", "skipped", str(skip), 0.0])
-            continue
-        except BaseException:  # also a file that calls sys.exit while it is imported
-            print(traceback.format_exc(), flush=True)
-            records.append([f"{file.stem} (import)", "failed", traceback.format_exc(), 0.0])
-            continue
-        records += runner.run(suite).records
-    write_junit(junit, junit.stem, records)
-    return all(outcome != "failed" for _, outcome, _, _ in records)
+        records[file] = run_file(file)
+    everything = sum(records.values(), [])
+    write_junit(junit, junit.stem, everything)
+    return all(outcome != "failed" for _, outcome, _, _ in everything)
 
 
 def main() -> int:

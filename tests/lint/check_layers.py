@@ -27,7 +27,7 @@ FLOORS = (
 
 # Third-party headers: (what the name begins with, the only files of ours that may see it).
 THIRD_PARTY = (
-    (r"embree\d?/", r"backend/src/ray/"),
+    (r"embree\d?/|[a-z]+mmintrin\.h|immintrin\.h", r"backend/src/ray/"),
     (
         r"(lib)?png|jpeglib|jerror|turbojpeg|OpenEXR/|Imf|Imath|Iex|IlmThread|half",
         r"backend/src/image/",
