@@ -11,7 +11,8 @@ struct Attributes {
     double surface_area = 0;    // area that could be seen at all: VSA / it = visibility
     glm::dvec3 centroid{0.0};   // of the visible surface
     glm::dmat3 moments{0.0};    // integral of (x-c)(x-c)^T dA over the visible surface, m^4
-    double normal_moment = 0;   // mean of sum n_i^4 in the principal frame: box 1, sphere 0.6
+    glm::dmat3 axes{1.0};       // principal frame (columns, right-handed), longest axis first
+    double normal_moment = 0;   // mean of sum n_i^4 in that frame: box 1, sphere 0.6
     glm::dvec3 color{0.8};      // mean base color, by visible area
     double roughness = 0.5;     // likewise
     double metallic = 0;        // likewise
