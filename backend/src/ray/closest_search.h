@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ClosestSearch: a search for the triangle nearest to a point, whoever proposes the candidates.
+#pragma once
+
+#include "ray/scene.h"
+
+#include <span>
+
+namespace lodestone::ray {
+
+/// The point of a triangle that is closest to another: (1-u-v) a + u b + v c.
+struct OnTriangle {
+    glm::dvec3 point{0.0};
+    double u = 0;
+    double v = 0;
+};
+/// Also of a triangle without area.
+OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                               const glm::dvec3& c);
+
+/// The search's state in a scene's own frame. In double precision, so that the answer does not
+/// depend on the candidates that were visited besides the nearest one.
+struct ClosestSearch {
+    std::span<const glm::vec3> positions;
+    std::span<const Triangle> triangles;
+    glm::dvec3 point;
+    double square = std::numeric_limits<double>::infinity();  // of the distance
+    uint32_t triangle = kNoTriangle;
+    OnTriangle where{};
+
+    /// Whether the triangle is nearer than all before, or as near and lower.
+    bool visit(uint32_t index);
+
+    /// The radius that a search in single precision has to cover so that no triangle within
+    /// `distance` is missed.
+    float reach(double distance) const;
+};
+
+}  // namespace lodestone::ray
