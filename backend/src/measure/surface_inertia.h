@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SurfaceInertia: area, center of mass and second moments of a surface (dissertation 4.2.7, A.1).
+#pragma once
+
+#include "base/maths.h"
+#include "model/mesh.h"
+
+namespace lodestone::measure {
+
+/// A surface seen as a thin shell of one kilogram a square metre.
+struct SurfaceInertia {
+    double area = 0;          // m^2
+    glm::dvec3 center{0.0};   // center of mass, m
+    glm::dmat3 moments{0.0};  // integral of (x - center)(x - center)^T dA, m^4
+
+    bool empty() const { return !(area > 0); }
+    /// Surface inertia tensor about the center (4.20): trace(moments) I - moments.
+    glm::dmat3 inertia() const;
+};
+
+/// By traversal, every triangle as four point masses (A.1.1); hidden surface counts in full.
+/// Triangles without area or with non-finite vertices count nothing. With `both_sides_of_open` a
+/// mesh that is not closed() counts twice, as it can be seen from both sides.
+SurfaceInertia of_mesh(const Mesh& mesh, bool both_sides_of_open = false);
+
+// Primitives about the origin; lengths in metres, >= 0 and finite, else Error(InvalidArgument).
+
+SurfaceInertia of_sphere(double radius);                          // A.10, A.11
+SurfaceInertia of_box(double a, double b, double c);              // A.12-A.14 with 1/12 in A.13
+SurfaceInertia of_closed_cylinder(double radius, double height);  // A.15-A.17, axis z
+SurfaceInertia of_disc(double radius);                            // A.18, A.19, normal z, one side
+SurfaceInertia of_ellipsoid(const glm::dvec3& half_size);         // by quadrature, to 1e-10
+
+/// Both surfaces together (4.28-4.30).
+SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b);
+
+/// Under a rotation, mirroring, uniform scale s and translation: area s^2, moments s^4. Throws
+/// Error(InvalidArgument) for any other transform: areas do not follow a non-uniform scale.
+SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similarity);
+
+/// Variances along the principal axes (moments / area, m^2, descending) and the axes.
+Eigen principal_variances(const SurfaceInertia& inertia);
+
+}  // namespace lodestone::measure
