@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sobol points in four dimensions, shifted by a seed: evener than random ones, and any of them can
+// be had by its number, so that threads need not share anything.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lodestone::measure {
+
+/// Spreads a number over 64 bits, so that neighboring seeds and numbers have nothing in common.
+constexpr uint64_t scramble(uint64_t x) {
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 32u)) * 0xd6e8feb86659fd93u;
+    x = (x ^ (x >> 29u)) * 0xa0761d6478bd642fu;
+    return x ^ (x >> 32u);
+}
+
+using SobolDirections = std::array<std::array<uint32_t, 4>, 32>;
+
+/// Direction numbers: the plain radical inverse, then the primitive polynomials 1 + x,
+/// 1 + x + x^2 and 1 + x + x^3 (Sobol 1967; starting values of Joe and Kuo 2008).
+constexpr SobolDirections sobol_directions() {
+    SobolDirections out{};
+    for (size_t bit = 0; bit < 32; ++bit)
+        out[bit][0] = uint32_t{1} << (31 - bit);
+    constexpr std::array<uint32_t, 3> kDegree{1, 2, 3};
+    constexpr std::array<uint32_t, 3> kPolynomial{0, 1, 1};  // without the first and last term
+    constexpr std::array<std::array<uint32_t, 3>, 3> kStart{{{1, 0, 0}, {1, 3, 0}, {1, 3, 1}}};
+    for (size_t i = 0; i < 3; ++i) {
+        const size_t degree = kDegree[i];
+        for (size_t bit = 0; bit < 32; ++bit) {
+            if (bit < degree) {
+                out[bit][i + 1] = kStart[i][bit] << (31 - bit);
+                continue;
+            }
+            const uint32_t oldest = out[bit - degree][i + 1];
+            uint32_t value = oldest ^ (oldest >> degree);
+            for (size_t k = 1; k < degree; ++k) {
+                if (((kPolynomial[i] >> (degree - 1 - k)) & 1u) != 0)
+                    value ^= out[bit - k][i + 1];
+            }
+            out[bit][i + 1] = value;
+        }
+    }
+    return out;
+}
+
+inline constexpr SobolDirections kSobolDirections = sobol_directions();
+
+/// Points of [0, 1)^4. Each is uniform over the seeds; together they fill the space evenly.
+class Sobol {
+public:
+    explicit Sobol(uint64_t seed) {
+        for (size_t i = 0; i < shift_.size(); ++i)
+            shift_[i] = static_cast<uint32_t>(scramble(scramble(seed) + i) >> 32u);
+    }
+
+    std::array<double, 4> point(uint32_t number) const {
+        std::array<uint32_t, 4> bits = shift_;
+        for (size_t bit = 0; number != 0; ++bit, number >>= 1u) {
+            if ((number & 1u) == 0)
+                continue;
+            for (size_t i = 0; i < 4; ++i)
+                bits[i] ^= kSobolDirections[bit][i];
+        }
+        return {bits[0] * 0x1p-32, bits[1] * 0x1p-32, bits[2] * 0x1p-32, bits[3] * 0x1p-32};
+    }
+
+private:
+    std::array<uint32_t, 4> shift_{};
+};
+
+}  // namespace lodestone::measure

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a mesh can be seen: its attributes by rays (dissertation 4.2.4), and which triangles.
+#pragma once
+
+#include "base/job.h"
+#include "model/attributes.h"
+#include "model/material.h"
+#include "ray/scene.h"
+
+#include <span>
+
+namespace lodestone::measure {
+
+struct VisibleOptions {
+    uint64_t rays = 4096;       // the number of rays, when relative_error is 0
+    double relative_error = 0;  // else: rays until visible_area is known this well, 95 % confidence
+    uint64_t most_rays = uint64_t{1} << 20u;  // ... but never more than these; at most 2^32 - 1
+    uint64_t seed = 1;
+};
+
+struct Visible {
+    Attributes attributes;
+    std::vector<uint64_t> hits_by_tag;  // visible points found on each tag; empty without tags
+};
+
+/// Attributes of the visible surface in the mesh's frame. `materials` by slot (a slot without one
+/// looks like Material{}); surface properties are means over the visible area. `tags` is empty or
+/// one a triangle, each < 2^24: for instance which child the triangle came from. A mesh without
+/// area, or of which no ray hit anything, gives empty attributes. Same bits on any number of
+/// threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
+                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
+                        const Job& job = {});
+
+/// The same with a scene made from this mesh before.
+Visible measure_visible(const Mesh& mesh, const ray::Scene& scene,
+                        std::span<const Material> materials, const VisibleOptions& options,
+                        std::span<const uint32_t> tags = {}, const Job& job = {});
+
+/// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
+/// dropped before simplifying. Rays leave random points in random directions (cosine), on both
+/// sides unless the mesh is closed. Triangles without area count as seen: nobody knows. Same bits
+/// on any number of threads.
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
+                                       int rays_per_triangle, uint64_t seed, const Job& job = {});
+
+}  // namespace lodestone::measure
