@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards Deviation, the number every choice of detail rests on: known distances, both directions,
+// and that nothing invisible of the finest counts.
+#include "backend/shapes.h"
+#include "base/parallel.h"
+#include "measure/deviation.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using measure::Deviation;
+using measure::DeviationOptions;
+using measure::DeviationReference;
+
+namespace {
+
+Mesh moved(const Mesh& mesh, const Affine& transform) {
+    Mesh out;
+    append(out, mesh, transform);
+    return out;
+}
+
+Mesh shifted(const Mesh& mesh, const glm::dvec3& offset) {
+    return moved(mesh, {glm::dmat3(1.0), offset});
+}
+
+Deviation deviation(const Mesh& finest, const Mesh& stand_in) {
+    return DeviationReference(finest, {}).of(stand_in);
+}
+
+}  // namespace
+
+TEST(Deviation, EmptyMeshesAreTheOthersDiameterApart) {
+    EXPECT_EQ(deviation(Mesh{}, Mesh{}).error, 0);
+    const double diameter = std::sqrt(3.0);
+    EXPECT_NEAR(deviation(shapes::cube(), Mesh{}).error, diameter, 1e-6);
+    EXPECT_NEAR(deviation(shapes::cube(), Mesh{}).max, diameter, 1e-6);
+    EXPECT_NEAR(deviation(Mesh{}, shapes::cube()).error, diameter, 1e-6);
+}
+
+TEST(Deviation, OfAMeshFromItselfIsNothing) {
+    for (const Mesh& mesh : {shapes::cube(), shapes::sphere(3, 4), shapes::terrain(40),
+                             shapes::book(20), shapes::fan()}) {
+        const Deviation out = deviation(mesh, mesh);
+        EXPECT_LT(out.max, 1e-6 * bound_of(mesh.positions).radius);
+    }
+}
+
+TEST(Deviation, OfParallelQuadsIsTheirDistance) {
+    const Mesh quad = shapes::quad(1, 2);
+    for (const double d : {1e-4, 0.25, 3.0}) {
+        const Deviation out = deviation(quad, shifted(quad, {0, 0, d}));
+        EXPECT_NEAR(out.error, d, 1e-6);
+        EXPECT_NEAR(out.max, d, 1e-6);
+    }
+}
+
+TEST(Deviation, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
+    const Deviation grown = deviation(shapes::sphere(1, 5), shapes::sphere(1.1, 5));
+    EXPECT_NEAR(grown.error, 0.1, 1e-3);
+    const Deviation shrunk = deviation(shapes::sphere(1.1, 5), shapes::sphere(1, 5));
+    EXPECT_NEAR(shrunk.error, 0.1, 1e-3);
+}
+
+TEST(Deviation, OfATranslationIsAtMostItsLengthAndNearlySo) {
+    const Mesh sphere = shapes::sphere(1, 5);
+    const Deviation out = deviation(sphere, shifted(sphere, {0, 0, 0.05}));
+    EXPECT_LE(out.max, 0.0501);
+    EXPECT_NEAR(out.error, 0.05, 1e-3);
+    const Mesh box = shapes::box({0, 0, 0}, {1, 2, 3});
+    EXPECT_NEAR(deviation(box, shifted(box, {0.01, 0, 0})).error, 0.01, 1e-6);
+}
+
+TEST(Deviation, CountsBothDirections) {
+    // Missing a part is seen from the finest, adding one from the stand-in.
+    const Mesh one = shapes::cube();
+    Mesh two = one;
+    append(two, shapes::cube(), {glm::dmat3(1.0), {5, 0, 0}});
+    EXPECT_NEAR(deviation(two, one).error, 5, 0.05);
+    EXPECT_NEAR(deviation(one, two).error, 5, 0.05);
+}
+
+TEST(Deviation, IgnoresWhatNobodySeesOfTheFinest) {
+    const Mesh outer = shapes::box(glm::dvec3(-1), glm::dvec3(1));
+    Mesh full = outer;
+    append(full, shapes::sphere(0.3, 3), Affine{});
+    append(full, shapes::quad(0.5f, 0.5f), Affine{});
+    EXPECT_LT(deviation(full, outer).max, 1e-6);
+    // A stand-in that keeps the interior is right too: it is compared with all of the finest.
+    EXPECT_LT(deviation(full, full).max, 1e-6);
+    // Interior that the finest does not have counts: it may shine through elsewhere.
+    EXPECT_NEAR(deviation(outer, full).max, 1, 0.05);
+}
+
+TEST(Deviation, SeesASpikeButNotOneThousandthOfTheWeight) {
+    // A flat grid with one vertex pulled up: its six triangles are 6 / (2 n n) of the area.
+    const auto spiked = [](uint32_t n) {
+        Mesh mesh = shapes::terrain(n);
+        for (glm::vec3& position : mesh.positions)
+            position.z = 0;
+        mesh.positions[(n / 2) * (n + 1) + n / 2].z = 0.01f;
+        return mesh;
+    };
+    const Mesh flat = shapes::quad(1, 1);
+    // Of a direction's weight that vertex is 1 / (2 n n): 1/200 and 1/3200.
+    EXPECT_NEAR(deviation(flat, spiked(10)).error, 0.01, 1e-6);
+    EXPECT_LT(deviation(flat, spiked(40)).error, 0.007);
+    EXPECT_NEAR(deviation(flat, spiked(40)).max, 0.01, 1e-6);
+    EXPECT_NEAR(deviation(spiked(10), flat).error, 0.01, 1e-6);
+}
+
+TEST(Deviation, SubsampledVerticesGiveTheSameError) {
+    const Mesh finest = shapes::sphere(1, 5);
+    const Mesh coarse = shapes::sphere(1, 2);
+    DeviationOptions few;
+    few.samples = 2048;
+    few.most_vertices = 512;
+    const double all = deviation(finest, coarse).error;
+    EXPECT_GT(all, 0.01);
+    EXPECT_NEAR(DeviationReference(finest, few).of(coarse).error / all, 1, 0.1);
+    few.samples = 0;
+    few.most_vertices = 0;
+    EXPECT_EQ(DeviationReference(finest, few).of(coarse).error, 0);
+}
+
+TEST(Deviation, MovesWithTheMeshesAndGrowsWithTheirSize) {
+    const Mesh finest = shapes::sphere(1, 4);
+    const Mesh coarse = shapes::sphere(1, 2);
+    const double reference = deviation(finest, coarse).error;
+    for (const double s : {1e-6, 1e6}) {
+        const Affine scaled{glm::dmat3(s), {}};
+        EXPECT_NEAR(deviation(moved(finest, scaled), moved(coarse, scaled)).error / (s * reference),
+                    1, 0.02)
+            << s;
+    }
+    // A thousand kilometres away single precision is 6 cm; boxes with exact corners keep theirs.
+    const glm::dvec3 far(0x1p20);
+    const Mesh box = shapes::box(far, far + 1.0);
+    const Mesh larger = shapes::box(far - 0.25, far + 1.25);
+    EXPECT_NEAR(deviation(box, larger).error, std::sqrt(3.0) / 4, 0.02);
+    EXPECT_LT(deviation(box, box).max, 1e-6);
+}
+
+TEST(Deviation, ZeroAreaTrianglesNeitherCountNorCrash) {
+    Mesh finest = shapes::cube();
+    Mesh dirty = finest;
+    dirty.normals.clear();
+    dirty.positions.emplace_back(0.0f, 0.0f, 7.0f);
+    const auto last = static_cast<uint32_t>(dirty.positions.size() - 1);
+    dirty.triangles.emplace_back(last, last, last);
+    dirty.triangles.emplace_back(0, 0, last);
+    EXPECT_LT(deviation(finest, dirty).max, 1e-6);
+    EXPECT_LT(deviation(dirty, finest).max, 1e-6);
+    Mesh line;
+    line.positions = {{0, 0, 0}, {1, 0, 0}};
+    line.triangles = {{0, 1, 1}};
+    EXPECT_NO_THROW(deviation(finest, line));
+    EXPECT_EQ(deviation(line, line).max, 0);
+}
+
+TEST(Deviation, SameBitsOnOneAndManyThreads) {
+    const Mesh finest = shapes::terrain(60);
+    const Mesh coarse = shapes::terrain(13);
+    const auto run = [&](int threads) {
+        const ThreadLimit limit(threads);
+        const DeviationReference reference(finest, {});
+        const Deviation out = reference.of(coarse);
+        return std::tuple(out.error, out.max, reference.visible_points());
+    };
+    const auto once = run(1);
+    EXPECT_EQ(once, run(0));
+    EXPECT_EQ(once, run(2));
+    EXPECT_GT(std::get<0>(once), 0);
+}
+
+TEST(Deviation, CancelledJobsStop) {
+    const int32_t cancel = 1;
+    const Job job(&cancel, nullptr, nullptr);
+    EXPECT_THROW(DeviationReference(shapes::cube(), {}, job), Error);
+    const DeviationReference reference(shapes::cube(), {});
+    EXPECT_THROW((void)reference.of(shapes::cube(), job), Error);
+}
