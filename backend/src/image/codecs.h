@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Codecs: one function a file format; seen only inside the image floor.
+#pragma once
+
+#include "image/image.h"
+
+namespace lodestone::image {
+
+Image decode_png(std::string_view bytes, const std::string& name);
+Image decode_jpeg(std::string_view bytes, const std::string& name);
+Image decode_exr(std::string_view bytes, const std::string& name);
+
+/// `rows` holds height rows of width * channels bytes; 3 or 4 channels. The file's bytes.
+std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels);
+
+/// An image of that size, all 0. Throws Error(BadFile) when it is empty or above kMostPixels.
+Image blank(int64_t width, int64_t height, bool linear, const std::string& name);
+
+}  // namespace lodestone::image

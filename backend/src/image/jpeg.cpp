@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// libjpeg reports errors through a function that must not return: ours jumps out. Between setjmp
+// and the last libjpeg call there are only plain values; memory is owned by the caller's frame.
+#include "base/error.h"
+#include "image/codecs.h"
+
+#include <jpeglib.h>
+
+#include <csetjmp>
+#include <cstdio>
+#include <jerror.h>
+
+namespace lodestone::image {
+namespace {
+
+struct Reader {
+    jpeg_decompress_struct jpeg{};
+    jpeg_error_mgr errors{};
+    std::jmp_buf out{};
+    char complaint[JMSG_LENGTH_MAX] = "";
+
+    Reader() = default;
+    ~Reader() { jpeg_destroy_decompress(&jpeg); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+};
+
+void on_error(j_common_ptr jpeg) {
+    auto* reader = static_cast<Reader*>(jpeg->client_data);
+    jpeg->err->format_message(jpeg, reader->complaint);
+    std::longjmp(reader->out, 1);  // NOLINT(cert-err52-cpp)
+}
+
+void on_message(j_common_ptr jpeg, int level) {
+    // libjpeg would fill the rest of a torn picture with gray.
+    if (level < 0 &&
+        (jpeg->err->msg_code == JWRN_JPEG_EOF || jpeg->err->msg_code == JWRN_HIT_MARKER))
+        on_error(jpeg);
+}
+
+bool start(Reader& reader, std::string_view bytes) {
+    if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    reader.jpeg.err = jpeg_std_error(&reader.errors);
+    reader.errors.error_exit = on_error;
+    reader.errors.emit_message = on_message;
+    reader.jpeg.client_data = &reader;
+    jpeg_create_decompress(&reader.jpeg);
+    reader.jpeg.client_data = &reader;
+    reader.jpeg.mem->max_memory_to_use = 1l << 30;
+    jpeg_mem_src(&reader.jpeg, reinterpret_cast<const unsigned char*>(bytes.data()),
+                 static_cast<unsigned long>(bytes.size()));
+    jpeg_read_header(&reader.jpeg, TRUE);
+    return true;
+}
+
+bool begin_rows(Reader& reader) {
+    if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    jpeg_start_decompress(&reader.jpeg);
+    return true;
+}
+
+bool next_row(Reader& reader, unsigned char* row) {
+    if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    return jpeg_read_scanlines(&reader.jpeg, &row, 1) == 1;
+}
+
+}  // namespace
+
+Image decode_jpeg(std::string_view bytes, const std::string& name) {
+    Reader reader;
+    if (!start(reader, bytes))
+        fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
+    const J_COLOR_SPACE space = reader.jpeg.jpeg_color_space;
+    if (space == JCS_CMYK || space == JCS_YCCK)
+        fail(Status::BadFile, "'", name, "' is a CMYK JPEG; save it as RGB");
+    if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr)
+        fail(Status::BadFile, "'", name, "' is a JPEG of an unknown color space");
+    Image image = blank(reader.jpeg.image_width, reader.jpeg.image_height, false, name);
+    reader.jpeg.out_color_space = space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
+    if (!begin_rows(reader))
+        fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
+    const auto width = static_cast<size_t>(image.width);
+    const size_t channels = space == JCS_GRAYSCALE ? 1 : 3;
+    std::vector<unsigned char> row(width * channels);
+    for (size_t y = 0; y < static_cast<size_t>(image.height); ++y) {
+        if (!next_row(reader, row.data()))
+            fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
+        for (size_t x = 0; x < width; ++x) {
+            float* pixel = image.pixels.data() + 4 * (y * width + x);
+            for (size_t channel = 0; channel < 3; ++channel)
+                pixel[channel] =
+                    static_cast<float>(row[x * channels + (channels == 3 ? channel : 0)]) / 255.0f;
+            pixel[3] = 1;
+        }
+    }
+    return image;
+}
+
+}  // namespace lodestone::image

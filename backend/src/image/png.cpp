@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// libpng leaves its functions by longjmp: between setjmp and the last libpng call there are only
+// plain values; whatever owns memory lives in the caller's frame.
+#include "base/error.h"
+#include "image/codecs.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+
+namespace lodestone::image {
+namespace {
+
+struct Source {
+    const char* at;
+    size_t left;
+};
+
+struct Complaint {
+    char text[160] = "";
+};
+
+void on_error(png_structp png, png_const_charp message) {
+    auto* complaint = static_cast<Complaint*>(png_get_error_ptr(png));
+    std::strncpy(complaint->text, message, sizeof complaint->text - 1);
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void on_read(png_structp png, png_bytep out, size_t size) {
+    auto* source = static_cast<Source*>(png_get_io_ptr(png));
+    if (size > source->left)
+        png_error(png, "the file ends too early");
+    std::memcpy(out, source->at, size);
+    source->at += size;
+    source->left -= size;
+}
+
+void on_write(png_structp png, png_bytep data, size_t size) {
+    auto* out = static_cast<std::string*>(png_get_io_ptr(png));
+    bool written = true;
+    try {
+        out->append(reinterpret_cast<const char*>(data), size);
+    } catch (const std::bad_alloc&) {
+        written = false;
+    }
+    if (!written)
+        png_error(png, "out of memory");
+}
+
+void on_flush(png_structp) {}
+
+struct Reader {
+    Complaint complaint;
+    Source source;
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    size_t packed_row = 0;  // bytes of a row as the file packs it
+
+    explicit Reader(std::string_view bytes) : source{bytes.data(), bytes.size()} {
+        png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, on_error, on_warning);
+        if (png != nullptr)
+            info = png_create_info_struct(png);
+        if (info == nullptr) {
+            png_destroy_read_struct(&png, nullptr, nullptr);
+            throw std::bad_alloc();
+        }
+    }
+    ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+};
+
+/// Up to the first row; afterwards rows are RGBA of 8 or 16 bits. False: see the complaint.
+bool start(Reader& reader) {
+    if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    png_set_read_fn(reader.png, &reader.source, on_read);
+    png_set_user_limits(reader.png, 1u << 26u, 1u << 26u);
+    png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
+    png_read_info(reader.png, reader.info);
+    reader.packed_row = png_get_rowbytes(reader.png, reader.info);
+    png_set_expand(reader.png);  // palettes, 1...4 bits and transparent colors
+    png_set_gray_to_rgb(reader.png);
+    png_set_add_alpha(reader.png, 0xffff, PNG_FILLER_AFTER);
+    png_set_interlace_handling(reader.png);
+    png_read_update_info(reader.png, reader.info);
+    return true;
+}
+
+bool read_rows(Reader& reader, png_bytepp rows) {
+    if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    png_read_image(reader.png, rows);
+    return true;
+}
+
+struct Writer {
+    Complaint complaint;
+    std::string bytes;
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+
+    Writer() {
+        png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, on_error, on_warning);
+        if (png != nullptr)
+            info = png_create_info_struct(png);
+        if (info == nullptr) {
+            png_destroy_write_struct(&png, nullptr);
+            throw std::bad_alloc();
+        }
+    }
+    ~Writer() { png_destroy_write_struct(&png, &info); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+};
+
+bool write_rows(Writer& writer, png_bytepp rows, int width, int height, int channels) {
+    if (setjmp(png_jmpbuf(writer.png)) != 0)  // NOLINT(cert-err52-cpp)
+        return false;
+    png_set_write_fn(writer.png, &writer.bytes, on_write, on_flush);
+    png_set_user_limits(writer.png, 1u << 26u, 1u << 26u);
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width),
+                 static_cast<png_uint_32>(height), 8,
+                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(writer.png, writer.info);
+    png_write_image(writer.png, rows);
+    png_write_end(writer.png, writer.info);
+    return true;
+}
+
+}  // namespace
+
+Image decode_png(std::string_view bytes, const std::string& name) {
+    Reader reader(bytes);
+    if (!start(reader))
+        fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
+    const size_t width = png_get_image_width(reader.png, reader.info);
+    const size_t height = png_get_image_height(reader.png, reader.info);
+    const size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+    const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
+    if (row_bytes != width * (wide ? 8 : 4))
+        fail(Status::BadFile, "'", name, "' is a PNG of an unknown layout");
+    // Deflate shrinks at most 1032 times: a header that promises more lies, and is caught before
+    // memory is spent on it.
+    if (reader.packed_row * height / 1032 > bytes.size())
+        fail(Status::BadFile, "'", name, "' is too short for ", width, " x ", height, " pixels");
+    Image image = blank(static_cast<int64_t>(width), static_cast<int64_t>(height), false, name);
+    std::vector<unsigned char> data(row_bytes * height);
+    std::vector<png_bytep> rows(height);
+    for (size_t y = 0; y < height; ++y)
+        rows[y] = data.data() + y * row_bytes;
+    if (!read_rows(reader, rows.data()))
+        fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i] = wide ? static_cast<float>((data[2 * i] << 8) | data[2 * i + 1]) / 65535.0f
+                               : static_cast<float>(data[i]) / 255.0f;
+    }
+    return image;
+}
+
+std::string encode_png(const std::vector<unsigned char>& rows, int width, int height,
+                       int channels) {
+    Writer writer;
+    std::vector<unsigned char> data = rows;  // libpng wants rows it could write to
+    std::vector<png_bytep> starts(static_cast<size_t>(height));
+    for (size_t y = 0; y < starts.size(); ++y)
+        starts[y] = data.data() + y * static_cast<size_t>(width) * static_cast<size_t>(channels);
+    if (!write_rows(writer, starts.data(), width, height, channels))
+        fail(Status::Internal, "a PNG could not be made: ", writer.complaint.text);
+    return std::move(writer.bytes);
+}
+
+}  // namespace lodestone::image
