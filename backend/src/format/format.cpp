@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "format/format.h"
+
+#include "base/files.h"
+#include "format/glb.h"
+#include "format/mtl.h"
+#include "format/obj.h"
+#include "format/ply.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace lodestone::format {
+namespace {
+
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
+}
+
+Model model_of(Mesh mesh, const std::string& name) {
+    Model model;
+    model.materials.emplace_back();
+    Object object;
+    object.uid = "ply:0";
+    object.name = name;
+    object.representations.emplace_back();
+    Representation& finest = object.representations[0];
+    finest.materials = {0};
+    finest.payload = std::make_shared<const Mesh>(std::move(mesh));
+    summarize(finest, model);
+    model.objects.push_back(std::move(object));
+    model.root = 0;
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& path, Problems& problems) {
+    const std::string extension = extension_of(path);
+    if (extension == ".obj")
+        return read_obj(read_file(path), path, problems);
+    if (extension == ".ply")
+        return model_of(read_ply(read_file(path), path.stem().string(), problems),
+                        path.stem().string());
+    if (extension == ".glb" || extension == ".gltf") {
+        const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+        return read_glb(read_file(path), folder, path.stem().string(), problems);
+    }
+    fail(Status::BadFile, "'", path.string(), "' is not read: only .obj, .ply, .glb and .gltf are");
+}
+
+Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
+    constexpr uint32_t kNone = ~uint32_t{0};
+    Mesh whole;
+    std::map<uint32_t, uint16_t> slot_of;
+    for_each_occurrence(model, [&](const Occurrence& occurrence) {
+        const Representation& finest = model.objects[occurrence.object].representations[0];
+        Mesh part;
+        if (finest.summary.kind == Kind::Box)
+            part = tessellate_box(finest.primitive());
+        else if (finest.summary.kind == Kind::Ellipsoid)
+            part = tessellate_ellipsoid(finest.primitive(), 3);
+        else
+            part = finest.mesh();
+        std::vector<uint16_t> slots(part.triangles.size());
+        for (size_t i = 0; i < slots.size(); ++i) {
+            const uint16_t slot = part.slot(i);
+            uint32_t material = finest.materials.empty() ? kNone : finest.materials[0];
+            if (slot < finest.materials.size())
+                material = finest.materials[slot];
+            const auto found = slot_of.emplace(material, materials.size());
+            if (found.second) {
+                if (materials.size() >= std::numeric_limits<uint16_t>::max())
+                    fail(Status::InvalidArgument, "the model uses more than 65534 materials");
+                materials.push_back(material);
+            }
+            slots[i] = found.first->second;
+        }
+        part.slots = std::move(slots);
+        append(whole, part, occurrence.world);
+    });
+    return whole;
+}
+
+void write_model(const std::filesystem::path& path, const Model& model) {
+    const std::string extension = extension_of(path);
+    if (extension == ".glb") {
+        write_file(path, write_glb(model));
+        return;
+    }
+    if (extension != ".obj" && extension != ".ply")
+        fail(Status::InvalidArgument, "'", path.string(),
+             "' is not written: only .glb, .obj and .ply are");
+    std::vector<uint32_t> slots;
+    const Mesh mesh = flattened(model, slots);
+    if (extension == ".ply") {
+        write_file(path, write_ply(mesh));
+        return;
+    }
+    std::vector<Material> materials;
+    materials.reserve(slots.size());
+    for (const uint32_t index : slots)
+        materials.push_back(index < model.materials.size() ? model.materials[index] : Material{});
+    std::filesystem::path library = path;
+    library.replace_extension(".mtl");
+    write_file(library, write_mtl(materials));
+    write_file(path, write_obj(mesh, materials, path.stem().string(), library.filename().string()));
+}
+
+}  // namespace lodestone::format

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF accessors: ranges checked once, then read as floats or indices.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+class Value;
+}  // namespace tinygltf
+
+namespace lodestone::format {
+
+/// `count` elements of `components` numbers that surely lie inside their buffer.
+class Elements {
+public:
+    /// Throws Error(BadFile) with a sentence on what is wrong with the accessor; sparse ones and
+    /// those without data are refused.
+    Elements(const tinygltf::Model& model, int accessor, int components);
+
+    size_t count() const { return count_; }
+    /// Integers are normalized where the accessor says so.
+    float number(size_t element, int component) const;
+    /// Of an unsigned integer accessor; throws Error(BadFile) for others.
+    uint32_t index(size_t element) const;
+
+private:
+    const unsigned char* first_ = nullptr;
+    size_t stride_ = 0;
+    size_t count_ = 0;
+    int type_ = 0;
+    bool normalized_ = false;
+};
+
+/// Appends data, 4-byte aligned, as one buffer view (`target` 0 = none) of buffer 0.
+int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target);
+/// Floats of 1...3 components; `bounds` adds min and max. The data is one a vertex.
+int add_floats(tinygltf::Model& model, std::span<const float> values, int components, bool bounds);
+
+/// The member of an extras or extensions object; null when there is none.
+const tinygltf::Value& member(const tinygltf::Value& value, const char* key);
+
+/// The bytes of a picture that lies in a buffer view. Throws Error(BadFile).
+std::string view_bytes(const tinygltf::Model& model, int view);
+
+}  // namespace lodestone::format

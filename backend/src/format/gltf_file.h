@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF files: bytes -> tinygltf's model with nothing decoded, guarded against hostile files; back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace lodestone::format {
+
+/// GLB or glTF text, told by the first bytes. Buffers and pictures in files of their own are read
+/// only from below `folder` (empty: none). Pictures stay encoded, in Image::image. References
+/// inside the model are not checked. Throws Error(BadFile) naming `name`.
+void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesystem::path& folder,
+               const std::string& name);
+
+/// The model as GLB (a scene of nothing is removed first); its first buffer becomes the binary chunk. Throws Error(InvalidArgument) when
+/// that has 2 GiB or more.
+std::string save_glb(tinygltf::Model& model);
+
+}  // namespace lodestone::format

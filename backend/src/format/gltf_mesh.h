@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF meshes <-> Mesh: Y up <-> Z up, v down <-> v up, primitives <-> slots.
+//
+// Ours are written so that they come back bit for bit, and marked in mesh.extras.lodestone:
+//   version  1
+//   slots    the slot of each primitive, in order of first use (absent: the mesh has no slots)
+//   order    accessor of the slot of each triangle (absent: triangles are sorted as primitives are)
+// Where v does not survive 1 - (1 - v), the attribute _LODESTONE_V has the true one.
+#pragma once
+
+#include "model/mesh.h"
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace tinygltf {
+class Model;
+struct Mesh;
+}  // namespace tinygltf
+
+namespace lodestone::format {
+
+/// `materials[slot]` is an index into the file's materials or -1. A mesh without triangles becomes
+/// points. Returns the index of the mesh, or -1 for one without vertices. Throws
+/// Error(InvalidArgument) for numbers that are not finite.
+int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const int> materials,
+             const std::string& name);
+
+/// The mesh when all is as add_mesh() writes it (not repaired); else nothing.
+std::optional<Mesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from);
+
+/// What can still be read of a file: vertices and triangles.
+struct Budget {
+    uint64_t vertices = 0;
+    uint64_t triangles = 0;
+};
+
+struct ForeignMesh {
+    Mesh mesh;
+    std::vector<int> materials;  // by slot, into the file's materials or -1; not checked
+};
+
+/// Any mesh: lists, strips and fans of triangles. Primitives that are broken or no triangles are
+/// left out with a problem of `name`.
+ForeignMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
+                         const std::string& name, Budget& budget, Problems& problems);
+
+}  // namespace lodestone::format
