@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collapse: whether an edge may be collapsed to a point, and doing it.
+#pragma once
+
+#include "approximate/edges.h"
+#include "approximate/wedges.h"
+
+namespace lodestone::approximate {
+
+/// Valid for one pass: `adjacency` belongs to its start. A vertex takes part in one collapse of a
+/// pass as an end, so its list stays right for as long as it is needed.
+class Collapser {
+public:
+    Collapser(CollapseMesh& mesh, const Adjacency& adjacency, Effort effort, double max_turn);
+
+    /// Collapses a and b into a at `point`, or changes nothing and returns 0. Returns how many
+    /// triangles went.
+    size_t collapse(uint32_t a, uint32_t b, const glm::dvec3& point);
+
+    /// Triangles looked at so far: what a pass may spend is bounded by it.
+    size_t work() const { return work_; }
+
+private:
+    /// True when the surface stays as connected as it was. Counts left_; fills doomed_ if it could
+    /// be true, or always with `search`.
+    bool link_allows(uint32_t a, uint32_t b, bool search);
+    bool turns_allow(uint32_t moved, uint32_t other, const glm::dvec3& point) const;
+    /// Fills doomed_ with triangles that would coincide: opposite pairs vanish, copies stay once.
+    bool find_coinciding(uint32_t a, uint32_t b);
+    bool on_edge(uint32_t triangle, uint32_t other) const {
+        const Triangle& t = mesh_.triangles[triangle];
+        return t.x == other || t.y == other || t.z == other;
+    }
+
+    CollapseMesh& mesh_;
+    const Adjacency& adjacency_;
+    Effort effort_;
+    double min_cosine_;
+    Marks near_a_;
+    Marks common_;
+    WedgeMerge wedges_;
+    std::vector<uint32_t> doomed_;
+    size_t left_ = 0;  // triangles around the edge that are not on it
+    size_t work_ = 0;
+};
+
+}  // namespace lodestone::approximate

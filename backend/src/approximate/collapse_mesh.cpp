@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/collapse_mesh.h"
+
+#include "approximate/sheets.h"
+#include "approximate/wedges.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::approximate {
+namespace {
+
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Finds the output vertex of (vertex, attributes), or makes it.
+class OutputVertices {
+public:
+    OutputVertices(Mesh& out, size_t vertices) : out_(out), heads_(vertices, kNone) {}
+
+    uint32_t at(uint32_t vertex, const glm::vec3& position, const glm::vec3* normal,
+                const glm::vec2* uv) {
+        constexpr int kMostCompared = 64;
+        int compared = 0;
+        for (uint32_t i = heads_[vertex]; i != kNone && compared < kMostCompared;
+             i = next_[i], ++compared) {
+            if ((normal == nullptr || out_.normals[i] == *normal) &&
+                (uv == nullptr || out_.uvs[i] == *uv))
+                return i;
+        }
+        const auto fresh = static_cast<uint32_t>(out_.positions.size());
+        out_.positions.push_back(position);
+        if (normal != nullptr)
+            out_.normals.push_back(*normal);
+        if (uv != nullptr)
+            out_.uvs.push_back(*uv);
+        next_.push_back(heads_[vertex]);
+        heads_[vertex] = fresh;
+        return fresh;
+    }
+
+private:
+    Mesh& out_;
+    std::vector<uint32_t> heads_;
+    std::vector<uint32_t> next_;
+};
+
+}  // namespace
+
+CollapseMesh open(const Mesh& source, const Job& job) {
+    CollapseMesh mesh;
+    mesh.has_normals = !source.normals.empty();
+    Box3 box;
+    for (const Triangle& t : source.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            if (finite(source.positions[t[corner]]))
+                box.add(glm::dvec3(source.positions[t[corner]]));
+        }
+    }
+    if (box.empty())
+        return mesh;
+    mesh.center = box.center();
+    const glm::dvec3 half = 0.5 * box.size();
+    const double reach = std::max({half.x, half.y, half.z});
+    // A power of two: points that never move come back with the bits they had.
+    mesh.scale = reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 1;
+    mesh.points.reserve(source.positions.size());
+    for (const glm::vec3& position : source.positions)
+        mesh.points.push_back((glm::dvec3(position) - mesh.center) / mesh.scale);
+    job.check();
+    {
+        const std::vector<uint32_t> welded = weld(source);
+        mesh.triangles.reserve(source.triangles.size());
+        mesh.wedges.reserve(source.triangles.size());
+        for (size_t i = 0; i < source.triangles.size(); ++i) {
+            const Triangle& t = source.triangles[i];
+            if (!finite(source.positions[t.x]) || !finite(source.positions[t.y]) ||
+                !finite(source.positions[t.z]))
+                continue;
+            const Triangle corners(welded[t.x], welded[t.y], welded[t.z]);
+            if (corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
+                continue;
+            mesh.triangles.push_back(corners);
+            mesh.wedges.push_back(t);
+            if (!source.slots.empty())
+                mesh.slots.push_back(source.slots[i]);
+        }
+    }
+    mesh.live = mesh.triangles.size();
+    job.check();
+    split_layers(mesh);
+    job.check();
+    split_fans(mesh);
+    job.check();
+    find_parts(mesh);
+    mesh.facets.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles)
+        mesh.facets.push_back(mesh.facet_of(t));
+    mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
+    make_wedges(mesh, source);
+    job.check();
+    compact(mesh);
+    return mesh;
+}
+
+void compact(CollapseMesh& mesh) {
+    std::vector<uint32_t> moved(mesh.points.size(), kNone);
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (mesh.dead(i))
+            continue;
+        for (int corner = 0; corner < 3; ++corner)
+            moved[mesh.triangles[i][corner]] = 0;
+        mesh.triangles[kept] = mesh.triangles[i];
+        mesh.facets[kept] = mesh.facets[i];
+        if (!mesh.wedges.empty())
+            mesh.wedges[kept] = mesh.wedges[i];
+        if (!mesh.slots.empty())
+            mesh.slots[kept] = mesh.slots[i];
+        ++kept;
+    }
+    mesh.triangles.resize(kept);
+    mesh.facets.resize(kept);
+    if (!mesh.wedges.empty())
+        mesh.wedges.resize(kept);
+    if (!mesh.slots.empty())
+        mesh.slots.resize(kept);
+    mesh.live = kept;
+    uint32_t count = 0;
+    for (size_t v = 0; v < moved.size(); ++v) {
+        if (moved[v] == kNone)
+            continue;
+        mesh.points[count] = mesh.points[v];
+        mesh.parts[count] = mesh.parts[v];
+        moved[v] = count++;
+    }
+    mesh.points.resize(count);
+    mesh.parts.resize(count);
+    for (Triangle& t : mesh.triangles)
+        t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
+}
+
+Mesh extract(const CollapseMesh& mesh) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    Mesh out;
+    out.triangles.reserve(mesh.live);
+    OutputVertices vertices(out, mesh.points.size());
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (mesh.dead(i))
+            continue;
+        const double length = glm::length(mesh.facets[i]);
+        const glm::vec3 face(length > 0 ? mesh.facets[i] / length : glm::dvec3(0, 0, 1));
+        Triangle t;
+        for (int corner = 0; corner < 3; ++corner) {
+            const uint32_t vertex = mesh.triangles[i][corner];
+            const uint32_t wedge = mesh.wedges.empty() ? kNone : mesh.wedges[i][corner];
+            const glm::vec3* normal = nullptr;
+            if (mesh.flat_normals)
+                normal = &face;
+            else if (mesh.has_normals)
+                normal = &mesh.normals[wedge];
+            // A vertex may end just outside the input's box, which may be as large as floats go.
+            const glm::dvec3 place =
+                glm::clamp(mesh.center + mesh.points[vertex] * mesh.scale, -kMost, kMost);
+            t[corner] = vertices.at(vertex, glm::vec3(place), normal,
+                                    mesh.uvs.empty() ? nullptr : &mesh.uvs[wedge]);
+        }
+        out.triangles.push_back(t);
+        if (!mesh.slots.empty())
+            out.slots.push_back(mesh.slots[i]);
+    }
+    return out;
+}
+
+}  // namespace lodestone::approximate

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh as the collapse engine sees it: welded vertices, attributes on corners ("wedges").
+#pragma once
+
+#include "base/job.h"
+#include "model/mesh.h"
+
+#include <vector>
+
+namespace lodestone::approximate {
+
+inline constexpr uint32_t kNone = ~uint32_t{0};
+
+/// Vertices at one position are one vertex, except where sheets only touch in a point or coincide
+/// (those are split, so that every sheet can be simplified by itself).
+struct CollapseMesh {
+    std::vector<glm::dvec3> points;   // recentred and scaled into the cube of +-1
+    std::vector<uint32_t> parts;      // connected part of each vertex
+    std::vector<Triangle> triangles;  // x == kNone: dead
+    std::vector<glm::dvec3> facets;   // area vector (half the cross product) of each triangle
+    std::vector<Triangle> wedges;     // wedge of each corner; empty when nothing is carried
+    std::vector<uint16_t> slots;      // empty or one a triangle
+    std::vector<glm::vec3> normals;   // empty or one a wedge
+    std::vector<glm::vec2> uvs;       // empty or one a wedge
+    uint32_t part_count = 0;
+    size_t live = 0;  // triangles not dead
+    glm::dvec3 center{0.0};
+    double scale = 1;           // power of two: metres per unit
+    bool flat_normals = false;  // every face has its own normal: made anew at the end
+    bool has_normals = false;
+
+    bool dead(size_t triangle) const { return triangles[triangle].x == kNone; }
+    glm::dvec3 facet_of(const Triangle& t) const {
+        return 0.5 * glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]);
+    }
+};
+
+/// Leaves out triangles with non-finite vertices and those with two corners in one place.
+CollapseMesh open(const Mesh& mesh, const Job& job);
+
+/// Drops dead triangles and the vertices nothing uses, keeping order.
+void compact(CollapseMesh& mesh);
+
+/// Back to metres; vertices are split only where attributes differ.
+Mesh extract(const CollapseMesh& mesh);
+
+}  // namespace lodestone::approximate

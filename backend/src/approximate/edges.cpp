@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::approximate {
+namespace {
+
+int corner_of(const Triangle& t, uint32_t vertex) {
+    return t.x == vertex ? 0 : (t.y == vertex ? 1 : 2);
+}
+
+/// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
+void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet, double weight) {
+    const double square = glm::dot(edge, edge);
+    const double area = glm::length(facet);
+    if (!(square > 0))
+        return;
+    if (area > 1e-12 * square) {
+        const glm::dvec3 normal = glm::cross(edge, facet);
+        // |edge x facet|^2 = square area^2: the weight is that of a square on the edge.
+        quadric.add(normal, weight / (area * area));
+        return;
+    }
+    // No area, no plane: hold it in both directions across.
+    quadric.xx += weight * square;
+    quadric.yy += weight * square;
+    quadric.zz += weight * square;
+    quadric.add(edge, -weight);
+}
+
+}  // namespace
+
+void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
+                  const SimplifyOptions& options, uint32_t vertex) {
+    neighbors_.clear();
+    marks_.clear();
+    Quadric& quadric = quadrics_[vertex];
+    glm::dvec3 sum(0.0);
+    for (const uint32_t t : adjacency.around(vertex)) {
+        const glm::dvec3& facet = mesh.facets[t];
+        sum += facet;
+        const double area = glm::length(facet);
+        if (area > 1e-150)
+            quadric.add(facet, 1 / area);
+        const Triangle& corners = mesh.triangles[t];
+        const int at = corner_of(corners, vertex);
+        for (const int step : {1, 2}) {
+            const uint32_t other = corners[(at + step) % 3];
+            if (!marks_.has(other)) {
+                marks_.set(other, static_cast<uint32_t>(neighbors_.size()));
+                neighbors_.push_back({other, 1, t, kNone, step == 1, false});
+                continue;
+            }
+            Neighbor& known = neighbors_[marks_.number(other)];
+            if (++known.uses == 2) {
+                known.t1 = t;
+                known.leaving1 = step == 1;
+            }
+        }
+    }
+    facets_[vertex] = sum;
+    int borders = 0;
+    for (const Neighbor& n : neighbors_) {
+        const bool two = n.uses == 2;
+        borders += !two;
+        double weight = two ? 0 : options.boundary_weight;
+        if (two && !mesh.slots.empty() && mesh.slots[n.t0] != mesh.slots[n.t1])
+            weight = options.boundary_weight;
+        if (two && weight <= 0) {
+            bool crease = n.leaving0 == n.leaving1;
+            if (!mesh.wedges.empty() && !crease) {
+                const Triangle& first = mesh.triangles[n.t0];
+                const Triangle& second = mesh.triangles[n.t1];
+                for (const uint32_t end : {vertex, n.vertex})
+                    crease |= mesh.wedges[n.t0][corner_of(first, end)] !=
+                              mesh.wedges[n.t1][corner_of(second, end)];
+            }
+            if (crease)
+                weight = options.seam_weight;
+        }
+        if (weight > 0) {
+            const glm::dvec3 edge = mesh.points[n.vertex] - mesh.points[vertex];
+            hold_edge(quadric, edge, mesh.facets[n.t0], weight);
+            if (n.t1 != kNone)
+                hold_edge(quadric, edge, mesh.facets[n.t1], weight);
+        }
+        if (n.vertex > vertex)
+            edges_.push_back({vertex, n.vertex, n.t0, two ? n.t1 : kNone});
+    }
+    kinds_[vertex] = borders == 0   ? VertexKind::Free
+                     : borders == 2 ? VertexKind::Curve
+                                    : VertexKind::Fixed;
+}
+
+void Edges::build(const CollapseMesh& mesh, const Adjacency& adjacency,
+                  const SimplifyOptions& options, const Job& job) {
+    const size_t vertices = mesh.points.size();
+    edges_.clear();
+    edges_.reserve(mesh.triangles.size() * 3 / 2 + 16);
+    quadrics_.assign(vertices, Quadric{});
+    facets_.resize(vertices);
+    kinds_.resize(vertices);
+    marks_.resize(vertices);
+    for (uint32_t v = 0; v < vertices; ++v) {
+        if ((v & 0xffffu) == 0)
+            job.check();
+        visit(mesh, adjacency, options, v);
+    }
+}
+
+bool Edges::allowed(const Edge& edge, Effort effort) const {
+    if (effort >= Effort::Topology)
+        return true;
+    const VertexKind a = kinds_[edge.a];
+    const VertexKind b = kinds_[edge.b];
+    if (a == VertexKind::Fixed && b == VertexKind::Fixed)
+        return false;
+    // An inner edge between two border points: collapsing it would pinch the surface.
+    return edge.border() || a == VertexKind::Free || b == VertexKind::Free;
+}
+
+Optimum Edges::optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const {
+    const EdgeEnd a = end(mesh, edge.a);
+    const EdgeEnd b = end(mesh, edge.b);
+    const bool fixed_a = kinds_[edge.a] == VertexKind::Fixed;
+    const bool fixed_b = kinds_[edge.b] == VertexKind::Fixed;
+    if (fixed_a != fixed_b || (fixed_a && effort < Effort::Topology)) {
+        const glm::dvec3& point = fixed_a ? a.point : b.point;
+        return {point, cost_at(a, b, point)};
+    }
+    glm::dvec3 shared = mesh.facets[edge.t0];
+    if (edge.t1 != kNone)
+        shared += mesh.facets[edge.t1];
+    return best_point(a, b, shared);
+}
+
+}  // namespace lodestone::approximate

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simplification: the same surface with fewer triangles, by collapsing edges.
+#pragma once
+
+#include "base/job.h"
+#include "model/mesh.h"
+
+#include <span>
+#include <vector>
+
+namespace lodestone::approximate {
+
+/// The defaults are tuned on scans, CAD parts and terrain; most callers need none of these.
+struct SimplifyOptions {
+    /// How much dearer it is to move an open border, or the border between two material slots,
+    /// than the surface. Larger keeps outlines and paint lines longer and spends the triangles
+    /// there; 0 lets them shrink.
+    double boundary_weight = 8;
+    /// The same for texture seams and sharp (split-normal) edges. 0 lets textures slide at seams.
+    double seam_weight = 1;
+    /// A triangle may turn by at most this much in one collapse, degrees in (0, 90). Larger
+    /// reaches coarse targets with less error but may fold thin parts over.
+    double max_turn = 70;
+    /// Removing a separate part of the mesh costs this many times what squeezing it to a point
+    /// would. Larger keeps screws and leaves longer, at the cost of the large parts' shape.
+    double part_weight = 4;
+};
+
+/// Simplifies in one pass and returns the mesh at each of `targets` (triangle counts, strictly
+/// falling, > 0). A target not below the input's count returns the input itself; else a result has
+/// at most its target, and at least one triangle if the input has any. Fewer results come back when
+/// nothing more can be collapsed. Results keep slots, and have normals and uvs if the input has.
+/// Separate parts too small for a target disappear whole, smallest first. Any input is accepted:
+/// non-manifold edges are kept as curves, triangles with non-finite vertices are left out.
+/// Throws Error(InvalidArgument) as check(mesh) does, or for targets not falling, or for options
+/// out of range. Uses one thread; same input, same bits. 250 bytes a triangle above the input.
+/// source: Lindstrom & Turk 1999 (memoryless quadrics, volume constraint), in batches.
+std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
+                                 const SimplifyOptions& options = {}, const Job& job = {});
+
+/// The mesh at one target; the coarsest that can be reached when that is still above it.
+Mesh simplify(const Mesh& mesh, size_t triangles, const SimplifyOptions& options = {},
+              const Job& job = {});
+
+}  // namespace lodestone::approximate
