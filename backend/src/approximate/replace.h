@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Replacement: a solid box or ellipsoid with the attributes of what it stands for.
+#pragma once
+
+#include "model/attributes.h"
+#include "model/primitive.h"
+
+#include <optional>
+
+namespace lodestone::approximate {
+
+/// The box with the object's visible area, centroid, and ratios of its variances (so trace(tensor)
+/// / VSA differs where the object is not a box, its shape does not). `bound` is the object's, in
+/// the frame of the attributes. Nothing where a solid would look wrong: nothing visible, numbers
+/// that are not finite; a sparse group (its area below a tenth of the box its variances ask for);
+/// a box that sticks out of the bound by more than a fifth along one of its own axes (things in
+/// two heaps). Flat things get a thickness of 1/1000 of the next larger side.
+/// source: 4.3.2 with 4.33-4.35, A.13, A.14; differs: A.13's factor is 1/12 (printed 1/6).
+std::optional<Primitive> fit_box(const Attributes& attributes, const Bound& bound);
+
+/// Likewise an ellipsoid.
+/// source: 4.3.1; differs: half axes are solved for, as ratios of standard deviations are off by
+/// up to 9 %.
+std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound& bound);
+
+/// Surface area, and the mean square of the surface's points along each axis.
+struct Shell {
+    double area = 0;
+    glm::dvec3 variances{0.0};
+};
+Shell box_shell(const glm::dvec3& half_size);
+Shell ellipsoid_shell(const glm::dvec3& half_size);
+
+}  // namespace lodestone::approximate

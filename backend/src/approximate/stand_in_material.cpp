@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/stand_in_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::approximate {
+namespace {
+
+/// Sampling noise may leave a mean a rounding outside its range; what is no number is `usual`.
+double within(double value, double most, double usual) {
+    return std::isfinite(value) ? std::clamp(value, 0.0, most) : usual;
+}
+
+}  // namespace
+
+Material mean_material(const Attributes& attributes) {
+    const Material usual;
+    Material out;
+    out.name = "stand-in";
+    for (int i = 0; i < 3; ++i) {
+        out.base_color[i] = within(attributes.color[i], 1, usual.base_color[i]);
+        out.emission[i] = within(attributes.emission[i], 1e30, 0);
+    }
+    out.roughness = within(attributes.roughness, 1, usual.roughness);
+    out.metallic = within(attributes.metallic, 1, usual.metallic);
+    out.specular = within(attributes.specular, 1, usual.specular);
+    return out;
+}
+
+}  // namespace lodestone::approximate

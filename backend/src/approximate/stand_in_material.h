@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stand-in material: one material for a replacement, from the means over what can be seen.
+#pragma once
+
+#include "model/attributes.h"
+#include "model/material.h"
+
+namespace lodestone::approximate {
+
+/// Means by visible area, kept within what a material may hold; "stand-in" as its name.
+Material mean_material(const Attributes& attributes);
+
+}  // namespace lodestone::approximate

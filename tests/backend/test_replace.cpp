@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards replacement: boxes and ellipsoids keep area, centroid and variances, or are refused.
+#include "approximate/replace.h"
+#include "approximate/stand_in_material.h"
+#include "backend/shapes.h"
+#include "base/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::approximate;
+
+namespace {
+
+glm::dmat3 turn(double angle, glm::dvec3 axis) {
+    axis = glm::normalize(axis);
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const glm::dmat3 cross({0, axis.z, -axis.y}, {-axis.z, 0, axis.x}, {axis.y, -axis.x, 0});
+    return glm::dmat3(c) + s * cross + (1 - c) * glm::outerProduct(axis, axis);
+}
+
+Attributes attributes_of(const Shell& shell, const glm::dmat3& axes, const glm::dvec3& center) {
+    Attributes out;
+    out.visible_area = out.surface_area = shell.area;
+    out.centroid = center;
+    glm::dmat3 along(0.0);
+    for (int i = 0; i < 3; ++i)
+        along[i][i] = shell.area * shell.variances[i];
+    out.moments = axes * along * glm::transpose(axes);
+    return out;
+}
+
+/// Of a mesh as if all of it could be seen: triangles 1/12 at the vertices, 3/4 at the middle.
+/// Open sheets count both sides.
+Attributes attributes_of(const Mesh& mesh, double sides) {
+    Attributes out;
+    glm::dmat3 second(0.0);
+    glm::dvec3 first(0.0);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const double area = sides * 0.5 * glm::length(area_vector(mesh, i));
+        glm::dvec3 middle(0.0);
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 p(mesh.positions[mesh.triangles[i][corner]]);
+            middle += p / 3.0;
+            second += area / 12 * glm::outerProduct(p, p);
+        }
+        second += 0.75 * area * glm::outerProduct(middle, middle);
+        first += area * middle;
+        out.visible_area += area;
+    }
+    out.centroid = first / out.visible_area;
+    out.moments = second - out.visible_area * glm::outerProduct(out.centroid, out.centroid);
+    return out;
+}
+
+glm::dvec3 sorted(glm::dvec3 v) {
+    std::sort(&v[0], &v[0] + 3);
+    return v;
+}
+
+double worst(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+Mesh spheres(int count, double radius, double apart) {
+    Mesh mesh;
+    for (int i = 0; i < count; ++i) {
+        Affine shift;
+        shift.offset = {i * apart, 0, 0};
+        append(mesh, shapes::sphere(radius, 2), shift);
+    }
+    return mesh;
+}
+
+/// Area, centroid and shape of the tensor are those asked for.
+void expect_matched(const Primitive& p, const Shell& shell, const Attributes& wanted,
+                    double tolerance) {
+    EXPECT_NEAR(shell.area, wanted.visible_area, 1e-9 * wanted.visible_area);
+    EXPECT_LT(glm::length(p.center - wanted.centroid), 1e-12);
+    const glm::dmat3 got = attributes_of(shell, p.axes, p.center).moments;
+    const double trace_got = got[0][0] + got[1][1] + got[2][2];
+    const double trace = wanted.moments[0][0] + wanted.moments[1][1] + wanted.moments[2][2];
+    for (int i = 0; i < 3; ++i)
+        EXPECT_LT(worst(got[i] / trace_got - wanted.moments[i] / trace), tolerance);
+    EXPECT_NEAR(glm::determinant(p.axes), 1, 1e-9);
+}
+
+}  // namespace
+
+TEST(Replace, NothingToSeeHasNoReplacement) {
+    EXPECT_FALSE(fit_box(Attributes{}, Bound{}));
+    EXPECT_FALSE(fit_ellipsoid(Attributes{}, Bound{}));
+}
+
+TEST(Replace, ShellsHaveTheirClosedForms) {
+    const Shell cube = box_shell(glm::dvec3(0.5));
+    EXPECT_NEAR(cube.area, 6, 1e-12);
+    EXPECT_NEAR(cube.area * 2 * cube.variances.x, 5.0 / 3, 1e-12);  // T_xx of the unit cube
+    const double pi = 3.14159265358979323846;
+    const Shell sphere = ellipsoid_shell(glm::dvec3(2));
+    EXPECT_NEAR(sphere.area, 16 * pi, 1e-11);
+    EXPECT_NEAR(sphere.variances.y, 4.0 / 3, 1e-12);
+    for (const double ratio : {0.9, 0.3, 1e-2, 1e-4}) {
+        const double e = std::sqrt(1 - ratio * ratio);
+        const double oblate = 2 * pi * (1 + ratio * ratio / e * std::atanh(e));
+        EXPECT_NEAR(ellipsoid_shell({1, ratio, 1}).area / oblate, 1, 1e-10) << ratio;
+        const double prolate = 2 * pi * ratio * (ratio + std::asin(e) / e);
+        EXPECT_NEAR(ellipsoid_shell({ratio, ratio, 1}).area / prolate, 1, 1e-10) << ratio;
+    }
+}
+
+TEST(Replace, BoxComesBackAsItself) {
+    const Mesh mesh = shapes::box({-1.5, -1, -0.5}, {1.5, 1, 0.5});
+    const auto box = fit_box(attributes_of(mesh, 1), bound_of(mesh.positions));
+    ASSERT_TRUE(box);
+    EXPECT_LT(worst(box->half_size - glm::dvec3(1.5, 1, 0.5)), 1e-9);
+    EXPECT_LT(worst(box->center), 1e-12);
+    EXPECT_NEAR(std::abs(box->axes[0].x), 1, 1e-12);
+}
+
+TEST(Replace, TurnedAndMovedBoxesComeBackAsThemselves) {
+    Random random(3);
+    for (int i = 0; i < 300; ++i) {
+        Primitive p;
+        p.axes = turn(6 * random.uniform(), {random.uniform(), random.uniform() - 0.5, 0.3});
+        p.center = {100 * random.uniform(), -7, 3};
+        p.half_size = {std::exp(4 * random.uniform()), std::exp(4 * random.uniform()),
+                       std::exp(4 * random.uniform())};
+        const Shell shell = box_shell(p.half_size);
+        const auto box = fit_box(attributes_of(shell, p.axes, p.center), bound_of_box(p));
+        ASSERT_TRUE(box);
+        const glm::dvec3 want = sorted(p.half_size);
+        EXPECT_LT(worst(sorted(box->half_size) / want - 1.0), 1e-9);
+        expect_matched(*box, box_shell(box->half_size), attributes_of(shell, p.axes, p.center),
+                       1e-9);
+    }
+}
+
+TEST(Replace, CubeAnyTurnKeepsItsSides) {
+    for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
+        Primitive cube;
+        cube.axes = turn(angle, {1, 2, 3});
+        cube.half_size = glm::dvec3(0.5);
+        const auto box = fit_box(attributes_of(box_shell(cube.half_size), cube.axes, cube.center),
+                                 bound_of_box(cube));
+        ASSERT_TRUE(box);
+        EXPECT_LT(worst(box->half_size - 0.5), 1e-9);
+    }
+}
+
+TEST(Replace, EllipsoidsComeBackAsThemselves) {
+    Random random(5);
+    for (int i = 0; i < 60; ++i) {
+        Primitive p;
+        p.axes = turn(6 * random.uniform(), {random.uniform(), random.uniform() - 0.5, 0.3});
+        p.half_size = {std::exp(4 * random.uniform()), std::exp(4 * random.uniform()),
+                       std::exp(4 * random.uniform())};
+        const Shell shell = ellipsoid_shell(p.half_size);
+        const auto out =
+            fit_ellipsoid(attributes_of(shell, p.axes, p.center), bound_of_ellipsoid(p));
+        ASSERT_TRUE(out);
+        EXPECT_LT(worst(sorted(out->half_size) / sorted(p.half_size) - 1.0), 1e-8);
+    }
+    const Mesh ball = shapes::sphere(2, 5);
+    const auto sphere = fit_ellipsoid(attributes_of(ball, 1), bound_of(ball.positions));
+    ASSERT_TRUE(sphere);
+    EXPECT_LT(worst(sphere->half_size - 2.0), 2e-3);
+}
+
+TEST(Replace, SphereAsABoxAndCubeAsAnEllipsoidKeepAreaAndShape) {
+    const Mesh ball = shapes::ellipsoid({1, 2, 3}, 4);
+    const Attributes wanted = attributes_of(ball, 1);
+    const auto box = fit_box(wanted, bound_of(ball.positions));
+    ASSERT_TRUE(box);
+    expect_matched(*box, box_shell(box->half_size), wanted, 1e-6);
+    const Attributes cube = attributes_of(shapes::cube(), 1);
+    const auto ellipsoid = fit_ellipsoid(cube, bound_of(shapes::cube().positions));
+    ASSERT_TRUE(ellipsoid);
+    expect_matched(*ellipsoid, ellipsoid_shell(ellipsoid->half_size), cube, 1e-6);
+}
+
+TEST(Replace, FlatQuadGetsAThinBoxOfItsSize) {
+    const Mesh quad = shapes::quad(2, 1);
+    const Attributes wanted = attributes_of(quad, 2);
+    const auto box = fit_box(wanted, bound_of(quad.positions));
+    ASSERT_TRUE(box);
+    EXPECT_NEAR(box->half_size.x, 1, 0.005);
+    EXPECT_NEAR(box->half_size.y, 0.5, 0.005);
+    EXPECT_GT(box->half_size.z, 1e-4);
+    EXPECT_LT(box->half_size.z, 1e-3);
+    expect_matched(*box, box_shell(box->half_size), wanted, 0.01);
+    const auto ellipsoid = fit_ellipsoid(wanted, bound_of(quad.positions));
+    ASSERT_TRUE(ellipsoid);
+    expect_matched(*ellipsoid, ellipsoid_shell(ellipsoid->half_size), wanted, 0.01);
+}
+
+TEST(Replace, RowsAndPairsOfThingsAreRefused) {
+    const Mesh row = spheres(10, 0.1, 1);
+    EXPECT_FALSE(fit_box(attributes_of(row, 1), bound_of(row.positions)));
+    EXPECT_FALSE(fit_ellipsoid(attributes_of(row, 1), bound_of(row.positions)));
+    const Mesh pair = spheres(2, 1, 10);
+    EXPECT_FALSE(fit_box(attributes_of(pair, 1), bound_of(pair.positions)));
+    EXPECT_FALSE(fit_ellipsoid(attributes_of(pair, 1), bound_of(pair.positions)));
+}
+
+TEST(Replace, SparseGroupsAreRefused) {
+    Mesh flock;
+    Random random(11);
+    for (int i = 0; i < 40; ++i) {
+        Affine shift;
+        shift.offset = {10 * random.uniform(), 10 * random.uniform(), 10 * random.uniform()};
+        append(flock, shapes::sphere(0.2, 2), shift);
+    }
+    EXPECT_FALSE(fit_box(attributes_of(flock, 1), bound_of(flock.positions)));
+    EXPECT_FALSE(fit_ellipsoid(attributes_of(flock, 1), bound_of(flock.positions)));
+}
+
+TEST(Replace, ExtremeAndBrokenAttributesNeverGiveNaN) {
+    const double inf = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double bad : {inf, -inf, nan}) {
+        Attributes attributes = attributes_of(shapes::cube(), 1);
+        attributes.moments[1][1] = bad;
+        EXPECT_FALSE(fit_box(attributes, Bound{}));
+        EXPECT_FALSE(fit_ellipsoid(attributes, Bound{}));
+        attributes = attributes_of(shapes::cube(), 1);
+        attributes.centroid.y = bad;
+        EXPECT_FALSE(fit_box(attributes, Bound{}));
+    }
+    Attributes point;
+    point.visible_area = 1;
+    EXPECT_FALSE(fit_box(point, Bound{}));
+    for (const double x : {1e-30, 1e-12, 1e-6, 1.0})
+        for (const double y : {1e-30, 1e-12, 1e-3, 1.0})
+            for (const double scale : {1e-20, 1.0, 1e20}) {
+                Shell shell;
+                shell.variances = scale * glm::dvec3(1, x, y);
+                shell.area = scale;
+                const Attributes attributes =
+                    attributes_of(shell, turn(1, {1, 2, 3}), glm::dvec3(0.0));
+                for (const auto& out :
+                     {fit_box(attributes, Bound{}), fit_ellipsoid(attributes, Bound{})}) {
+                    if (!out)
+                        continue;
+                    for (int i = 0; i < 3; ++i)
+                        EXPECT_TRUE(std::isfinite(out->half_size[i]) && out->half_size[i] > 0);
+                }
+            }
+}
+
+TEST(MeanMaterial, TakesTheMeansAndStaysInRange) {
+    Attributes attributes;
+    attributes.color = {0.2, 1.0000001, -1e-9};
+    attributes.roughness = 0.3;
+    attributes.metallic = std::numeric_limits<double>::quiet_NaN();
+    attributes.emission = {0, 5, 0};
+    const Material material = mean_material(attributes);
+    EXPECT_EQ(material.base_color, glm::dvec3(0.2, 1, 0));
+    EXPECT_EQ(material.roughness, 0.3);
+    EXPECT_EQ(material.metallic, 0);
+    EXPECT_EQ(material.emission, glm::dvec3(0, 5, 0));
+}
