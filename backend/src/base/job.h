@@ -9,6 +9,19 @@
 
 namespace lodestone {
 
+/// What a long call is doing now; the C interface's lds_stage has the same numbers.
+enum class Stage : int32_t {
+    Extract = 1,   // reading the scene from its program
+    Measure = 2,   // attributes and errors
+    Simplify = 3,  // making representations
+    Group = 4,     // structuring
+    Store = 5,     // reading or writing a store
+    Choose = 6,    // the cut
+    Export = 7,    // writing the scene for a renderer
+    Parse = 8,     // the renderer reads it
+    Trace = 9,     // the renderer draws it
+};
+
 /// A view of the caller's progress record. Copies share it; a default Job reports to nobody.
 /// Safe from any thread.
 class Job {
@@ -32,7 +45,8 @@ public:
             *fraction_ = begin_ + (end_ - begin_) * (part < 0 ? 0 : (part > 1 ? 1 : part));
     }
 
-    /// Names what is being done now; numbers are the C interface's lds_stage.
+    /// Names what is being done now.
+    void stage(Stage now) const { stage(static_cast<int32_t>(now)); }
     void stage(int32_t number) const {
         if (stage_ != nullptr)
             *stage_ = number;
