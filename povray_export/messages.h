@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Messages: what POV-Ray says while it runs, taken apart.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lodestone::povray {
+
+/// Reads POV-Ray's text piece by piece. Memory is bounded whatever it says.
+class Messages {
+public:
+    void read(std::string_view piece);
+    /// Ends the last line.
+    void finish();
+
+    uint64_t parsed_tokens = 0;  // so far
+    uint64_t pixels_done = 0;
+    uint64_t pixels = 0;     // 0 until it traces
+    double parse_cpu_s = 0;  // parsing and bounding, from its statistics
+    double trace_cpu_s = 0;
+    bool finished = false;  // it said so
+
+    /// Its warnings and errors, a line each, the last 8 KB.
+    const std::string& text() const { return text_; }
+    /// The sentence that says why it failed, with file and line where it knows them.
+    std::string reason() const;
+
+private:
+    enum class Wrap { No, Space, Word };  // does the next line go on, if it begins with a space?
+    static Wrap wrap_of(const std::string& text);
+    void line(const std::string& text);
+    void keep(const std::string& message);
+
+    std::string line_;     // being read
+    std::string message_;  // being continued
+    Wrap wrapped_ = Wrap::No;
+    std::string text_;
+    std::string error_;    // the first that is certain
+    std::string suspect_;  // the last other message
+    enum class Time { None, Parse, Trace } time_ = Time::None;
+};
+
+}  // namespace lodestone::povray

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Number: numbers as POV-Ray reads them, in any locale; never "inf" or "nan", which it cannot read.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace lodestone::povray {
+
+/// Appends the shortest form with at most `digits` significant digits. Throws Error(Internal) for a
+/// value that is not finite.
+void append_number(std::string& out, double value, int digits = 10);
+void append_count(std::string& out, uint64_t value);
+/// <x,y,z>
+void append_vector(std::string& out, const glm::dvec3& value, int digits = 10);
+
+/// Decimal lattice on which coordinates are written: what is tested on the lattice (equal points,
+/// zero areas) is exactly what POV-Ray reads.
+class Lattice {
+public:
+    /// The coarsest decimal step that rounds by less than `precision`, but never so fine that
+    /// `largest` needs more than 15 digits (a float holds 8).
+    Lattice(double precision, double largest);
+
+    /// Throws Error(Internal) for a value that is not finite.
+    int64_t round(double value) const;
+    void append(std::string& out, int64_t value) const;
+
+private:
+    int decimals_;  // a step is 10^-decimals
+    double steps_;  // per unit
+};
+
+}  // namespace lodestone::povray

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Representation writer: one representation as the text of one include file.
+#pragma once
+
+#include "base/job.h"
+#include "model/model.h"
+
+#include <string>
+
+namespace lodestone::povray {
+
+struct RepresentationOptions {
+    bool textures = true;  // false: the occurrence brings its texture
+    bool uvs = true;       // texture coordinates, where the mesh has them
+};
+
+/// Hash of the file's content: of what is drawn, the options and the version of this writer.
+Hash file_hash(const Representation& representation, const RepresentationOptions& options);
+
+/// "LDS_R_" + 16 hexadecimal digits.
+std::string identifier_of(Hash file);
+
+/// `#declare <identifier> = mesh2{...}`, `box{...}` or `sphere{...}`; "" when nothing of it can be
+/// seen (no triangle with an area, a primitive without volume). Coordinates are rounded by less than
+/// a millionth of the mesh's size, normals by .00005. Triangles without area after rounding are left
+/// out. Normals, uvs and positions are shared in whichever way needs the fewest numbers.
+/// Throws Error(Internal) for a non-finite coordinate, Error(InvalidArgument) for a bad index.
+/// cost: 0.1-0.2 us a triangle. Thread-safe on a const model.
+std::string representation_text(const Model& model, const Representation& representation,
+                                const std::string& identifier, const RepresentationOptions& options,
+                                const Job& job);
+
+}  // namespace lodestone::povray

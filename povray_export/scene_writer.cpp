@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/scene_writer.h"
+
+#include "base/files.h"
+#include "base/parallel.h"
+#include "povray_export/finish.h"
+#include "povray_export/number.h"
+#include "povray_export/representation_writer.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+// What is flattened to a sheet gets this part of its stretch as thickness: POV-Ray loses rays below
+// 1e-7, and takes columns below 1e-10 for a mistake that it corrects to 1.
+constexpr double kSheet = 1e-5;
+constexpr double kSmallestStretch = 1e-9;
+
+double thread_cpu_s() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+bool finite(const glm::dvec3& value) {
+    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
+}
+
+/// A user's name inside a comment: letters, digits and underscores only.
+std::string plain(const std::string& name) {
+    std::string out;
+    for (const char c : name) {
+        const bool kept =
+            (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+        out += kept ? c : '_';
+        if (out.size() == 60)
+            break;
+    }
+    return out.empty() ? "unnamed" : out;
+}
+
+/// Makes a transform one that POV-Ray can invert; false when nothing of it could be seen.
+bool make_invertible(Affine& transform) {
+    if (!transform.finite())
+        return false;
+    const Eigen eigen = eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
+    // The square's eigenvalues have lost half of the digits: only its axes are used.
+    const glm::dvec3 along = transform.linear * eigen.axes[0];
+    const glm::dvec3 normal = glm::cross(along, transform.linear * eigen.axes[1]);
+    const double length = glm::length(along);
+    const double thinnest = std::max(kSheet * length, kSmallestStretch);
+    if (!std::isfinite(length) || !(length >= kSmallestStretch) ||
+        !(glm::length(normal) >= thinnest * length))
+        return false;
+    const glm::dvec3 unit = glm::normalize(normal);
+    const double thickness = glm::dot(transform.linear * eigen.axes[2], unit);
+    if (std::abs(thickness) < thinnest)
+        transform.linear += glm::outerProduct(
+            unit * (std::copysign(thinnest, thickness) - thickness), eigen.axes[2]);
+    return true;
+}
+
+void append_matrix(std::string& out, const Affine& transform) {
+    out += "matrix<";
+    for (int column = 0; column < 4; ++column) {
+        const glm::dvec3& image = column < 3 ? transform.linear[column] : transform.offset;
+        for (int i = 0; i < 3; ++i) {
+            append_number(out, image[i]);
+            out += column == 3 && i == 2 ? ">" : ",";
+        }
+    }
+}
+
+bool environment(const Model& model, const quality::Cut& cut, uint32_t node) {
+    for (uint32_t at = node; at != quality::kNoParent; at = cut.nodes[at].parent) {
+        if (model.objects[cut.nodes[at].object].role == Role::Environment)
+            return true;
+    }
+    return false;
+}
+
+std::string name_of_node(const Model& model, const quality::Cut& cut, uint32_t node) {
+    const quality::Node& here = cut.nodes[node];
+    if (here.parent == quality::kNoParent)
+        return model.objects[here.object].name;
+    const Object& group = model.objects[cut.nodes[here.parent].object];
+    return group.representations[0].assembly().placements[here.placement].name;
+}
+
+struct Use {
+    uint32_t node;
+    size_t file;  // index of the include file
+    Affine world;
+};
+
+struct Include {
+    const Representation* representation = nullptr;
+    Hash hash = 0;
+    uint64_t bytes = 0;
+    double cpu_s = 0;
+    bool written = false;
+    bool drawn = false;
+};
+
+class SceneWriter {
+public:
+    SceneWriter(const Model& model, const quality::Cut& cut, const View& view,
+                const ExportOptions& options, Problems& problems, const Job& job)
+        : model_(model),
+          cut_(cut),
+          view_(view),
+          options_(options),
+          problems_(problems),
+          job_(job) {}
+
+    ExportReport write() {
+        const double start = thread_cpu_s();
+        job_.stage(Stage::Export);
+        check_view();
+        make_folders();
+        collect();
+        const double before_files = thread_cpu_s();
+        write_includes();
+        const double after_files = thread_cpu_s();
+        write_text("scene.pov", scene());
+        write_text("scene.ini", ini());
+        ExportReport report = report_;
+        for (const Include& include : includes_) {
+            report.cpu_s += include.cpu_s;
+            if (!include.drawn)
+                continue;
+            report.bytes += include.bytes;
+            ++report.files;
+            ++report.representations;
+            report.written += include.written ? 1u : 0u;
+        }
+        report.cpu_s += before_files - start + thread_cpu_s() - after_files;
+        job_.progress(1);
+        return report;
+    }
+
+private:
+    void check_view() const {
+        const Camera& camera = view_.camera;
+        if (view_.width <= 0 || view_.height <= 0)
+            fail(Status::InvalidArgument, "a picture of ", view_.width, " x ", view_.height,
+                 " pixels");
+        if (!finite(camera.position) || !finite(camera.direction) || !finite(camera.right) ||
+            !finite(camera.up))
+            fail(Status::InvalidArgument, "the camera '", camera.name, "' is not finite");
+        const double volume =
+            std::abs(glm::dot(glm::cross(camera.right, camera.up), camera.direction));
+        if (!(volume > 0))
+            fail(Status::InvalidArgument, "the camera '", camera.name, "' sees no volume");
+    }
+
+    void make_folders() const {
+        std::error_code error;
+        std::filesystem::create_directories(options_.folder / "r", error);
+        if (error)
+            fail(Status::Io, "cannot make the folder '", (options_.folder / "r").string(),
+                 "': ", error.message());
+    }
+
+    void collect() {
+        std::unordered_map<Hash, size_t> known;
+        RepresentationOptions as{!options_.false_color, options_.uvs};
+        for (const uint32_t index : cut_.chosen) {
+            if ((uses_.size() & 1023u) == 0)
+                job_.check();
+            const quality::Node& node = cut_.nodes.at(index);
+            const Object& object = model_.objects.at(node.object);
+            const Representation& representation = object.representations.at(node.lod);
+            if (representation.summary.kind == Kind::Assembly)
+                continue;
+            if (options_.covered_only && environment(model_, cut_, index))
+                continue;
+            Use use{index, 0, node.world};
+            if (!make_invertible(use.world)) {
+                problems_.push_back({quality::path_of(model_, cut_, index), Severity::Warning,
+                                     "singular_transform",
+                                     "is scaled to nothing or to a line, so it is not drawn"});
+                continue;
+            }
+            const Hash hash = file_hash(representation, as);
+            const auto [at, fresh] = known.try_emplace(hash, includes_.size());
+            if (fresh)
+                includes_.push_back({&representation, hash});
+            use.file = at->second;
+            uses_.push_back(use);
+        }
+    }
+
+    void write_includes() {
+        const RepresentationOptions as{!options_.false_color, options_.uvs};
+        std::atomic<size_t> done{0};
+        parallel_for(includes_.size(), [&](size_t i) {
+            job_.check();
+            const double start = thread_cpu_s();
+            Include& include = includes_[i];
+            const std::filesystem::path path =
+                options_.folder / "r" / (hex16(include.hash) + ".inc");
+            std::error_code error;
+            const uintmax_t found = std::filesystem::file_size(path, error);
+            if (!error && found > 0) {
+                include.bytes = found;
+                include.drawn = true;
+            } else {
+                const std::string text = representation_text(model_, *include.representation,
+                                                             identifier_of(include.hash), as, job_);
+                if (!text.empty()) {
+                    write_file(path, text);
+                    include.bytes = text.size();
+                    include.written = include.drawn = true;
+                }
+            }
+            include.cpu_s = thread_cpu_s() - start;
+            job_.progress(static_cast<double>(++done) / static_cast<double>(includes_.size() + 1));
+        });
+    }
+
+    void write_text(const char* name, const std::string& text) {
+        write_file(options_.folder / name, text);
+        report_.bytes += text.size();
+        ++report_.files;
+        ++report_.written;
+    }
+
+    bool transparent() const { return options_.covered_only || view_world().transparent; }
+    bool lit() const { return !options_.covered_only && !options_.false_color; }
+    const World& view_world() const { return model_.world; }
+
+    glm::dvec3 sky() const {
+        const glm::dvec3& color = view_world().color;
+        if (options_.covered_only || !finite(color))
+            return glm::dvec3(0.0);
+        return glm::max(color, glm::dvec3(0.0));
+    }
+
+    std::string scene() {
+        std::string objects;
+        Bound bound;
+        for (const Use& use : uses_) {
+            if (!includes_[use.file].drawn)
+                continue;
+            const quality::Node& node = cut_.nodes[use.node];
+            const Summary& summary = includes_[use.file].representation->summary;
+            bound = merged(bound, transformed(summary.bound, use.world));
+            objects += "object{" + identifier_of(includes_[use.file].hash) + ' ';
+            if (options_.false_color) {
+                append_flat_texture(objects, color_of(summary.kind, node.lod));
+                objects += ' ';
+            }
+            append_matrix(objects, use.world);
+            objects += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
+            append_count(objects, node.lod);
+            objects += '\n';
+            ++report_.occurrences;
+        }
+        std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
+        append_number(out, view_.pixel_error, 6);
+        out += "\n// ";
+        append_count(out, report_.occurrences);
+        out +=
+            " occurrences; render it from this folder with: povray scene.ini\n"
+            "#version 3.7;\n\n"
+            "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
+            "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
+            "global_settings{assumed_gamma 1 max_trace_level 5 ambient_light rgb ";
+        append_vector(out, sky(), 6);
+        out += transparent() ? "}\nbackground{rgbt <" : "}\nbackground{rgb <";
+        for (int i = 0; i < 3; ++i) {
+            append_number(out, sky()[i], 6);
+            out += i < 2 ? "," : (transparent() ? ",1>}\n\n" : ">}\n\n");
+        }
+        append_camera(out);
+        if (lit()) {
+            for (const Light& light : model_.lights)
+                append_light(out, light, bound);
+        }
+        out += '\n';
+        for (const Include& include : includes_) {
+            if (include.drawn)
+                out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
+        }
+        return out + '\n' + objects;
+    }
+
+    void append_camera(std::string& out) const {
+        const Camera& camera = view_.camera;
+        out += camera.orthographic ? "camera{orthographic\n" : "camera{perspective\n";
+        const std::pair<const char*, const glm::dvec3&> vectors[] = {
+            {"location", camera.position},
+            {"direction", camera.direction},
+            {"right", camera.right},
+            {"up", camera.up}};
+        for (const auto& [name, value] : vectors) {
+            out += "    ";
+            out += name;
+            out += ' ';
+            append_vector(out, value, 15);
+            out += '\n';
+        }
+        out += "}\n\n";
+    }
+
+    void append_light(std::string& out, const Light& light, const Bound& bound) {
+        const double watts = std::isfinite(light.power) ? std::max(light.power, 0.0) : 0.0;
+        glm::dvec3 color =
+            finite(light.color) ? glm::max(light.color, glm::dvec3(0.0)) * watts : glm::dvec3(0.0);
+        if (color == glm::dvec3(0.0))
+            return;
+        const double length = glm::length(light.direction);
+        if (light.kind == LightKind::Sun ? !(length > 0 && std::isfinite(length))
+                                         : !finite(light.position)) {
+            problems_.push_back({light.name, Severity::Warning, "bad_light",
+                                 "has no finite place or direction, so it is not used"});
+            return;
+        }
+        constexpr double kPi = std::numbers::pi;
+        if (light.kind == LightKind::Sun) {
+            // S W/m2 on a facing surface of albedo a leave with a S / pi. Parallel light starts at a
+            // plane: outside of everything, or what is behind it would cast no shadow.
+            const glm::dvec3 way = light.direction / length;
+            const glm::dvec3 from = bound.center - way * (2 * bound.radius + 1);
+            out += "light_source{";
+            append_vector(out, from);
+            out += " rgb ";
+            append_vector(out, color / kPi, 6);
+            out += " parallel point_at ";
+            append_vector(out, from + way);
+        } else {
+            // Falls with 1/d2 exactly enough: POV-Ray's 2 / (1 + (d/e)2) with a tiny e.
+            constexpr double kNear = 1e-3;
+            out += "light_source{";
+            append_vector(out, light.position);
+            out += " rgb ";
+            append_vector(out, color / (4 * kPi * kPi) / (2 * kNear * kNear), 6);
+            out += " fade_power 2 fade_distance ";
+            append_number(out, kNear);
+        }
+        out += light.shadow ? "}\n" : " shadowless}\n";
+    }
+
+    std::string ini() const {
+        std::string out =
+            "; Lodestone " LODESTONE_VERSION
+            "\nInput_File_Name=scene.pov\nOutput_File_Name=scene.png\n"
+            "Output_File_Type=N\nBits_Per_Color=8\nDisplay=Off\nPause_When_Done=Off\nWidth=";
+        append_count(out, static_cast<uint64_t>(view_.width));
+        out += "\nHeight=";
+        append_count(out, static_cast<uint64_t>(view_.height));
+        out += transparent() ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
+        switch (options_.antialiasing) {
+            case Antialiasing::Off:
+                return out + "Antialias=Off\n";
+            case Antialiasing::Final:
+                return out +
+                       "Antialias=On\nSampling_Method=1\nAntialias_Threshold=0.1\n"
+                       "Antialias_Depth=3\nJitter=Off\n";
+            case Antialiasing::Reference:
+                break;
+        }
+        return out +
+               "Antialias=On\nSampling_Method=1\nAntialias_Threshold=0.0\n"
+               "Antialias_Depth=4\nJitter=Off\n";
+    }
+
+    const Model& model_;
+    const quality::Cut& cut_;
+    const View& view_;
+    const ExportOptions& options_;
+    Problems& problems_;
+    const Job& job_;
+    std::vector<Use> uses_;
+    std::vector<Include> includes_;
+    ExportReport report_;
+};
+
+}  // namespace
+
+ExportReport export_scene(const Model& model, const quality::Cut& cut, const View& view,
+                          const ExportOptions& options, Problems& problems, const Job& job) {
+    return SceneWriter(model, cut, view, options, problems, job).write();
+}
+
+}  // namespace lodestone::povray

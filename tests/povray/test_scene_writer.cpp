@@ -1,0 +1,561 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the exported text (sharing, rounding, hostile input) and what POV-Ray makes of it.
+#include "base/parallel.h"
+#include "povray/scene.h"
+#include "povray_export/finish.h"
+#include "povray_export/number.h"
+#include "povray_export/representation_writer.h"
+
+#include <fstream>
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::above;
+using scenes::Builder;
+using scenes::render;
+using scenes::scratch;
+
+namespace {
+
+size_t count(const std::string& text, const std::string& part) {
+    size_t found = 0;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++found;
+    return found;
+}
+
+std::string scene_text(const std::filesystem::path& folder) {
+    return read_file(folder / "scene.pov");
+}
+
+std::vector<std::filesystem::path> includes(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "r"))
+        out.push_back(entry.path());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+std::string include_text(const Model& model, ObjectIndex object,
+                         const RepresentationOptions& options = {}) {
+    return representation_text(model, model.objects[object].representations[0], "X", options, {});
+}
+
+std::string number(const Lattice& lattice, double value) {
+    std::string out;
+    lattice.append(out, lattice.round(value));
+    return out;
+}
+
+/// A sphere with uvs that have a seam in every triangle, and two materials.
+Mesh rich_sphere(int subdivisions) {
+    Mesh mesh = shapes::sphere(1, subdivisions);
+    for (const glm::vec3& position : mesh.positions)
+        mesh.uvs.emplace_back(position.x, position.y);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        mesh.slots.push_back(static_cast<uint16_t>(i % 2));
+    return mesh;
+}
+
+}  // namespace
+
+TEST(PovrayWriter, NumbersAreShortAndExactToTheStep) {
+    const Lattice metre(1e-6, 100);
+    EXPECT_EQ(number(metre, 0), "0");
+    EXPECT_EQ(number(metre, 0.5), ".5");
+    EXPECT_EQ(number(metre, -12.25), "-12.25");
+    EXPECT_EQ(number(metre, -0.000002), "-.000002");
+    EXPECT_EQ(number(metre, 1.0000004), "1");
+    EXPECT_EQ(number(metre, 100), "100");
+    EXPECT_EQ(std::stod(number(Lattice(1e24, 3e38), 3e38)), 3e38);
+    EXPECT_NEAR(std::stod(number(Lattice(1e-46, 1e-40), 1e-40)), 1e-40, 1e-46);
+    for (const double size : {1e-3, 0.7, 1.0, 2.0, 5.0, 900.0, 1e7}) {
+        const Lattice lattice(size * 1e-6, size);
+        for (int i = 0; i < 100; ++i) {
+            const double value = size * std::sin(i * 1.7);
+            EXPECT_LE(std::abs(std::stod(number(lattice, value)) - value), size * 1e-6);
+        }
+    }
+    EXPECT_THROW(metre.round(std::numeric_limits<double>::quiet_NaN()), Error);
+    EXPECT_THROW(metre.round(std::numeric_limits<double>::infinity()), Error);
+    std::string out;
+    EXPECT_THROW(append_number(out, std::numeric_limits<double>::infinity()), Error);
+}
+
+TEST(PovrayWriter, AnEmptyModelIsASceneWithoutObjects) {
+    ExportOptions options;
+    options.folder = scratch("empty");
+    Problems problems;
+    const ExportReport report = export_scene(Model{}, quality::Cut{}, above(), options, problems);
+    EXPECT_EQ(report.files, 2u);
+    EXPECT_EQ(report.occurrences, 0u);
+    EXPECT_EQ(count(scene_text(options.folder), "object{"), 0u);
+    EXPECT_EQ(count(scene_text(options.folder), "camera{"), 1u);
+}
+
+TEST(PovrayWriter, ACubeIsOneDeclarationWithWeldedCornersAndNoNormals) {
+    Builder builder;
+    const ObjectIndex cube = builder.mesh(shapes::cube(), {builder.matte(glm::dvec3(1.0))});
+    const std::string text = include_text(builder.model, cube);
+    EXPECT_EQ(count(text, "vertex_vectors{8,"), 1u);
+    EXPECT_EQ(count(text, "face_indices{12,"), 1u);
+    EXPECT_EQ(count(text, "normal_vectors"), 0u);  // its normals are those of its faces
+    EXPECT_EQ(count(text, "texture_list"), 0u);
+    EXPECT_EQ(count(text, "texture{"), 1u);
+}
+
+TEST(PovrayWriter, SmoothNormalsAndUvsNeedNoIndicesOfTheirOwn) {
+    Builder builder;
+    Mesh mesh = shapes::sphere(1, 2);
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.uvs.emplace_back(mesh.positions[i].x, mesh.positions[i].z);
+    const std::string count_text = text(mesh.positions.size(), ",");
+    const std::string out = include_text(builder.model, builder.mesh(mesh));
+    EXPECT_EQ(count(out, "vertex_vectors{" + count_text), 1u);
+    EXPECT_EQ(count(out, "normal_vectors{" + count_text), 1u);
+    EXPECT_EQ(count(out, "uv_vectors{" + count_text), 1u);
+    EXPECT_EQ(count(out, "_indices{"), 1u);
+    EXPECT_EQ(count(include_text(builder.model, 1, {true, false}), "uv_"), 0u);
+}
+
+TEST(PovrayWriter, UvsOfACubesSidesAreSharedWithIndices) {
+    Builder builder;
+    Mesh mesh = shapes::cube();
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
+    const std::string out = include_text(builder.model, builder.mesh(mesh));
+    EXPECT_EQ(count(out, "vertex_vectors{8,"), 1u);
+    EXPECT_EQ(count(out, "uv_vectors{4,"), 1u);
+    EXPECT_EQ(count(out, "uv_indices{12,"), 1u);
+}
+
+TEST(PovrayWriter, OnlySeveralLooksNeedATextureList) {
+    Builder builder;
+    const uint32_t red = builder.matte({1, 0, 0});
+    const uint32_t blue = builder.matte({0, 0, 1});
+    const std::string two = include_text(builder.model, builder.mesh(rich_sphere(1), {red, blue}));
+    EXPECT_EQ(count(two, "texture_list{2,"), 1u);
+    EXPECT_EQ(count(two, ">,1"), 40u);
+    const std::string one = include_text(builder.model, builder.mesh(rich_sphere(1), {red, red}));
+    EXPECT_EQ(count(one, "texture_list"), 0u);
+    EXPECT_THROW(builder.mesh(rich_sphere(1), {red, 7}), std::exception);
+}
+
+TEST(PovrayWriter, TwoOccurrencesShareOneDeclarationAndEqualMeshesOneFile) {
+    Builder builder;
+    const ObjectIndex first = builder.mesh(shapes::cube());
+    const ObjectIndex same = builder.mesh(shapes::cube());
+    builder.place_at(first, {0, 0, 0});
+    builder.place_at(first, {1, 0, 0});
+    builder.place_at(same, {0, 1, 0});
+    ExportOptions options;
+    options.folder = scratch("sharing");
+    Problems problems;
+    const ExportReport report = scenes::write(builder.finish(), above(), options, problems);
+    EXPECT_EQ(report.occurrences, 3u);
+    EXPECT_EQ(report.representations, 1u);
+    EXPECT_EQ(count(scene_text(options.folder), "#include"), 1u);
+    EXPECT_EQ(count(scene_text(options.folder), "object{LDS_R_"), 3u);
+    EXPECT_EQ(includes(options.folder).size(), 1u);
+}
+
+TEST(PovrayWriter, ASecondExportWritesNoRepresentationAgain) {
+    Builder builder;
+    builder.place(builder.mesh(shapes::cube()));
+    builder.place(builder.primitive(Kind::Box, {}));
+    ExportOptions options;
+    options.folder = scratch("reuse");
+    Problems problems;
+    const Model& model = builder.finish();
+    const ExportReport first = scenes::write(model, above(), options, problems);
+    const auto file = includes(options.folder).at(0);
+    const auto time = std::filesystem::last_write_time(file);
+    const ExportReport second = scenes::write(model, above(), options, problems);
+    EXPECT_EQ(first.written, 4u);
+    EXPECT_EQ(second.written, 2u);  // scene.pov and scene.ini
+    EXPECT_EQ(first.bytes, second.bytes);
+    EXPECT_EQ(first.files, second.files);
+    EXPECT_EQ(time, std::filesystem::last_write_time(file));
+}
+
+TEST(PovrayWriter, SameBytesFromOneThreadAndFromAll) {
+    Builder builder;
+    for (int i = 1; i <= 4; ++i)
+        builder.place(builder.mesh(rich_sphere(i)));
+    const Model& model = builder.finish();
+    Problems problems;
+    std::vector<std::string> bytes[2];
+    for (const int threads : {0, 1}) {
+        const ThreadLimit limit(threads);
+        ExportOptions options;
+        options.folder = scratch(text("threads", threads));
+        scenes::write(model, above(), options, problems);
+        bytes[threads].push_back(scene_text(options.folder));
+        for (const auto& path : includes(options.folder))
+            bytes[threads].push_back(path.filename().string() + read_file(path));
+    }
+    EXPECT_EQ(bytes[0].size(), 5u);
+    EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST(PovrayWriter, NamesOfUsersNeverReachTheText) {
+    const std::string evil = "a\"*/\n#error \"x\"\r}{<\xe5\x90\x8d>;'\\";
+    Builder builder;
+    builder.model.lights.push_back(scenes::sun(1));
+    builder.model.lights[0].name = evil;
+    Material material;
+    material.name = evil;
+    const ObjectIndex cube = builder.mesh(shapes::cube(), {builder.material(material)});
+    builder.model.objects[cube].name = evil;
+    builder.place(cube, {}, evil);
+    View view = above();
+    view.camera.name = evil;
+    ExportOptions options;
+    options.folder = scratch("names");
+    Problems problems;
+    scenes::write(builder.finish(), view, options, problems);
+    const std::string text = scene_text(options.folder) + read_file(includes(options.folder)[0]);
+    EXPECT_EQ(count(text, "#error"), 0u);
+    EXPECT_EQ(count(text, "*/"), 0u);
+    EXPECT_EQ(count(text, "\r"), 0u);
+    EXPECT_EQ(count(text, "\""), 2u);  // of the one #include
+    EXPECT_EQ(std::count_if(text.begin(), text.end(), [](char c) { return c < 0; }), 0);
+    EXPECT_EQ(count(text, "// a____"), 1u);
+}
+
+TEST(PovrayWriter, TrianglesWithoutAreaAreLeftOut) {
+    Builder builder;
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.positions.emplace_back(0.5f, 0.5f, 0.0f);
+    mesh.positions.emplace_back(0.5f, 0.5f, 1e-9f);  // rounds to the vertex before it
+    mesh.triangles.emplace_back(0, 0, 1);
+    mesh.triangles.emplace_back(0, 2, 4);
+    mesh.triangles.emplace_back(1, 4, 5);
+    const std::string text = include_text(builder.model, builder.mesh(mesh));
+    EXPECT_EQ(count(text, "face_indices{2,"), 1u);
+    EXPECT_EQ(count(text, "vertex_vectors{4,"), 1u);
+
+    mesh.triangles = {{0, 0, 1}, {0, 2, 4}};
+    const ObjectIndex none = builder.mesh(mesh);
+    EXPECT_EQ(include_text(builder.model, none), "");
+    EXPECT_EQ(include_text(builder.model, builder.mesh(Mesh{})), "");
+    builder.place(none);
+    ExportOptions options;
+    options.folder = scratch("degenerate");
+    Problems problems;
+    const ExportReport report = scenes::write(builder.finish(), above(), options, problems);
+    EXPECT_EQ(report.occurrences, 0u);
+    EXPECT_EQ(count(scene_text(options.folder), "#include"), 0u);
+}
+
+TEST(PovrayWriter, WhatIsNotFiniteIsRefused) {
+    Builder builder;
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f);
+    const ObjectIndex unused = builder.mesh(mesh);
+    EXPECT_EQ(count(include_text(builder.model, unused), "vertex_vectors{4,"), 1u);
+    mesh.triangles.emplace_back(0, 1, 4);
+    const ObjectIndex used = builder.mesh(mesh);
+    EXPECT_THROW(include_text(builder.model, used), Error);
+    View view = above();
+    view.camera.up.x = std::numeric_limits<double>::quiet_NaN();
+    Problems problems;
+    ExportOptions options;
+    options.folder = scratch("infinite");
+    EXPECT_THROW(export_scene(Model{}, {}, view, options, problems), Error);
+    view.camera.up = view.camera.right;
+    EXPECT_THROW(export_scene(Model{}, {}, view, options, problems), Error);
+}
+
+TEST(PovrayWriter, LinesAndDotsAreSkippedAndSheetsGetAThickness) {
+    Builder builder;
+    const ObjectIndex cube = builder.mesh(shapes::cube());
+    const auto scaled = [](double x, double y, double z) {
+        return Affine{glm::dmat3(x, 0, 0, 0, y, 0, 0, 0, z), {}};
+    };
+    builder.place(cube, scaled(1, 0, 0), "line");
+    builder.place(cube, scaled(0, 0, 0), "dot");
+    builder.place(cube, scaled(1e-12, 1e-12, 1e-12), "speck");
+    builder.place(cube, scaled(2, 0, 1), "sheet");
+    builder.place(cube, scaled(1, 1e-3, 1), "plate");
+    Affine broken;
+    broken.offset.x = std::numeric_limits<double>::infinity();
+    builder.place(cube, broken, "broken");
+    ExportOptions options;
+    options.folder = scratch("singular");
+    Problems problems;
+    const quality::Cut cut = quality::choose(builder.finish(), above());
+    export_scene(builder.model, cut, above(), options, problems);
+    ASSERT_EQ(problems.size(), 4u);
+    EXPECT_EQ(problems[0].object, "line");
+    EXPECT_EQ(problems[0].code, "singular_transform");
+    const std::string text = scene_text(options.folder);
+    EXPECT_EQ(count(text, "matrix<2,0,0,0,2e-05,0,0,0,1,0,0,0>} // sheet"), 1u) << text;
+    EXPECT_EQ(count(text, "matrix<1,0,0,0,0.001,0,0,0,1,0,0,0>} // plate"), 1u) << text;
+}
+
+TEST(PovrayWriter, CoveredOnlyLeavesOutEnvironmentLightsAndWorld) {
+    Builder builder;
+    builder.model.world.color = {1, 2, 3};
+    builder.model.lights.push_back(scenes::sun(1));
+    const ObjectIndex ground = builder.mesh(shapes::quad(9, 9));
+    builder.model.objects[ground].role = Role::Environment;
+    builder.place(ground, {}, "ground");
+    builder.place(builder.mesh(shapes::cube()), {}, "cube");
+    ExportOptions options;
+    options.folder = scratch("covered");
+    options.covered_only = true;
+    Problems problems;
+    const ExportReport report = scenes::write(builder.finish(), above(), options, problems);
+    EXPECT_EQ(report.occurrences, 1u);
+    EXPECT_EQ(count(scene_text(options.folder), "light_source"), 0u);
+    EXPECT_EQ(count(scene_text(options.folder), "background{rgbt <0,0,0,1>}"), 1u);
+    EXPECT_EQ(count(read_file(options.folder / "scene.ini"), "Output_Alpha=On"), 1u);
+}
+
+TEST(PovrayWriter, AnUnwritableFolderIsNamed) {
+    const auto folder = scratch("unwritable");
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "file") << "x";
+    ExportOptions options;
+    options.folder = folder / "file" / "below";
+    Problems problems;
+    try {
+        export_scene(Model{}, {}, above(), options, problems);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status, Status::Io);
+        EXPECT_NE(std::string(error.what()).find("file/below"), std::string::npos);
+    }
+}
+
+TEST(PovrayWriter, ACancelledExportStops) {
+    Builder builder;
+    builder.place(builder.mesh(shapes::cube()));
+    const volatile int32_t cancel = 1;
+    ExportOptions options;
+    options.folder = scratch("cancelled");
+    Problems problems;
+    const quality::Cut cut = quality::choose(builder.finish(), above());
+    EXPECT_THROW(export_scene(builder.model, cut, above(), options, problems,
+                              Job(&cancel, nullptr, nullptr)),
+                 Error);
+    EXPECT_FALSE(std::filesystem::exists(options.folder / "scene.pov"));
+}
+
+// From here on POV-Ray judges.
+
+TEST(PovrayWriter, PovrayReadsEverythingWithoutAWarning) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    Material metal;
+    metal.metallic = 1;
+    metal.roughness = 0.1;
+    metal.emission = {0, 1, 0};
+    metal.base_color = {1, 0, 0.2};
+    const uint32_t shiny = builder.material(metal);
+    const uint32_t red = builder.matte({1, 0, 0});
+    Mesh cube = shapes::cube();
+    for (size_t i = 0; i < cube.positions.size(); ++i)
+        cube.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
+    builder.place_at(builder.mesh(rich_sphere(2), {shiny, red}), {0, 0, 0});
+    builder.place_at(builder.mesh(cube, {red}), {0.6, 0, 0});
+    builder.place_at(builder.mesh(shapes::terrain(8)), {-0.6, 0, 0});
+    builder.place_at(builder.primitive(Kind::Ellipsoid, {{}, glm::dmat3(1.0), {.1, .2, .3}}),
+                     {0, 0.6, 0});
+    builder.place_at(builder.primitive(Kind::Box, {}, {shiny}), {0, -0.6, 0});
+    builder.place(1, Affine{glm::dmat3(2, 0, 0, 0, 0, 0, 0, 0, 1), {}}, "\"*/\n}#error");
+    for (const float size : {1e-20f, 1e20f})  // as text, whatever is seen of it
+        builder.place(builder.mesh(shapes::quad(size, size)));
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = {1, 1, 3};
+    lamp.shadow = false;
+    builder.model.lights = {scenes::sun(2), lamp};
+    for (const bool false_color : {false, true}) {
+        ExportOptions options;
+        options.folder = scratch("warnings");
+        options.false_color = false_color;
+        RunReport report;
+        const scenes::Image image = render(builder.finish(), above(), options, &report);
+        EXPECT_EQ(report.messages, "");
+        EXPECT_GT(report.peak_bytes, 4u << 20u);
+        EXPECT_EQ(image.width, 64);
+    }
+}
+
+TEST(PovrayWriter, SunAndSkyLightAMatteSurfaceByTheirFormulas) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    ExportOptions options;
+    options.folder = scratch("light");
+    options.antialiasing = Antialiasing::Off;
+    constexpr double kPi = std::numbers::pi;
+    const auto center = [&](const glm::dvec3& albedo, const glm::dvec3& sky, const Light& light) {
+        Builder builder;
+        builder.model.world.color = sky;
+        builder.model.lights.push_back(light);
+        builder.place_at(builder.mesh(shapes::quad(4, 4), {builder.matte(albedo)}), {-2, -2, 0});
+        return render(builder.finish(), above(8, 8), options).at(4, 4);
+    };
+    EXPECT_NEAR(center(glm::dvec3(1.0), {}, scenes::sun(kPi)).x, 1, 0.01);
+    const glm::dvec3 sunny = center({0.9, 0.5, 0.1}, {}, scenes::sun(kPi));
+    EXPECT_NEAR(sunny.x, 0.9, 0.009);
+    EXPECT_NEAR(sunny.y, 0.5, 0.005);
+    EXPECT_NEAR(sunny.z, 0.1, 0.001);
+    const double slant = center(glm::dvec3(0.8), {}, scenes::sun(kPi, {1, 0, -1})).x;
+    EXPECT_NEAR(slant, 0.8 * std::sqrt(0.5), 0.006);
+    const glm::dvec3 sky = center(glm::dvec3(1.0), {0.25, 0.5, 0.75}, scenes::sun(0));
+    EXPECT_NEAR(sky.x, 0.25, 0.0025);
+    EXPECT_NEAR(sky.z, 0.75, 0.0075);
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.power = 100;
+    lamp.position = {0.0625, -0.0625, 4};
+    // Radiant intensity P / (4 pi^2) in Blender's units times albedo over distance squared.
+    EXPECT_NEAR(center(glm::dvec3(0.8), {}, lamp).x, 0.8 * 100 / (4 * kPi * kPi) / 16, 0.0013);
+}
+
+TEST(PovrayWriter, AMaterialNeverSendsBackMoreThanTheSkyGives) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    builder.model.world.color = glm::dvec3(0.5);
+    int at = 0;
+    for (const double metallic : {0.0, 1.0}) {
+        for (const double roughness : {0.1, 0.8}) {
+            Material material;
+            material.base_color = {1, 0.5, 0.25};
+            material.metallic = metallic;
+            material.roughness = roughness;
+            const ObjectIndex ball =
+                builder.mesh(shapes::sphere(0.2, 3), {builder.material(material)});
+            builder.place_at(ball, {-0.75 + 0.5 * at++, 0, 0});
+        }
+    }
+    ExportOptions options;
+    options.folder = scratch("furnace");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(64, 16), options);
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 color = image.at(8 + 16 * i, 8);
+        EXPECT_NEAR(color.x, 0.5, 0.01) << i;
+        EXPECT_NEAR(color.y, 0.25, 0.01) << i;
+        EXPECT_NEAR(color.z, 0.125, 0.01) << i;
+    }
+}
+
+TEST(PovrayWriter, TheCameraProjectsWhereItShould) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    struct Case {
+        const char* name;
+        bool orthographic;
+        int width, height;
+        glm::dvec3 direction, right, up;
+    };
+    // Axes turned so that no coordinate is special.
+    const glm::dvec3 x = glm::normalize(glm::dvec3(1, 0.3, -0.2));
+    const glm::dvec3 z = glm::normalize(glm::cross(x, glm::dvec3(0.1, 1, 0.2)));
+    const glm::dvec3 y = glm::cross(z, x);
+    const Case cases[] = {
+        {"landscape", false, 96, 54, -z, x, y * 0.5625},
+        {"shifted", false, 96, 54, -z + 0.2 * x - 0.15 * y, x, y * 0.5625},
+        {"portrait", false, 54, 96, -z, x * 0.5625, y},
+        {"orthographic", true, 96, 54, -z, 4.0 * x, 2.25 * y},
+    };
+    for (const Case& test : cases) {
+        View view;
+        view.width = test.width;
+        view.height = test.height;
+        view.camera = {"", test.orthographic, {3, -2, 5}, test.direction, test.right, test.up, 0.1};
+        Builder builder;
+        Material glow;
+        glow.emission = glm::dvec3(1.0);
+        glow.base_color = glm::dvec3(0.0);
+        glow.specular = 0;
+        const ObjectIndex ball = builder.primitive(
+            Kind::Ellipsoid, {{}, glm::dmat3(1.0), glm::dvec3(0.06)}, {builder.material(glow)});
+        std::vector<glm::dvec2> expected;
+        for (const double v : {-0.3, 0.3}) {
+            for (const double u : {-0.35, 0.05, 0.4}) {
+                const double depth = 4 + 0.5 * u;
+                const glm::dvec3 across = u * test.right + v * test.up;
+                builder.place_at(ball, view.camera.position +
+                                           (test.orthographic ? across + 4.0 * test.direction
+                                                              : depth * (test.direction + across)));
+                expected.emplace_back((u + 0.5) * test.width, (0.5 - v) * test.height);
+            }
+        }
+        ExportOptions options;
+        options.folder = scratch("camera");
+        options.antialiasing = Antialiasing::Reference;
+        const scenes::Image image = render(builder.finish(), view, options);
+        for (const glm::dvec2& point : expected) {
+            glm::dvec2 sum(0.0);
+            double weight = 0;
+            for (int py = 0; py < image.height; ++py) {
+                for (int px = 0; px < image.width; ++px) {
+                    const glm::dvec2 pixel(px + 0.5, py + 0.5);
+                    if (glm::length(pixel - point) > 7)
+                        continue;
+                    sum += image.at(px, py).x * pixel;
+                    weight += image.at(px, py).x;
+                }
+            }
+            ASSERT_GT(weight, 1) << test.name;
+            EXPECT_NEAR(sum.x / weight, point.x, 0.05) << test.name;
+            EXPECT_NEAR(sum.y / weight, point.y, 0.05) << test.name;
+        }
+    }
+}
+
+TEST(PovrayWriter, ABoxLooksLikeItsMesh) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Primitive box{{0.05, 0.1, 0}, glm::dmat3(1.0), {0.7, 0.4, 0.2}};
+    box.axes = glm::dmat3(0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1);
+    scenes::Image images[2];
+    for (const bool mesh : {false, true}) {
+        Builder builder;
+        builder.model.world.color = {0.1, 0.2, 0.3};
+        builder.model.lights.push_back(scenes::sun(2.5, {0.3, 0.5, -0.8}));
+        const uint32_t plain = builder.material(Material{});
+        builder.place(mesh ? builder.mesh(tessellate_box(box), {plain})
+                           : builder.primitive(Kind::Box, box, {plain}));
+        builder.place_at(builder.mesh(shapes::quad(4, 4), {plain}), {-2, -2, -0.5});
+        View view = above(96, 96);
+        view.camera.direction = {0.3, 0.2, -1};
+        view.camera.position = {-3, -2, 10};
+        ExportOptions options;
+        options.folder = scratch("box");
+        options.antialiasing = Antialiasing::Reference;
+        images[mesh] = render(builder.finish(), view, options);
+    }
+    double worst = 0;
+    for (size_t i = 0; i < images[0].values.size(); ++i)
+        worst = std::max(worst, std::abs(images[0].values[i] - images[1].values[i]));
+    EXPECT_LE(worst, 2.0 / 255);
+    EXPECT_GT(*std::max_element(images[0].values.begin(), images[0].values.end()), 0.3);
+}
+
+TEST(PovrayWriter, FalseColorsAreThoseOfTheLegend) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    const uint32_t red = builder.matte({1, 0, 0});
+    const uint32_t blue = builder.matte({0, 0, 1});
+    builder.place_at(builder.mesh(rich_sphere(2), {red, blue}), {0, 0, 0});
+    builder.place_at(builder.primitive(Kind::Box, {}, {red}), {2.5, 0, 0});
+    ExportOptions options;
+    options.folder = scratch("false_color");
+    options.false_color = true;
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(192, 16), options);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(image.at(96, 8)[i], color_of(Kind::Mesh, 0)[i], 0.002);
+        EXPECT_NEAR(image.at(96 + 90, 8)[i], color_of(Kind::Box, 0)[i], 0.002);
+    }
+}
