@@ -49,10 +49,16 @@ def build(scene, collection):
     render.resolution_x, render.resolution_y = SIZE
     render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
-    camera(collection, "near", (-58.5, -7.0, 1.65), (-30.0, 4.0, 2.5), 26)
-    camera(collection, "middle", (-92.0, -1.6, 6.2), (10.0, 2.6, 1.2), 33)
+    camera(collection, "near", (-50.4, -7.1, 1.65), (-26.0, 5.0, 2.9), 26)
+    camera(collection, "middle", (-75.5, -3.6, 6.4), (-10.0, 6.5, 1.8), 28)
     target = Vector((0, 0, 0))
-    back = Vector((math.sin(AZIMUTH) * math.cos(ELEVATION), -math.cos(AZIMUTH) * math.cos(ELEVATION), math.sin(ELEVATION)))
+    back = Vector(
+        (
+            math.sin(AZIMUTH) * math.cos(ELEVATION),
+            -math.cos(AZIMUTH) * math.cos(ELEVATION),
+            math.sin(ELEVATION),
+        )
+    )
     for _ in range(4):
         place = target + back * DISTANCE
         lens, shift = far_lens(place, target, 36.0)

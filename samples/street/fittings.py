@@ -12,13 +12,31 @@ from mesh_builder import MeshBuilder
 def street_lamp():
     """Cast post with a curved arm over the road (+x) and a lantern."""
     b = MeshBuilder()
-    profile = [(0.16, 0), (0.17, 0.1), (0.12, 0.16), (0.1, 0.8), (0.13, 0.84), (0.13, 0.9), (0.07, 0.95), (0.055, 4.6)]
+    profile = [
+        (0.16, 0),
+        (0.17, 0.1),
+        (0.12, 0.16),
+        (0.1, 0.8),
+        (0.13, 0.84),
+        (0.13, 0.9),
+        (0.07, 0.95),
+        (0.055, 4.6),
+    ]
     b.lathe(profile, "Iron", 20)
     arc = [math.pi * k / 14 for k in range(8)]
-    path = [(0, 0, 4.5)] + [(0.8 - 0.8 * math.cos(t), 0, 4.8 + 0.7 * math.sin(t)) for t in arc] + [(1.5, 0, 5.5)]
+    path = (
+        [(0, 0, 4.5)]
+        + [(0.8 - 0.8 * math.cos(t), 0, 4.8 + 0.7 * math.sin(t)) for t in arc]
+        + [(1.5, 0, 5.5)]
+    )
     b.tube(path, 0.045, "Iron", 12)
     b.tube([(0.05, 0, 4.1), (0.35, 0, 4.55), (0.34, 0, 5.35)], 0.02, "Iron", 8)
-    b.lathe([(0.05, 5.5), (0.08, 5.46), (0.22, 5.36), (0.24, 5.28), (0.2, 5.27)][::-1], "Iron", 24, (1.5, 0, 0))
+    b.lathe(
+        [(0.05, 5.5), (0.08, 5.46), (0.22, 5.36), (0.24, 5.28), (0.2, 5.27)][::-1],
+        "Iron",
+        24,
+        (1.5, 0, 0),
+    )
     b.lathe([(0.05, 5.14), (0.14, 5.18), (0.18, 5.275)], "Lamp Shade", 24, (1.5, 0, 0))
     return b.to_mesh("Street Lamp")
 
@@ -27,14 +45,23 @@ def bench():
     """Slatted bench with cast sides, its back at +y."""
     b = MeshBuilder()
     for k in range(5):
-        b.rounded_box((-0.9, -0.28 + 0.105 * k, 0.44), (0.9, -0.2 + 0.105 * k, 0.475), 0.012, "Wood Light", 3)
+        b.rounded_box(
+            (-0.9, -0.28 + 0.105 * k, 0.44), (0.9, -0.2 + 0.105 * k, 0.475), 0.012, "Wood Light", 2
+        )
     for k in range(4):
         y, z = 0.27 + 0.025 * k, 0.55 + 0.1 * k
-        b.rounded_box((-0.9, y, z), (0.9, y + 0.03, z + 0.08), 0.012, "Wood Light", 3)
+        b.rounded_box((-0.9, y, z), (0.9, y + 0.03, z + 0.08), 0.012, "Wood Light", 2)
     for x in (-0.75, 0.75):
-        b.tube([(x, -0.3, 0), (x, -0.26, 0.25), (x, -0.27, 0.43), (x, 0.24, 0.42), (x, 0.38, 0.95)], 0.025, "Iron", 10)
+        b.tube(
+            [(x, -0.3, 0), (x, -0.26, 0.25), (x, -0.27, 0.43), (x, 0.24, 0.42), (x, 0.38, 0.95)],
+            0.025,
+            "Iron",
+            10,
+        )
         b.tube([(x, 0.3, 0), (x, 0.22, 0.25), (x, 0.24, 0.43)], 0.025, "Iron", 10)
-        b.tube([(x, -0.27, 0.43), (x, -0.3, 0.62), (x, 0.0, 0.68), (x, 0.3, 0.66)], 0.02, "Iron", 10)
+        b.tube(
+            [(x, -0.27, 0.43), (x, -0.3, 0.62), (x, 0.0, 0.68), (x, 0.3, 0.66)], 0.02, "Iron", 10
+        )
     return b.to_mesh("Bench")
 
 
@@ -54,7 +81,7 @@ def mailbox():
     """Post box on a post, its slot towards -y."""
     b = MeshBuilder()
     b.rounded_box((-0.04, -0.04, 0), (0.04, 0.04, 1.0), 0.012, "Fence Wood")
-    b.rounded_box((-0.13, -0.22, 1.0), (0.13, 0.22, 1.26), 0.1, "Post Red", 5)
+    b.rounded_box((-0.13, -0.22, 1.0), (0.13, 0.22, 1.26), 0.1, "Post Red", 3)
     b.box((-0.09, -0.226, 1.12), (0.09, -0.2, 1.15), "Trim Dark")
     b.tube([(0.14, 0.05, 1.1), (0.14, 0.05, 1.32)], 0.01, "Steel", 6)
     return b.to_mesh("Mailbox")
@@ -69,7 +96,9 @@ def wheelie_bin():
         for k in range(20):
             t = 2 * math.pi * (k + 0.5) / 20
             c, s = math.cos(t), math.sin(t)
-            ring.append((h * math.copysign(abs(c) ** 0.35, c), h * math.copysign(abs(s) ** 0.35, s), z))
+            ring.append(
+                (h * math.copysign(abs(c) ** 0.35, c), h * math.copysign(abs(s) ** 0.35, s), z)
+            )
         rings.append(ring)
     b.loft(rings, "Door Green")
     b.rounded_box((-0.31, -0.33, 0.97), (0.31, 0.31, 1.05), 0.03, "Door Green", 3)
@@ -87,7 +116,13 @@ def picket_fence(length, material="Fence White"):
     count = int(length / 0.14)
     for k in range(count + 1):
         x = length * k / count
-        outline = [(x - 0.045, 0.06), (x + 0.045, 0.06), (x + 0.045, 0.9), (x, 0.98), (x - 0.045, 0.9)]
+        outline = [
+            (x - 0.045, 0.06),
+            (x + 0.045, 0.06),
+            (x + 0.045, 0.9),
+            (x, 0.98),
+            (x - 0.045, 0.9),
+        ]
         b.prism(outline, -0.005, 0.02, material)
     posts = max(1, round(length / 2))
     for k in range(posts + 1):
@@ -99,10 +134,14 @@ def picket_fence(length, material="Fence White"):
 def board_fence(length):
     """Tall garden fence of upright boards."""
     b = MeshBuilder()
-    count = int(length / 0.16)
+    count = int(length / 0.24)
     for k in range(count):
         x = length * k / count
-        b.box((x + 0.005, 0.0 if k % 2 else 0.015, 0.08), (x + length / count - 0.005, 0.03 if k % 2 else 0.045, 1.7), "Fence Wood")
+        b.box(
+            (x + 0.005, 0.0 if k % 2 else 0.015, 0.08),
+            (x + length / count - 0.005, 0.03 if k % 2 else 0.045, 1.7),
+            "Fence Wood",
+        )
     for z in (0.3, 1.4):
         b.box((0, 0.045, z), (length, 0.09, z + 0.1), "Fence Wood")
     posts = max(1, round(length / 2.4))
@@ -117,8 +156,8 @@ def hedge(length, height, seed):
     rng = random.Random(f"hedge {seed}")
     shift = Vector((rng.uniform(0, 90), rng.uniform(0, 90), 0))
     b = MeshBuilder()
-    n = 28
-    count = max(4, int(length / 0.16))
+    n = 20
+    count = max(4, int(length / 0.24))
     rings = []
     for k in range(count + 1):
         x = length * k / count
@@ -131,7 +170,9 @@ def hedge(length, height, seed):
             z = height / 2 + height / 2 * edge * math.copysign(abs(s) ** 0.45, s)
             p = Vector((x, y, z))
             bump = 0.07 * noise.noise(p * 6 + shift) + 0.05 * noise.noise(p * 14 + shift)
-            ring.append((x + 0.5 * bump * (0 < k < count), y + bump * c * 1.4, max(0.0, z + bump * s * 1.4)))
+            ring.append(
+                (x + 0.5 * bump * (0 < k < count), y + bump * c * 1.4, max(0.0, z + bump * s * 1.4))
+            )
         rings.append(ring)
     b.loft(rings, "Hedge")
     return b.to_mesh(f"Hedge {length:.1f} {seed}")
@@ -142,7 +183,7 @@ def flower_bed(seed):
     rng = random.Random(f"bed {seed}")
     b = MeshBuilder()
     b.rounded_box((-1.2, -0.4, -0.05), (1.2, 0.4, 0.06), 0.05, "Soil")
-    for _ in range(46):
+    for _ in range(18):
         x, y, z = rng.uniform(-1.1, 1.1), rng.uniform(-0.32, 0.32), rng.uniform(0.18, 0.36)
         b.tube([(x, y, 0.02), (x + 0.02, y, z)], 0.01, "Hedge", 4)
         color = rng.choice(["Flowers", "Plaster Ochre", "Linen"])

@@ -24,8 +24,45 @@ ROAD_TOP = -0.12
 def fields(rng):
     """Patchwork of meadows and fields as one sheet, lower than the lawns."""
     b = MeshBuilder()
-    xs = [-1500, -1100, -800, -610, -480, -360, -230, -120, 0, 130, 220, 350, 470, 620, 820, 1100, 1500]
-    ys = [-1500, -1000, -700, -500, -380, -290, -210, -140, -60, 60, 130, 220, 300, 420, 560, 800, 1100, 1500]
+    xs = [
+        -1500,
+        -1100,
+        -800,
+        -610,
+        -480,
+        -360,
+        -230,
+        -120,
+        0,
+        130,
+        220,
+        350,
+        470,
+        620,
+        820,
+        1100,
+        1500,
+    ]
+    ys = [
+        -1500,
+        -1000,
+        -700,
+        -500,
+        -380,
+        -290,
+        -210,
+        -140,
+        -60,
+        60,
+        130,
+        220,
+        300,
+        420,
+        560,
+        800,
+        1100,
+        1500,
+    ]
     points = [(x, y, -0.16) for y in ys for x in xs]
     n = len(xs)
     for j in range(len(ys) - 1):
@@ -92,7 +129,11 @@ def markings():
         for offset in (-7.0, 7.0):
             for k in range(9):
                 y = -4.2 + 0.98 * k
-                b.box((lane + offset - 1.4, y, low), (lane + offset + 1.4, y + 0.5, high), "Road Paint")
+                b.box(
+                    (lane + offset - 1.4, y, low),
+                    (lane + offset + 1.4, y + 0.5, high),
+                    "Road Paint",
+                )
     return b
 
 
@@ -105,7 +146,7 @@ def mark_environment(obj):
 
 
 def build(collection, drives, seed):
-    """All ground objects; drives: the MeshBuilder the plots have added their driveways and paths to."""
+    """All ground objects; drives: the builder that holds the driveways and paths."""
     rng = random.Random(f"ground {seed}")
     builders = {"Fields": fields(rng), **sheets(), "Markings": markings(), "Driveways": drives}
     for name, builder in builders.items():

@@ -15,7 +15,7 @@ import walls
 from mesh_builder import MeshBuilder
 from shells import DOOR, PLINTH, SLAB, STOREY, THICK
 
-# data: a mesh or a collection (then the object is an instancing empty); group: child collection's name
+# data: a mesh, or a collection (then the object is an instancing empty); group: child collection
 Part = namedtuple("Part", "group name data matrix")
 House = namedtuple("House", "design parts low high door_x")
 Wing = namedtuple("Wing", "x0 y0 x1 roof")
@@ -52,17 +52,110 @@ class Design:
 
 
 DESIGNS = (
-    Design("Cottage", 10.4, 8.8, 1, "gable", 44, "Tile Terracotta", "pantile", "Brick Red", "bricks", door="Door Green"),
-    Design("Townhouse", 9.4, 9.4, 2, "hip", 33, "Slate", "slate", "Plaster Ochre", "quoins", windows="shutters"),
-    Design("Bungalow", 11.6, 9.2, 1, "hip", 27, "Tile Rust", "pantile", "Brick Sand", "bricks", porch="veranda", door="Door Blue"),
-    Design("Modern House", 9.4, 9.2, 2, "flat", 0, "Roof Gravel", "slate", "Plaster White", "plain",
-           windows="plain", trim="Trim Dark", porch="", garage=True, door="Door Blue"),
-    Design("Farmhouse", 11.4, 8.8, 1, "gable", 38, "Slate Brown", "shingle", "Siding White", "boards", wing="gable", chimneys=2),
-    Design("Gable House", 8.6, 10.4, 2, "gable", 46, "Slate", "shingle", "Siding Blue", "boards", "Siding Blue",
-           ridge="y", windows="bars", door="Door Red"),
-    Design("Villa", 11.6, 9.6, 2, "hip", 30, "Tile Terracotta", "pantile", "Plaster Rose", "quoins",
-           windows="shutters", wing="terrace", door="Door Green", chimneys=2),
-)  # fmt: skip
+    Design(
+        "Cottage",
+        10.4,
+        8.8,
+        1,
+        "gable",
+        44,
+        "Tile Terracotta",
+        "pantile",
+        "Brick Red",
+        "bricks",
+        door="Door Green",
+    ),
+    Design(
+        "Townhouse",
+        9.4,
+        9.4,
+        2,
+        "hip",
+        33,
+        "Slate",
+        "slate",
+        "Plaster Ochre",
+        "quoins",
+        windows="shutters",
+    ),
+    Design(
+        "Bungalow",
+        11.6,
+        9.2,
+        1,
+        "hip",
+        27,
+        "Tile Rust",
+        "pantile",
+        "Brick Sand",
+        "bricks",
+        porch="veranda",
+        door="Door Blue",
+    ),
+    Design(
+        "Modern House",
+        9.4,
+        9.2,
+        2,
+        "flat",
+        0,
+        "Roof Gravel",
+        "slate",
+        "Plaster White",
+        "plain",
+        windows="plain",
+        trim="Trim Dark",
+        porch="",
+        garage=True,
+        door="Door Blue",
+    ),
+    Design(
+        "Farmhouse",
+        11.4,
+        8.8,
+        1,
+        "gable",
+        38,
+        "Slate Brown",
+        "shingle",
+        "Siding White",
+        "boards",
+        wing="gable",
+        chimneys=2,
+    ),
+    Design(
+        "Gable House",
+        8.6,
+        10.4,
+        2,
+        "gable",
+        46,
+        "Slate",
+        "shingle",
+        "Siding Blue",
+        "boards",
+        "Siding Blue",
+        ridge="y",
+        windows="bars",
+        door="Door Red",
+    ),
+    Design(
+        "Villa",
+        11.6,
+        9.6,
+        2,
+        "hip",
+        30,
+        "Tile Terracotta",
+        "pantile",
+        "Plaster Rose",
+        "quoins",
+        windows="shutters",
+        wing="terrace",
+        door="Door Green",
+        chimneys=2,
+    ),
+)
 
 WALLS = {
     "bricks": ("Brick Red", "Brick Brown", "Brick Sand"),
@@ -116,7 +209,9 @@ class Assembly:
         }
 
     def mesh(self, group, name, builder):
-        self.parts.append(Part(group, name, builder.to_mesh(f"{self.design.name} {name}"), Matrix()))
+        self.parts.append(
+            Part(group, name, builder.to_mesh(f"{self.design.name} {name}"), Matrix())
+        )
 
     def opening(self, side, x, z, width, height, mesh, group, name):
         """A hole in a wall of the main body and what fills it; x from the wall's left end."""
@@ -147,7 +242,9 @@ class Assembly:
                 spans.append(("front", low, high, size))
         if y1 > d - THICK - 0.01:
             spans.append(("back", w / 2 - x1, w / 2 - x0, size))
-        if x0 < -w / 2 + THICK + 0.01 and not (storey == 0 and room.kind == "hall" and design.storeys > 1):
+        if x0 < -w / 2 + THICK + 0.01 and not (
+            storey == 0 and room.kind == "hall" and design.storeys > 1
+        ):
             spans.append(("left", d - THICK - y1, d - THICK - y0, side_size))
         if x1 > w / 2 - THICK - 0.01 and not (design.garage and storey == 0):
             spans.append(("right", y0 - THICK, y1 - THICK, side_size))
@@ -192,11 +289,25 @@ def build(design, sets):
             a.windows(room, storey, door_x, wing)
             a.parts += [Part(*part) for part in rooms.furnish(room, sets, keep, rng)]
         inner = MeshBuilder()
-        hole = [(stairs_at[0], stairs_at[1] + 0.5, stairs_at[0] + 0.95, stairs_at[1] + 3.35)] if storey else []
+        hole = (
+            [(stairs_at[0], stairs_at[1] + 0.5, stairs_at[0] + 0.95, stairs_at[1] + 3.35)]
+            if storey
+            else []
+        )
         with inner.at(0, 0, z):
-            walls.floor(inner, low, high, SLAB if storey else PLINTH - 0.01, hole, "Oak Floor", "Interior Wall")
+            walls.floor(
+                inner,
+                low,
+                high,
+                SLAB if storey else PLINTH - 0.01,
+                hole,
+                "Oak Floor",
+                "Interior Wall",
+            )
         a.mesh("Shell", ("Ground Floor", "Upper Floor")[storey], inner)
-        a.mesh("Shell", ("Partitions", "Partitions Upstairs")[storey], shells.partitions(partitions, z))
+        a.mesh(
+            "Shell", ("Partitions", "Partitions Upstairs")[storey], shells.partitions(partitions, z)
+        )
         leaf = openings.inner_door(*rooms.DOORWAY)
         for p in partitions:
             for offset in p.doorways:
@@ -205,7 +316,14 @@ def build(design, sets):
                 a.parts.append(Part(plan[0].name, "Room Door", leaf, at))
     if design.storeys > 1:
         flight = shells.stairs(*stairs_at)
-        a.parts.append(Part("Hall", "Stairs", flight.to_mesh(f"{design.name} Stairs"), Matrix.Translation((0, 0, PLINTH))))
+        a.parts.append(
+            Part(
+                "Hall",
+                "Stairs",
+                flight.to_mesh(f"{design.name} Stairs"),
+                Matrix.Translation((0, 0, PLINTH)),
+            )
+        )
     ceiling = MeshBuilder()
     with ceiling.at(0, 0, height):
         walls.floor(ceiling, low, high, SLAB, [], "Interior Wall", "Interior Wall")
@@ -248,8 +366,10 @@ def add_wing(a, wing, sets, rng):
     turn = Matrix.Rotation(1.5707963267948966, 4, "Z")
     at = Matrix.Translation((wing.x1, wing.y0 + THICK, 0)) @ turn @ Matrix.Translation((x, 0, 1.2))
     a.parts.append(Part("Shell", "Window", side, at))
-    # The wing's side walls run up to the main body: its rectangle ends a wall's thickness inside it.
-    shells.body_walls(builder, design, (wing.x0, wing.y0), (wing.x1, THICK), height, holes, ("back",))
+    # The wing's side walls run up to the main body: it ends a wall's thickness inside.
+    shells.body_walls(
+        builder, design, (wing.x0, wing.y0), (wing.x1, THICK), height, holes, ("back",)
+    )
     with builder.at(0, 0, PLINTH):
         low, high = (wing.x0 + THICK, wing.y0 + THICK), (wing.x1 - THICK, 0.0)
         walls.floor(builder, low, high, PLINTH - 0.01, [], "Oak Floor", "Interior Wall")

@@ -29,7 +29,7 @@ def place(collection, name, data, x=0.0, y=0.0, degrees=0.0, z=0.0):
 
 
 class Library:
-    """Everything that is modeled once: furniture sets, house designs, trees, cars, street fittings."""
+    """All that is modeled once: furniture sets, house designs, trees, cars, street fittings."""
 
     def __init__(self, scene):
         self.root = bpy.data.collections.new("Library")
@@ -47,7 +47,12 @@ class Library:
         self.tree_collections = {
             mesh.name: self.single(wood, mesh) for meshes in self.trees.values() for mesh in meshes
         }
-        self.shrubs = [trees.shrub(0), trees.shrub(1), trees.shrub(2, "Leaves Linden"), trees.shrub(3, "Flowers")]
+        self.shrubs = [
+            trees.shrub(0),
+            trees.shrub(1),
+            trees.shrub(2, "Leaves Linden"),
+            trees.shrub(3, "Flowers"),
+        ]
         self.cars = vehicles.models()
         garage = self.child(self.root, "Cars")
         self.car_collections = []

@@ -35,7 +35,8 @@ def arguments():
 def enable_addon():
     """Enable Lodestone when Blender can find it; say so when not."""
     found = any(
-        os.path.exists(os.path.join(path, "lodestone", "__init__.py")) for path in addon_utils.paths()
+        os.path.exists(os.path.join(path, "lodestone", "__init__.py"))
+        for path in addon_utils.paths()
     )
     if found and addon_utils.enable("lodestone") and hasattr(bpy.types.Object, "lodestone"):
         return True

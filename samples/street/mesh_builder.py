@@ -43,7 +43,7 @@ def cube_lattice(cells):
 
 @functools.lru_cache(maxsize=None)
 def rounding(segments):
-    """Per lattice point of a rounded box: the corner's signs and the unit direction from its center."""
+    """Per lattice point of a rounded box: its corner's signs and the direction from its center."""
     points, faces = cube_lattice(2 * segments + 1)
     result = []
     for point in points:
@@ -100,7 +100,9 @@ class MeshBuilder:
 
     def at(self, x, y, z, degrees=0.0):
         """Block moved by an offset and a turn about the vertical."""
-        return self.moved(Matrix.Translation((x, y, z)) @ Matrix.Rotation(math.radians(degrees), 4, "Z"))
+        return self.moved(
+            Matrix.Translation((x, y, z)) @ Matrix.Rotation(math.radians(degrees), 4, "Z")
+        )
 
     def box(self, low, high, material):
         """Closed flat box."""
@@ -112,7 +114,7 @@ class MeshBuilder:
         faces = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
         return self.add(points, faces, material)
 
-    def rounded_box(self, low, high, radius, material, segments=2):
+    def rounded_box(self, low, high, radius, material, segments=1):
         """Closed box whose edges and corners are rounded; 6 (2 segments + 1)^2 quads."""
         half = [(h - low_) / 2 for low_, h in zip(low, high)]
         mid = [(h + low_) / 2 for low_, h in zip(low, high)]
@@ -120,7 +122,11 @@ class MeshBuilder:
         x, y, z = (h - r for h in half)
         corners, faces = rounding(segments)
         points = [
-            (mid[0] + s[0] * x + r * d[0], mid[1] + s[1] * y + r * d[1], mid[2] + s[2] * z + r * d[2])
+            (
+                mid[0] + s[0] * x + r * d[0],
+                mid[1] + s[1] * y + r * d[1],
+                mid[2] + s[2] * z + r * d[2],
+            )
             for s, d in corners
         ]
         return self.add(points, faces, material, True)
@@ -136,7 +142,7 @@ class MeshBuilder:
         return self.add(result, faces, material, True)
 
     def loft(self, rings, material, smooth=True, caps=True):
-        """Skin over rings (counter-clockwise seen from the last ring's side), closed by flat caps."""
+        """Skin over rings (counter-clockwise seen from the last one's side) with flat caps."""
         n = len(rings[0])
         faces = []
         for r in range(len(rings) - 1):
@@ -172,16 +178,19 @@ class MeshBuilder:
         return self.loft(rings, material)
 
     def lathe(self, profile, material, sides=16, center=(0, 0, 0)):
-        """Closed solid turned about the vertical; profile: (radius > 0, height) from bottom to top."""
+        """Closed solid of revolution; profile: (radius > 0, height) from bottom to top."""
         turns = [2 * math.pi * k / sides for k in range(sides)]
         rings = [
-            [(center[0] + r * math.cos(t), center[1] + r * math.sin(t), center[2] + z) for t in turns]
+            [
+                (center[0] + r * math.cos(t), center[1] + r * math.sin(t), center[2] + z)
+                for t in turns
+            ]
             for r, z in profile
         ]
         return self.loft(rings, material)
 
     def prism(self, outline, low, high, material):
-        """Closed prism along y over an (x, z) outline, counter-clockwise seen from the front (-y)."""
+        """Closed prism along y; (x, z) outline counter-clockwise seen from the front (-y)."""
         back = [(x, high, z) for x, z in outline]
         front = [(x, low, z) for x, z in outline]
         return self.loft([back, front], material, smooth=False)

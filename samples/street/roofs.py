@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Roofs: decks, tiles, ridges, gutters and chimneys.
 
-A roof is built over a rectangle of length (along x) and depth (along y) centered at the origin, whose
-wall tops are at z = 0.
+A roof is built over a rectangle of length (along x) and depth (along y) centered at the origin,
+whose wall tops are at z = 0.
 """
 
 import math
@@ -32,16 +32,16 @@ def tile(builder, low, high, arch, material):
 
 
 def plane(builder, bottom, top, length, material, style):
-    """One roof plane in its own frame: x along the eave, y up the slope, z out; half widths given."""
+    """One roof plane in its own frame: x along the eave, y up the slope; half widths given."""
     outline_low = [(-bottom, 0), (bottom, 0)]
     outline_high = [(top, length), (-top, length)] if top > 0.01 else [(0, length)]
     outline = outline_low + outline_high
     rings = [[(x, y, z) for x, y in outline] for z in (-DECK, 0.0)]
     builder.loft(rings, "Fence Wood", smooth=False)
     width, course, arch = {
-        "pantile": (0.30, 0.36, 0.05),
-        "slate": (0.32, 0.26, 0.0),
-        "shingle": (0.44, 0.30, 0.0),
+        "pantile": (0.42, 0.48, 0.06),
+        "slate": (0.40, 0.32, 0.0),
+        "shingle": (0.50, 0.34, 0.0),
     }[style]
     rows = max(1, round(length / course))
     course = length / rows
@@ -72,7 +72,7 @@ def ridge(builder, start, end, material):
 
 
 def pitched(builder, kind, length, depth, pitch, overhang, material, style):
-    """Gable or hip roof; the ridge runs along x. Returns the ridge's height and the eave's height."""
+    """Gable or hip roof; the ridge runs along x. Returns the ridge's and the eave's height."""
     slope = math.tan(pitch)
     lift = DECK / math.cos(pitch)
     run = depth / 2 + overhang
@@ -135,21 +135,33 @@ def flat(builder, length, depth, material, rng):
     ):  # fmt: skip
         builder.box((*low, 0.25), (*high, 0.7), material)
         builder.rounded_box(
-            (low[0] - 0.05, low[1] - 0.05, 0.7), (high[0] + 0.05, high[1] + 0.05, 0.76), 0.02, "Trim Dark"
+            (low[0] - 0.05, low[1] - 0.05, 0.7),
+            (high[0] + 0.05, high[1] + 0.05, 0.76),
+            0.02,
+            "Trim Dark",
         )
     for k in range(2):
         x, y = rng.uniform(-a + 1.2, a - 1.2), (k - 0.5) * depth / 2
         builder.rounded_box((x - 0.6, y - 0.5, 0.25), (x + 0.6, y + 0.5, 0.5), 0.03, "Trim White")
-        builder.rounded_box((x - 0.52, y - 0.42, 0.48), (x + 0.52, y + 0.42, 0.56), 0.05, "Window Glass", 3)
+        builder.rounded_box(
+            (x - 0.52, y - 0.42, 0.48), (x + 0.52, y + 0.42, 0.56), 0.05, "Window Glass", 3
+        )
     for _ in range(3):
         x, y = rng.uniform(-a + 0.8, a - 0.8), rng.uniform(-0.6, 0.6)
-        builder.lathe([(0.08, 0.25), (0.08, 0.6), (0.14, 0.62), (0.14, 0.7), (0.04, 0.76)], "Zinc", 16, (x, y, 0))
-    step = 0.5
+        builder.lathe(
+            [(0.08, 0.25), (0.08, 0.6), (0.14, 0.62), (0.14, 0.7), (0.04, 0.76)],
+            "Zinc",
+            16,
+            (x, y, 0),
+        )
+    step = 0.8
     for i in range(int((length - 1.4) / step)):
         for j in range(int((depth - 1.4) / step)):
             if rng.random() < 0.55:
                 x, y = -a + 0.7 + i * step, -b + 0.7 + j * step
-                builder.rounded_box((x, y, 0.24), (x + 0.44, y + 0.44, 0.28), 0.015, "Roof Gravel", 1)
+                builder.rounded_box(
+                    (x, y, 0.24), (x + 0.74, y + 0.74, 0.28), 0.015, "Roof Gravel", 1
+                )
     return 0.76
 
 
@@ -159,8 +171,10 @@ def chimney(builder, x, y, low, high, rng, material="Brick Brown"):
     builder.box((x - w / 2, y - d / 2, low), (x + w / 2, y + d / 2, high), "Mortar")
     for turn, width, reach in ((0, w, d), (90, d, w), (180, w, d), (270, d, w)):
         with builder.at(x, y, low, turn), builder.at(-width / 2, -reach / 2, 0):
-            walls.bricks(builder, width, high - low, [], material, rng, (0.22, 0.08))
-    builder.rounded_box((x - 0.53, y - 0.38, high), (x + 0.53, y + 0.38, high + 0.12), 0.03, "Stone")
+            walls.bricks(builder, width, high - low, [], material, rng, (0.28, 0.1))
+    builder.rounded_box(
+        (x - 0.53, y - 0.38, high), (x + 0.53, y + 0.38, high + 0.12), 0.03, "Stone"
+    )
     pot = [(0.13, 0.1), (0.12, 0.4), (0.15, 0.42), (0.15, 0.5), (0.1, 0.52)]
     for side in (-0.22, 0.22):
         builder.lathe(pot, "Tile Terracotta", 16, (x + side, y, high))

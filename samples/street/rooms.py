@@ -32,8 +32,8 @@ def split(low, high, floor, names, rng):
     b = min(x1 - 1.4, back + 0.4)
     c = y0 + 0.4
     walls = [
-        Partition(x0, y - half, "x", x1 - x0, (a, b)),
-        Partition(front + half, y0, "y", y - half - y0, (c,)),
+        Partition(x0, y - half, "x", x1 - x0, (a - x0, b - x0)),
+        Partition(front + half, y0, "y", y - half - y0, (c - y0,)),
         Partition(back + half, y + half, "y", y1 - y - half, ()),
     ]
     width = DOORWAY[0]
@@ -49,7 +49,8 @@ def split(low, high, floor, names, rng):
 
 KINDS = {
     "Hall": "hall", "Living Room": "living", "Kitchen": "kitchen", "Bathroom": "bath",
-    "Study": "study", "Bedroom Front": "bedroom", "Bedroom Back": "bedroom", "Bathroom Upstairs": "bath",
+    "Study": "study",
+    "Bedroom Front": "bedroom", "Bedroom Back": "bedroom", "Bathroom Upstairs": "bath",
 }  # fmt: skip
 
 
@@ -88,13 +89,33 @@ class Furnisher:
             for k in sorted(range(max(steps, 0) + 1), key=lambda k: abs(k - steps / 2)):
                 t = w / 2 + k * 0.2 + 0.02
                 if side == "back":
-                    x, y, deg, rect = x0 + t, y1 - gap, 0, (x0 + t - w / 2, y1 - gap - d, x0 + t + w / 2, y1)
+                    x, y, deg, rect = (
+                        x0 + t,
+                        y1 - gap,
+                        0,
+                        (x0 + t - w / 2, y1 - gap - d, x0 + t + w / 2, y1),
+                    )
                 elif side == "front":
-                    x, y, deg, rect = x0 + t, y0 + gap, 180, (x0 + t - w / 2, y0, x0 + t + w / 2, y0 + gap + d)
+                    x, y, deg, rect = (
+                        x0 + t,
+                        y0 + gap,
+                        180,
+                        (x0 + t - w / 2, y0, x0 + t + w / 2, y0 + gap + d),
+                    )
                 elif side == "left":
-                    x, y, deg, rect = x0 + gap, y0 + t, 90, (x0, y0 + t - w / 2, x0 + gap + d, y0 + t + w / 2)
+                    x, y, deg, rect = (
+                        x0 + gap,
+                        y0 + t,
+                        90,
+                        (x0, y0 + t - w / 2, x0 + gap + d, y0 + t + w / 2),
+                    )
                 else:
-                    x, y, deg, rect = x1 - gap, y0 + t, 270, (x1 - gap - d, y0 + t - w / 2, x1, y0 + t + w / 2)
+                    x, y, deg, rect = (
+                        x1 - gap,
+                        y0 + t,
+                        270,
+                        (x1 - gap - d, y0 + t - w / 2, x1, y0 + t + w / 2),
+                    )
                 if self.free(rect):
                     return self.put(name, model, x, y, deg, rect)
         return None
@@ -129,7 +150,6 @@ def furnish(room, sets, keep_free, rng):
         f.wall("Kitchen Units", furniture.kitchen(), "back left right")
         f.wall("Fridge", furniture.fridge(), "back left right")
         f.middle("Dining Set", sets["Dining Set"])
-        f.wall("Potted Plant", furniture.plant(rng.randrange(3)), "right left")
     elif kind == "bath":
         f.wall("Bathtub", furniture.bathtub(), "back right left front")
         f.wall("Toilet", furniture.toilet(), "left right back front")
@@ -138,7 +158,6 @@ def furnish(room, sets, keep_free, rng):
         f.wall("Bedroom Set", sets[f"Bedroom Set {fabric.split()[1]}"], "back right left front")
         f.wall("Wardrobe", furniture.wardrobe(), "left right front back")
         f.middle("Rug", furniture.rug(fabric))
-        f.wall("Potted Plant", furniture.plant(rng.randrange(3)), "front right left")
     elif kind == "study":
         f.wall("Work Place", sets["Work Place"], "left back right front")
         f.wall("Bookshelf", furniture.bookshelf(rng.randrange(4)), "right back left front")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shells: the outside of a house (walls, roof, gutters, porch) and its floors and partitions.
 
-House coordinates: the front wall's outer face is y = 0 and faces -y, x = 0 is the main body's middle.
+House coordinates: the front wall's outer face is y = 0 and faces -y; x = 0 is the body's middle.
 """
 
 import math
@@ -39,7 +39,9 @@ def body_walls(builder, design, low, high, height, openings, skip=()):
             long = degrees in (90, 270)
             with builder.at(-THICK if long else 0, 0, 0):
                 full = width + (2 * THICK if long else 0)
-                shifted = [(a + THICK, b, c + THICK, d) if long else (a, b, c, d) for a, b, c, d in holes]
+                shifted = [
+                    (a + THICK, b, c + THICK, d) if long else (a, b, c, d) for a, b, c, d in holes
+                ]
                 if design.cladding == "bricks":
                     walls.bricks(builder, full, height, shifted, design.wall, design.rng())
                 elif design.cladding == "boards":
@@ -83,7 +85,9 @@ def main_roof(design, wing):
                     walls.gable(roof, depth, tip, THICK, design.gable_wall, boarded)
         for x, side in ((length * 0.27, 0.5), (-length * 0.3, 0.4))[: design.chimneys]:
             top = rise + (0.9 if design.roof == "gable" else 0.8)
-            roofs.chimney(roof, x if design.roof == "gable" else x * 0.3, side, 0, top, design.rng())
+            roofs.chimney(
+                roof, x if design.roof == "gable" else x * 0.3, side, 0, top, design.rng()
+            )
     reach = depth / 2 + over
     half = length / 2 + (0.4 if design.roof == "gable" else over)
     with pipes.at(0, d / 2, height, 90 if turned else 0):
@@ -114,7 +118,7 @@ def main_roof(design, wing):
 
 
 def wing_roof(design, wing):
-    """Roof of the wing in front of the main body: gable with its ridge along y, or a flat terrace."""
+    """Roof of the wing in front of the body: gable with its ridge along y, or a flat terrace."""
     roof = MeshBuilder()
     height = PLINTH + STOREY
     width, middle = wing.x1 - wing.x0, (wing.x0 + wing.x1) / 2
@@ -127,8 +131,18 @@ def wing_roof(design, wing):
             walls.gable(roof, width, width / 2 * math.tan(pitch), THICK, design.gable_wall, True)
         return roof
     roof.box((wing.x0, wing.y0, height), (wing.x1, 0, height + 0.2), "Paving")
-    roof.rounded_box((wing.x0 - 0.15, wing.y0 - 0.15, height + 0.0), (wing.x1 + 0.15, -0.02, height + 0.16), 0.04, "Stone")
-    rail = [(wing.x0 + 0.1, -0.1), (wing.x0 + 0.1, wing.y0 + 0.1), (wing.x1 - 0.1, wing.y0 + 0.1), (wing.x1 - 0.1, -0.1)]
+    roof.rounded_box(
+        (wing.x0 - 0.15, wing.y0 - 0.15, height + 0.0),
+        (wing.x1 + 0.15, -0.02, height + 0.16),
+        0.04,
+        "Stone",
+    )
+    rail = [
+        (wing.x0 + 0.1, -0.1),
+        (wing.x0 + 0.1, wing.y0 + 0.1),
+        (wing.x1 - 0.1, wing.y0 + 0.1),
+        (wing.x1 - 0.1, -0.1),
+    ]
     for a, b in zip(rail, rail[1:]):
         span = math.hypot(b[0] - a[0], b[1] - a[1])
         count = max(3, round(span / 0.24))
@@ -137,7 +151,9 @@ def wing_roof(design, wing):
             profile = [(0.05, 0.2), (0.03, 0.26), (0.06, 0.42), (0.03, 0.62), (0.05, 0.68)]
             roof.lathe(profile, "Trim White", 10, (x, y, height))
         low = (min(a[0], b[0]) - 0.08, min(a[1], b[1]) - 0.08, height + 0.68)
-        roof.rounded_box(low, (max(a[0], b[0]) + 0.08, max(a[1], b[1]) + 0.08, height + 0.76), 0.02, "Trim White")
+        roof.rounded_box(
+            low, (max(a[0], b[0]) + 0.08, max(a[1], b[1]) + 0.08, height + 0.76), 0.02, "Trim White"
+        )
     return roof
 
 
@@ -145,7 +161,11 @@ def porch(design, door_x):
     """Platform, steps, two or four posts and a lean-to roof over the front door."""
     b = MeshBuilder()
     wide = design.porch == "veranda"
-    x0, x1 = (-design.width / 2 + 0.25, design.width / 2 - 0.25) if wide else (door_x - 0.55, door_x + 1.6)
+    x0, x1 = (
+        (-design.width / 2 + 0.25, design.width / 2 - 0.25)
+        if wide
+        else (door_x - 0.55, door_x + 1.6)
+    )
     deep = 1.9 if wide else 1.5
     b.rounded_box((x0, -deep, 0), (x1, -0.045, 0.26), 0.03, "Stone")
     b.rounded_box((door_x - 0.2, -deep - 0.35, 0), (door_x + 1.25, -deep, 0.13), 0.03, "Stone")
@@ -153,16 +173,32 @@ def porch(design, door_x):
     if wide:
         posts = [x0 + 0.15 + (x1 - x0 - 0.3) * k / 4 for k in range(5)]
     for x in posts:
-        profile = [(0.12, 0.26), (0.12, 0.34), (0.075, 0.38), (0.085, 1.2), (0.07, 2.36), (0.11, 2.4), (0.11, 2.48)]
+        profile = [
+            (0.12, 0.26),
+            (0.12, 0.34),
+            (0.075, 0.38),
+            (0.085, 1.2),
+            (0.07, 2.36),
+            (0.11, 2.4),
+            (0.11, 2.48),
+        ]
         b.lathe(profile, "Trim White", 16, (x, -deep + 0.15, 0))
-    b.rounded_box((x0 + 0.02, -deep + 0.05, 2.48), (x1 - 0.02, -deep + 0.25, 2.62), 0.015, "Trim White")
+    b.rounded_box(
+        (x0 + 0.02, -deep + 0.05, 2.48), (x1 - 0.02, -deep + 0.25, 2.62), 0.015, "Trim White"
+    )
     if wide:
         for a, c in zip(posts, posts[1:]):
             if a < door_x + 0.5 < c:
                 continue
             for k in range(1, 12):
                 x = a + (c - a) * k / 12
-                b.rounded_box((x - 0.02, -deep + 0.13, 0.3), (x + 0.02, -deep + 0.17, 1.1), 0.006, "Trim White", 1)
+                b.rounded_box(
+                    (x - 0.02, -deep + 0.13, 0.3),
+                    (x + 0.02, -deep + 0.17, 1.1),
+                    0.006,
+                    "Trim White",
+                    1,
+                )
             b.rounded_box((a, -deep + 0.1, 1.1), (c, -deep + 0.2, 1.16), 0.015, "Trim White")
     tilt = math.radians(10)
     frame = Matrix.Translation(((x0 + x1) / 2, -deep - 0.15, 2.72)) @ Matrix.Rotation(tilt, 4, "X")
@@ -177,11 +213,22 @@ def stairs(x, y):
     b = MeshBuilder()
     for k in range(13):
         z = STOREY * (k + 1) / 14
-        b.rounded_box((x, y + 0.25 * k, z - 0.04), (x + 0.9, y + 0.25 * k + 0.29, z), 0.012, "Wood Light")
-        b.box((x + 0.02, y + 0.25 * k + 0.03, z - 0.2), (x + 0.88, y + 0.25 * k + 0.05, z - 0.04), "Trim White")
+        b.rounded_box(
+            (x, y + 0.25 * k, z - 0.04), (x + 0.9, y + 0.25 * k + 0.29, z), 0.012, "Wood Light"
+        )
+        b.box(
+            (x + 0.02, y + 0.25 * k + 0.03, z - 0.2),
+            (x + 0.88, y + 0.25 * k + 0.05, z - 0.04),
+            "Trim White",
+        )
     for k in range(0, 13, 2):
         z = STOREY * (k + 1) / 14
-        b.tube([(x + 0.87, y + 0.25 * k + 0.15, z), (x + 0.87, y + 0.25 * k + 0.15, z + 0.9)], 0.018, "Wood Dark", 8)
+        b.tube(
+            [(x + 0.87, y + 0.25 * k + 0.15, z), (x + 0.87, y + 0.25 * k + 0.15, z + 0.9)],
+            0.018,
+            "Wood Dark",
+            8,
+        )
     top = STOREY * 13 / 14 + 0.9
     b.tube([(x + 0.87, y + 0.1, 1.05), (x + 0.87, y + 3.2, top)], 0.03, "Wood Dark", 10)
     return b

@@ -15,11 +15,12 @@ import fittings
 import ground
 import houses
 import materials
+import walls
 from library import Library, place
 from mesh_builder import MeshBuilder
 
 PLOTS = 11
-# How each house is made: its own meshes, linked duplicates of a design's meshes, or an instancing empty
+# How a house is made: own meshes, linked duplicates of a design's, or an instancing empty
 MAKES = ("own", "instance", "duplicate", "instance", "own", "instance", "duplicate")
 STREET_TREES = ("Linden", "Maple", "Cherry", "Oak", "Birch", "Linden")
 GARDEN_TREES = ("Oak", "Birch", "Spruce", "Cherry", "Maple", "Linden", "Poplar", "Spruce")
@@ -92,13 +93,15 @@ class Street:
         self.counts["trees"] += 1
 
     def car(self, collection, plot, x, y, degrees, z):
-        """A car: body with an object-linked paint slot and parented wheels, or an instancing empty."""
+        """A car: body with object-linked paint and parented wheels, or an instancing empty."""
         rng = self.rng
         kind = rng.randrange(len(self.library.cars))
         model = self.library.cars[kind]
         self.counts["cars"] += 1
         if self.counts["cars"] % 4 == 0:
-            self.put(collection, model.name, self.library.car_collections[kind], plot, x, y, degrees, z)
+            self.put(
+                collection, model.name, self.library.car_collections[kind], plot, x, y, degrees, z
+            )
             return
         body = self.put(collection, model.name, model.body, plot, x, y, degrees, z)
         paint = rng.choice(materials.CAR_PAINTS)
@@ -123,7 +126,9 @@ class Street:
         hx = half - 1.1 - house.high[0]
         hy = ground.PAVEMENT + 5.6 + rng.uniform(0, 1.2)
         mirror = Matrix.Diagonal((m, 1, 1, 1))
-        stretch = Matrix.Diagonal((1, 1.0 if make != "instance" else rng.choice((1, 1, 1.04)), 1, 1))
+        stretch = Matrix.Diagonal(
+            (1, 1.0 if make != "instance" else rng.choice((1, 1, 1.04)), 1, 1)
+        )
         matrix = plot @ mirror @ Matrix.Translation((hx, hy, 0)) @ stretch
         if make == "instance":
             empty = place(home, house.design.name, lib.house_collections[index])
@@ -134,7 +139,9 @@ class Street:
         garden = Library.child(home, f"House {number} Garden")
         self.garden(garden, number, plot, m, half, house, hx, hy)
         species = STREET_TREES[block_index]
-        self.tree(self.woods, species, plot, half, 5.35, 0.82 if species == "Oak" else 0.95)
+        self.tree(
+            self.woods, species, plot, half, 5.35, 0.68 if species in ("Oak", "Maple") else 0.82
+        )
         self.put(self.fittings, "Street Lamp", lib.lamp, plot, 0.0, 5.0, -90)
         self.counts["lamps"] += 1
         if number % 3 == 0:
@@ -146,14 +153,22 @@ class Street:
         rng, lib = self.rng, self.library
         path = hx + house.door_x
         garage = house.design.garage
-        drive = (hx + house.high[0] - 3.1, hx + house.high[0] - 0.4) if garage else (-half + 0.5, -half + 3.4)
+        drive = (
+            (hx + house.high[0] - 3.1, hx + house.high[0] - 0.4)
+            if garage
+            else (-half + 0.5, -half + 3.4)
+        )
         drive_end = hy + 1.2 if garage else hy + 3.0
         flat = plot @ Matrix.Diagonal((m, 1, 1, 1))
         ground.drive(self.drives, flat, (drive[0], ground.PAVEMENT), (drive[1], drive_end))
-        ground.drive(self.drives, flat, (drive[0], ground.KERB), (drive[1], ground.VERGE), "Paving", False)
+        ground.drive(
+            self.drives, flat, (drive[0], ground.KERB), (drive[1], ground.VERGE), "Paving", False
+        )
         veranda = house.design.porch == "veranda"
         porch = hy - (2.26 if veranda else 1.86 if house.design.porch else 0.86)
-        ground.drive(self.drives, flat, (path - 0.6, ground.PAVEMENT), (path + 0.6, porch), "Paving")
+        ground.drive(
+            self.drives, flat, (path - 0.6, ground.PAVEMENT), (path + 0.6, porch), "Paving"
+        )
         gaps = sorted(((path - 0.75, path + 0.75), (drive[0] - 0.15, drive[1] + 0.15)))
         x, spans = -half + 0.15, []
         for a, c in gaps + [(half - 0.15, half)]:
@@ -167,14 +182,31 @@ class Street:
             if style == 0:
                 self.put(garden, "Picket Fence", picket(length), plot, left, 8.25)
             elif style == 1:
-                self.put(garden, "Hedge", hedge(length, 0.9, int(length * 10) % 3), plot, left, 8.55)
+                self.put(
+                    garden, "Hedge", hedge(length, 0.9, int(length * 10) % 3), plot, left, 8.55
+                )
             else:
                 self.put(garden, "Low Wall", low_wall(length), plot, left, 8.2)
         self.put(garden, "Board Fence", boarded(22.0), plot, half, hy + 3.0, 90)
-        self.put(garden, "Back Hedge", hedge(round(2 * half - 0.3, 1), 1.6, number % 4), plot, -half + 0.1, ground.BACK)
+        self.put(
+            garden,
+            "Back Hedge",
+            hedge(round(2 * half - 0.3, 1), 1.6, number % 4),
+            plot,
+            -half + 0.1,
+            ground.BACK,
+        )
         self.put(garden, "Mailbox", lib.mailbox, plot, m * (path + 1.05), 8.9)
         if not garage:
-            self.put(garden, "Wheelie Bin", lib.wheelie, plot, m * (hx + house.low[0] - 0.55), hy + 1.2, 90 * m)
+            self.put(
+                garden,
+                "Wheelie Bin",
+                lib.wheelie,
+                plot,
+                m * (hx + house.low[0] - 0.55),
+                hy + 1.2,
+                90 * m,
+            )
         wing = bool(house.design.wing)
         if not garage and not wing:
             for k in range(2):
@@ -188,16 +220,42 @@ class Street:
                 spot = right - 1.4 * k
                 if spot - 0.8 > path + 1.0:
                     size = rng.uniform(0.9, 1.3)
-                    self.put(garden, "Shrub", shrub, plot, m * spot, 9.6 + rng.uniform(0, 0.5), rng.uniform(0, 360), 0, (size, size, size))
+                    self.put(
+                        garden,
+                        "Shrub",
+                        shrub,
+                        plot,
+                        m * spot,
+                        9.6 + rng.uniform(0, 0.5),
+                        rng.uniform(0, 360),
+                        0,
+                        (size, size, size),
+                    )
             if not wing and rng.random() < 0.45:
-                self.tree(garden, rng.choice(("Cherry", "Birch", "Maple")), plot, m * (right - 1.6), 10.6, 0.55)
+                self.tree(
+                    garden,
+                    rng.choice(("Cherry", "Birch", "Maple")),
+                    plot,
+                    m * (right - 1.6),
+                    10.6,
+                    0.55,
+                )
         for k in range(rng.choice((1, 2, 2))):
             spot = -half + 4.0 + (2 * half - 8.0) * (k + rng.random() * 0.5) / 1.6
             species = rng.choice(GARDEN_TREES)
-            self.tree(garden, species, plot, spot, hy + house.high[1] + 6.5 + rng.uniform(0, 4.5), 0.85)
+            self.tree(
+                garden, species, plot, spot, hy + house.high[1] + 6.5 + rng.uniform(0, 4.5), 0.85
+            )
         if rng.random() < 0.6 and not (garage and drive_end - ground.PAVEMENT < 6):
             y = (ground.PAVEMENT + drive_end) / 2 + 0.6
-            self.car(garden, flat if False else plot, m * (drive[0] + drive[1]) / 2, y, rng.choice((90, -90)), 0.03)
+            self.car(
+                garden,
+                plot,
+                m * (drive[0] + drive[1]) / 2,
+                y,
+                rng.choice((90, -90)),
+                0.03,
+            )
         elif not garage and rng.random() < 0.75:
             self.car(self.traffic, plot, m * 1.5 + rng.uniform(-0.5, 0.5), 3.45, 0, ground.ROAD_TOP)
 
@@ -211,18 +269,25 @@ class Street:
     def countryside(self):
         """Copses and field trees around the street."""
         rng = self.rng
-        for x, y, count in ((-240, 150, 7), (60, 210, 9), (260, 130, 6), (-90, -130, 8), (190, -190, 8), (-330, -100, 6)):
+        for x, y, count in (
+            (-240, 150, 7),
+            (60, 210, 9),
+            (260, 130, 6),
+            (-90, -130, 8),
+            (190, -190, 8),
+            (-330, -100, 6),
+        ):
             for _ in range(count):
                 species = rng.choice(("Oak", "Spruce", "Poplar", "Linden", "Spruce"))
                 place_x, place_y = x + rng.gauss(0, 16), y + rng.gauss(0, 9)
-                self.tree(self.woods, species, Matrix.Translation((0, 0, -0.16)), place_x, place_y, 1.1)
+                self.tree(
+                    self.woods, species, Matrix.Translation((0, 0, -0.16)), place_x, place_y, 1.1
+                )
 
 
 @functools.lru_cache(maxsize=None)
 def low_wall(length):
     """Garden wall of bricks with a coping."""
-    import walls
-
     b = MeshBuilder()
     rng = random.Random(f"wall {length}")
     b.box((0, 0.02, 0), (length, 0.22, 0.7), "Mortar")

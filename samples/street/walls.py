@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Walls and slabs with openings, and the bricks and boards on them.
 
-A wall stands along x from 0 to its width, rises along z, faces -y: its outer face is y = 0, its inner
-face y = thickness. An opening is (x0, z0, x1, z1).
+A wall stands along x from 0 to its width, rises along z, faces -y: its outer face is y = 0, its
+inner face y = thickness. An opening is (x0, z0, x1, z1).
 """
 
 import math
@@ -54,7 +54,7 @@ def wall(builder, width, height, thickness, openings, outer, inner, reveal):
 
 
 def floor(builder, low, high, thickness, openings, top, bottom):
-    """Horizontal slab: low and high are (x, y) corners at the current height, thickness hangs down."""
+    """Horizontal slab: low and high are (x, y) corners of its top; thickness hangs down."""
     holes = [(a - low[0], b - low[1], c - low[0], d - low[1]) for a, b, c, d in openings]
     with builder.moved(Matrix.Translation((low[0], low[1], 0)) @ FLAT):
         wall(builder, high[0] - low[0], high[1] - low[1], thickness, holes, top, bottom, bottom)
@@ -63,7 +63,9 @@ def floor(builder, low, high, thickness, openings, top, bottom):
 def free_spans(width, low, high, openings, margin):
     """Stretches of 0..width that no opening touches between two heights."""
     taken = sorted(
-        (a - margin, c + margin) for a, b, c, d in openings if b - margin < high and d + margin > low
+        (a - margin, c + margin)
+        for a, b, c, d in openings
+        if b - margin < high and d + margin > low
     )
     spans, x = [], 0.0
     for a, c in taken:
@@ -75,7 +77,7 @@ def free_spans(width, low, high, openings, margin):
     return spans
 
 
-def bricks(builder, width, height, openings, material, rng, size=(0.3, 0.1), start=0.0):
+def bricks(builder, width, height, openings, material, rng, size=(0.48, 0.15), start=0.0):
     """Stretcher bond of closed boxes that stand a little out of the wall."""
     length, course = size
     joint = 0.012
@@ -88,7 +90,9 @@ def bricks(builder, width, height, openings, material, rng, size=(0.3, 0.1), sta
             while x < b:
                 x0, x1 = max(x, a), min(x + length - joint, b)
                 if x1 - x0 > 0.03:
-                    builder.box((x0, -0.012 - 0.006 * rng.random(), low), (x1, 0.01, high), material)
+                    builder.box(
+                        (x0, -0.012 - 0.006 * rng.random(), low), (x1, 0.01, high), material
+                    )
                 x += length
 
 
