@@ -31,6 +31,7 @@ Attributes attributes_of(const Shell& shell, const glm::dmat3& axes, const glm::
     for (int i = 0; i < 3; ++i)
         along[i][i] = shell.area * shell.variances[i];
     out.moments = axes * along * glm::transpose(axes);
+    out.axes = eigen_symmetric(out.moments).axes;
     return out;
 }
 
@@ -54,6 +55,7 @@ Attributes attributes_of(const Mesh& mesh, double sides) {
     }
     out.centroid = first / out.visible_area;
     out.moments = second - out.visible_area * glm::outerProduct(out.centroid, out.centroid);
+    out.axes = eigen_symmetric(out.moments).axes;
     return out;
 }
 
