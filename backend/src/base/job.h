@@ -46,10 +46,9 @@ public:
     }
 
     /// Names what is being done now.
-    void stage(Stage now) const { stage(static_cast<int32_t>(now)); }
-    void stage(int32_t number) const {
+    void stage(Stage now) const {
         if (stage_ != nullptr)
-            *stage_ = number;
+            *stage_ = static_cast<int32_t>(now);
     }
 
     /// The same job seen by a step that covers `begin`...`end` of the bar.

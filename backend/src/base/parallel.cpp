@@ -17,16 +17,25 @@ void parallel_for(size_t count, const std::function<void(size_t)>& body) {
             body(i);
         return;
     }
-    tbb::task_arena arena(thread_limit > 0 ? thread_limit : tbb::task_arena::automatic);
-    arena.execute([&] {
+    const int limit = thread_limit;
+    const auto loop = [&] {
         tbb::parallel_for(
             tbb::blocked_range<size_t>(0, count, 1),
             [&](const tbb::blocked_range<size_t>& range) {
+                const ThreadLimit same(limit);  // loops started inside are limited alike
                 for (size_t i = range.begin(); i < range.end(); ++i)
                     body(i);
             },
             tbb::simple_partitioner());
-    });
+    };
+    if (limit > 0 && tbb::this_task_arena::max_concurrency() != limit)
+        tbb::task_arena(limit).execute(loop);
+    else
+        loop();
+}
+
+int hardware_threads() {
+    return thread_limit > 0 ? thread_limit : tbb::this_task_arena::max_concurrency();
 }
 
 ThreadLimit::ThreadLimit(int threads) : previous_(thread_limit) {

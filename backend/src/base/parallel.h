@@ -12,6 +12,9 @@ namespace lodestone {
 /// is rethrown after the others have stopped.
 void parallel_for(size_t count, const std::function<void(size_t)>& body);
 
+/// Threads a parallel loop started here would use.
+int hardware_threads();
+
 /// As long as it lives, parallel loops started on this thread use at most `threads` threads
 /// (0 = all).
 class ThreadLimit {

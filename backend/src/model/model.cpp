@@ -10,6 +10,9 @@ namespace {
 constexpr uint64_t kBytesPerTriangle = 245;
 constexpr uint64_t kBytesPerPrimitive = 1500;
 
+// Deeper nesting is a mistake of some program; it would exhaust the stacks of tile viewers.
+constexpr size_t kDeepest = 1000;
+
 enum class Mark : uint8_t { New, Open, Done };
 
 void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
@@ -34,6 +37,9 @@ void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
                 if (marks[child] == Mark::Open)
                     fail(Status::InvalidArgument, "group '", object.name, "' contains '",
                          model.objects[child].name, "', which contains it");
+                if (stack.size() >= kDeepest)
+                    fail(Status::InvalidArgument, "group '", object.name,
+                         "' is nested deeper than ", kDeepest, " levels");
                 if (marks[child] == Mark::New)
                     stack.push_back({child, 0});
                 continue;

@@ -21,6 +21,7 @@ struct Object {
     std::string name;  // the user's
     Role role = Role::Ordinary;
     Hash source_hash = 0;  // of the finest representation and of all below it
+    Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none
     std::optional<Attributes> attributes;
     /// Index = LOD number: 0 is the finest, errors rise strictly. Only [0] may be an assembly.
     std::vector<Representation> representations;

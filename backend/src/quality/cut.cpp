@@ -30,19 +30,22 @@ const Representation* pick(const Object& object, const View& view, double enlarg
 }  // namespace
 
 Cut choose(const Model& model, const View& view, const Job& job) {
+    if (model.root >= model.objects.size())
+        fail(Status::InvalidArgument, "the model has no root object");
+    return choose_below(model, model.root, view, job);
+}
+
+Cut choose_below(const Model& model, ObjectIndex root_object, const View& view, const Job& job) {
     if (view.width <= 0 || view.height <= 0)
         fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
     if (!(view.pixel_error >= 0))
         fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
              "; it must be 0 or more");
-    if (model.root >= model.objects.size())
-        fail(Status::InvalidArgument, "the model has no root object");
-
     Cut cut;
     std::set<Hash> distinct;
     std::vector<Node> stack;
     Node root;
-    root.object = model.root;
+    root.object = root_object;
     stack.push_back(root);
     while (!stack.empty()) {
         Node node = stack.back();
@@ -58,6 +61,7 @@ Cut choose(const Model& model, const View& view, const Job& job) {
         if (choice == nullptr)
             continue;
         node.lod = static_cast<uint32_t>(choice - object.representations.data());
+        node.kind = choice->summary.kind;
         const auto index = static_cast<uint32_t>(cut.nodes.size());
         if (choice->summary.kind == Kind::Assembly) {
             node.opened = true;

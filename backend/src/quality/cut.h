@@ -19,6 +19,7 @@ struct Node {
     uint32_t parent = kNoParent;  // index of the opened node above it
     uint32_t placement = 0;       // index in that node's assembly
     uint32_t lod = 0;             // the chosen representation's LOD number; 0 of an opened group
+    Kind kind = Kind::Assembly;   // of the choice
     bool opened = false;
     double error_px = 0;  // on screen; 0 when opened
     Affine world;
@@ -35,10 +36,13 @@ struct Cut {
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
 };
 
-/// Chooses for the camera class. Pure: depends on its arguments only. Groups good enough are never
+/// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. Groups good enough are never
 /// opened. Throws Error(InvalidArgument) for a view without size or a model without root.
 /// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
 Cut choose(const Model& model, const View& view, const Job& job = {});
+
+/// The same for the part of the model below one object, in that object's frame.
+Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
 
 /// Names of the placements from the root to a node, joined by '/'.
 std::string path_of(const Model& model, const Cut& cut, uint32_t node);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small models with known answers, shared by the tests.
+#pragma once
+
+#include "backend/shapes.h"
+#include "model/model.h"
+
+namespace lodestone::models {
+
+inline ObjectIndex add_leaf(Model& model, const std::string& uid, Mesh mesh, Material material = {},
+                            Role role = Role::Ordinary) {
+    Object object;
+    object.uid = object.name = uid;
+    object.role = role;
+    Representation finest;
+    finest.materials = {static_cast<uint32_t>(model.materials.size())};
+    model.materials.push_back(std::move(material));
+    finest.payload = std::make_shared<const Mesh>(std::move(mesh));
+    summarize(finest, model);
+    object.representations.push_back(std::move(finest));
+    model.objects.push_back(std::move(object));
+    return static_cast<ObjectIndex>(model.objects.size() - 1);
+}
+
+inline Affine moved(double x, double y, double z) {
+    Affine transform;
+    transform.offset = {x, y, z};
+    return transform;
+}
+
+inline ObjectIndex add_group(Model& model, const std::string& uid,
+                             std::vector<Placement> placements) {
+    Object object;
+    object.uid = object.name = uid;
+    Representation finest;
+    finest.summary.kind = Kind::Assembly;
+    auto assembly = std::make_shared<Assembly>();
+    assembly->placements = std::move(placements);
+    finest.payload = std::shared_ptr<const Assembly>(std::move(assembly));
+    object.representations.push_back(std::move(finest));
+    model.objects.push_back(std::move(object));
+    return static_cast<ObjectIndex>(model.objects.size() - 1);
+}
+
+/// `count` balls of 1280 triangles in a row along x, 3 m apart, in pairs, in one group.
+inline Model row_of_balls(int count) {
+    Model model;
+    const ObjectIndex ball = add_leaf(model, "ball", shapes::sphere(1, 3));
+    const ObjectIndex pair =
+        add_group(model, "pair", {{ball, moved(0, 0, 0), "left"}, {ball, moved(3, 0, 0), "right"}});
+    std::vector<Placement> pairs;
+    for (int i = 0; i < count / 2; ++i)
+        pairs.push_back({pair, moved(6.0 * i, 0, 0), "pair " + std::to_string(i)});
+    model.root = add_group(model, "row", std::move(pairs));
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+}  // namespace lodestone::models

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the cut: each path crossed once, the cheapest that is good enough, groups never opened in
+// vain.
+#include "backend/models.h"
+#include "quality/criterion.h"
+#include "quality/cut.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+
+namespace {
+
+View view_from(double distance, double pixel_error) {
+    View view;
+    view.camera.position = {0, -distance, 0};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {1, 0, 0};  // a pixel covers 1/640 of the distance
+    view.camera.up = {0, 0, 0.5625};
+    view.pixel_error = pixel_error;
+    return view;
+}
+
+/// Adds a coarser level with a made-up error.
+void add_level(Model& model, ObjectIndex object, double error, const Mesh& mesh) {
+    Representation level;
+    level.materials = {0};
+    level.payload = std::make_shared<const Mesh>(mesh);
+    summarize(level, model);
+    level.summary.error = error;
+    model.objects[object].representations.push_back(std::move(level));
+}
+
+Model balls_with_levels() {
+    Model model = models::row_of_balls(8);
+    add_level(model, 0, 0.01, shapes::sphere(1, 1));
+    add_level(model, 0, 0.1, shapes::sphere(1, 0));
+    add_level(model, 1, 0.2, shapes::cube());  // the pair
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+}  // namespace
+
+TEST(Criterion, PixelGrowsWithDistanceAndNeverBelowTheNearClip) {
+    const View view = view_from(10, 1);
+    EXPECT_NEAR(quality::pixel_size(view, 64), 0.1, 1e-12);
+    EXPECT_EQ(quality::pixel_size(view, 0), quality::pixel_size(view, view.camera.near_clip));
+    View flat = view;
+    flat.camera.orthographic = true;
+    EXPECT_EQ(quality::pixel_size(flat, 1), quality::pixel_size(flat, 1000));
+    EXPECT_NEAR(quality::error_on_screen(view, 0.1, 2, 64), 2, 1e-12);
+}
+
+TEST(Cut, ModelWithoutRootIsRefused) {
+    EXPECT_THROW(quality::choose(Model{}, View{}), Error);
+    View view;
+    view.width = 0;
+    EXPECT_THROW(quality::choose(models::row_of_balls(2), view), Error);
+    view = View{};
+    view.pixel_error = std::nan("");
+    EXPECT_THROW(quality::choose(models::row_of_balls(2), view), Error);
+}
+
+TEST(Cut, EmptyGroupDrawsNothing) {
+    Model model;
+    model.root = models::add_group(model, "empty", {});
+    summarize_assemblies(model, bottom_up(model));
+    EXPECT_TRUE(quality::choose(model, View{}).chosen.empty());
+}
+
+TEST(Cut, ZeroPixelErrorDrawsTheOriginalsOnce) {
+    const Model model = balls_with_levels();
+    const quality::Cut cut = quality::choose(model, view_from(1000, 0));
+    ASSERT_EQ(cut.chosen.size(), 8u);
+    for (const uint32_t index : cut.chosen)
+        EXPECT_EQ(cut.nodes[index].lod, 0u);
+    EXPECT_EQ(cut.triangles, 8u * 1280u);
+    EXPECT_EQ(cut.largest_error_px, 0);
+    EXPECT_EQ(cut.kinds.at("mesh"), 8u);
+}
+
+TEST(Cut, FarGroupsAreNeverOpened) {
+    const Model model = balls_with_levels();
+    const quality::Cut cut = quality::choose(model, view_from(1000, 1));
+    EXPECT_EQ(cut.chosen.size(), 4u);      // one stand-in a pair
+    EXPECT_EQ(cut.nodes.size(), 1u + 4u);  // the row and the pairs
+    EXPECT_EQ(quality::path_of(model, cut, cut.chosen[2]), "pair 2");
+    EXPECT_LE(cut.largest_error_px, 1);
+    EXPECT_GT(cut.largest_error_px, 0);
+}
+
+TEST(Cut, EveryChoiceIsTheCheapestThatIsGoodEnough) {
+    const Model model = balls_with_levels();
+    for (const double distance : {2.0, 9.0, 33.0, 150.0, 700.0}) {
+        const View view = view_from(distance, 1);
+        const quality::Cut cut = quality::choose(model, view);
+        for (const uint32_t index : cut.chosen) {
+            const quality::Node& node = cut.nodes[index];
+            const Object& object = model.objects[node.object];
+            const double z =
+                lodestone::distance(transformed(object.bound(), node.world), view.camera.position);
+            const auto good = [&](size_t lod) {
+                return quality::good_enough(view, object.representations[lod].summary.error, 1, z);
+            };
+            EXPECT_TRUE(good(node.lod));
+            if (node.lod + 1 < object.representations.size()) {
+                EXPECT_FALSE(good(node.lod + 1));
+            }
+        }
+    }
+}
+
+TEST(Cut, CoarserPixelErrorNeverDrawsMore) {
+    const Model model = balls_with_levels();
+    uint64_t last = ~uint64_t{0};
+    for (const double pixel_error : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 64.0}) {
+        const quality::Cut cut = quality::choose(model, view_from(20, pixel_error));
+        EXPECT_LE(cut.triangles, last);
+        EXPECT_LE(cut.largest_error_px, pixel_error + 1e-12);
+        last = cut.triangles;
+    }
+}
+
+TEST(Cut, EnlargedPlacementIsHeldToItsStretch) {
+    Model model;
+    const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(1, 3));
+    Affine ten = models::moved(0, 0, 0);
+    ten.linear = glm::dmat3(10.0);
+    model.root = models::add_group(model, "root", {{ball, ten, "big"}});
+    add_level(model, ball, 0.01, shapes::cube());
+    summarize_assemblies(model, bottom_up(model));
+    // 0.01 m enlarged ten times is one pixel at 64 m from the bound.
+    EXPECT_EQ(quality::choose(model, view_from(64 + 10 - 0.1, 1)).kinds.at("mesh"), 1u);
+    EXPECT_EQ(quality::choose(model, view_from(64 + 10 - 0.1, 1)).triangles, 1280u);
+    EXPECT_EQ(quality::choose(model, view_from(64 + 10 + 0.1, 1)).triangles, 12u);
+}
+
+TEST(Cut, OnlyKindsTheViewCanDrawAreChosen) {
+    Model model = balls_with_levels();
+    Representation box;
+    box.summary.kind = Kind::Box;
+    box.payload = Primitive{};
+    box.materials = {0};
+    summarize(box, model);
+    box.summary.error = 0.5;
+    model.objects[1].representations.push_back(box);
+    EXPECT_EQ(quality::choose(model, view_from(1000, 2)).kinds.at("box"), 4u);
+    View view = view_from(1000, 2);
+    view.kinds = mask_of(Kind::Mesh);
+    EXPECT_EQ(quality::choose(model, view).kinds.count("box"), 0u);
+    EXPECT_EQ(quality::choose(model, view).kinds.at("mesh"), 4u);
+}
+
+TEST(Cut, CycleIsRefusedWithBothNames) {
+    Model model;
+    const ObjectIndex a = models::add_group(model, "a", {});
+    const ObjectIndex b = models::add_group(model, "b", {{a, Affine{}, ""}});
+    auto assembly = std::make_shared<Assembly>();
+    assembly->placements = {{b, Affine{}, ""}};
+    model.objects[a].representations[0].payload = std::shared_ptr<const Assembly>(assembly);
+    model.root = a;
+    try {
+        bottom_up(model);
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "group 'b' contains 'a', which contains it");
+    }
+}
+
+TEST(Cut, CancelledJobStops) {
+    const int32_t cancel = 1;
+    const Job job(&cancel, nullptr, nullptr);
+    EXPECT_THROW(quality::choose(models::row_of_balls(4), view_from(1, 1), job), Error);
+}
+
+TEST(Cut, ManyOccurrencesOfDeepSharing) {
+    // 8^5 = 32,768 occurrences of one ball through five shared groups.
+    Model model;
+    ObjectIndex below = models::add_leaf(model, "ball", shapes::sphere(0.1, 1));
+    double step = 1;
+    for (int level = 0; level < 5; ++level) {
+        std::vector<Placement> eight;
+        for (int i = 0; i < 8; ++i)
+            eight.push_back({below, models::moved((i & 1) * step, (i & 2) * step, (i & 4) * step),
+                             std::to_string(i)});
+        below = models::add_group(model, "group " + std::to_string(level), std::move(eight));
+        step *= 8;
+    }
+    model.root = below;
+    summarize_assemblies(model, bottom_up(model));
+    EXPECT_EQ(totals(model).occurrences, 32768u);
+    const quality::Cut cut = quality::choose(model, view_from(10, 1));
+    EXPECT_EQ(cut.chosen.size(), 32768u);
+    size_t seen = 0;
+    for_each_occurrence(model, [&](const Occurrence& occurrence) {
+        EXPECT_EQ(occurrence.world.offset, cut.nodes[cut.chosen[seen]].world.offset);
+        ++seen;
+    });
+    EXPECT_EQ(seen, 32768u);
+}
