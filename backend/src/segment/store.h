@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Store: a model on disk, a 3D Tiles 1.1 tileset folder (DESIGN 6).
+//   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
+//   r/<16 hex>.glb    one representation each, named by content hash
+//   lock              held by the one writer
+#pragma once
+
+#include "base/job.h"
+#include "model/model.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace lodestone::segment {
+
+class Store {
+public:
+    /// The folder, or the tileset.json in it. Nothing is touched until a call asks for it.
+    explicit Store(const std::filesystem::path& folder);
+
+    const std::filesystem::path& folder() const { return folder_; }
+    /// True when a tileset.json is there.
+    bool exists() const;
+
+    /// The stored model: summaries, assemblies and primitives resident, meshes not.
+    /// Throws Error(Io or BadFile); every index, number and name is checked first.
+    Model read() const;
+
+    /// The mesh of a representation by its summary's hash. Throws Error(Io or BadFile).
+    /// Safe from several threads.
+    std::shared_ptr<const Mesh> load_mesh(Hash hash) const;
+
+    /// Makes the mesh of a representation resident.
+    void load(Representation& representation) const;
+
+    /// Writes what is missing, then replaces tileset.json, then removes representation files that
+    /// neither the new nor the previous tileset.json names. A killed write leaves the old store.
+    /// Representations that are not resident must be in the store already.
+    /// Returns the bytes written. Throws Error(Io), also when another writer is at work.
+    uint64_t write(const Model& model, const Job& job) const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace lodestone::segment

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the store: model -> files -> model is identical, nothing outside is trusted, nothing torn.
+#include "backend/models.h"
+#include "base/files.h"
+#include "segment/json.h"
+#include "segment/store.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path scratch(const std::string& name) {
+    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "store" / name;
+    fs::remove_all(folder);
+    fs::create_directories(folder.parent_path());
+    return folder;
+}
+
+/// Balls with a coarse level, a box and an ellipsoid, a camera, lights, names of all sorts.
+Model rich_model() {
+    Model model = models::row_of_balls(4);
+    model.objects[0].name = "Ball \"1\"\n}\u540d";
+    model.objects[0].uid = "ball";
+    model.objects[0].role = Role::Environment;
+    Attributes attributes;
+    attributes.visible_area = 1.0 / 3.0;
+    attributes.centroid = {0.1, 0.2, 0.3};
+    model.objects[0].attributes = attributes;
+    const auto add = [&](Kind kind, double error, Payload payload) {
+        Representation level;
+        level.summary.kind = kind;
+        level.payload = std::move(payload);
+        level.materials = {0};
+        summarize(level, model);
+        level.summary.error = error;
+        level.summary.max_error = 1.5 * error;
+        model.objects[0].representations.push_back(std::move(level));
+    };
+    Mesh slotted = shapes::cube();
+    slotted.slots.assign(slotted.triangles.size(), 0);
+    add(Kind::Mesh, 0.01, std::make_shared<const Mesh>(slotted));
+    add(Kind::Ellipsoid, 0.1, Primitive{{1, 2, 3}, glm::dmat3(1.0), {0.5, 0.25, 0.125}});
+    add(Kind::Box, 0.7, Primitive{{1, 2, 3}, glm::dmat3(1.0), {1.0 / 3, 0.25, 0.125}});
+    model.objects[0].build_hash = 0x0123456789abcdef;
+    Camera camera;
+    camera.name = "far";
+    camera.position = {1.0 / 7, 2, 3};
+    model.cameras.push_back(camera);
+    Light sun;
+    sun.name = "Sun";
+    sun.power = 3;
+    model.lights.push_back(sun);
+    model.world.color = {0.1, 0.2, 0.3};
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+void expect_same(const Model& a, const Model& b) {
+    ASSERT_EQ(a.objects.size(), b.objects.size());
+    EXPECT_EQ(a.root, b.root);
+    for (size_t i = 0; i < a.objects.size(); ++i) {
+        const Object& x = a.objects[i];
+        const Object& y = b.objects[i];
+        EXPECT_EQ(x.uid, y.uid);
+        EXPECT_EQ(x.name, y.name);
+        EXPECT_EQ(x.role, y.role);
+        EXPECT_EQ(x.source_hash, y.source_hash);
+        EXPECT_EQ(x.build_hash, y.build_hash);
+        EXPECT_EQ(x.attributes.has_value(), y.attributes.has_value());
+        if (x.attributes && y.attributes) {
+            EXPECT_EQ(x.attributes->visible_area, y.attributes->visible_area);
+        }
+        ASSERT_EQ(x.representations.size(), y.representations.size());
+        for (size_t lod = 0; lod < x.representations.size(); ++lod) {
+            const Representation& r = x.representations[lod];
+            const Representation& s = y.representations[lod];
+            EXPECT_EQ(r.summary.kind, s.summary.kind);
+            EXPECT_EQ(r.summary.error, s.summary.error);
+            EXPECT_EQ(r.summary.max_error, s.summary.max_error);
+            EXPECT_EQ(r.summary.hash, s.summary.hash);
+            EXPECT_EQ(r.summary.bound.radius, s.summary.bound.radius);
+            EXPECT_EQ(r.summary.bound.box.low, s.summary.bound.box.low);
+            EXPECT_EQ(r.summary.cost.triangles, s.summary.cost.triangles);
+            EXPECT_EQ(r.materials, s.materials);
+            if (r.summary.kind == Kind::Mesh) {
+                EXPECT_EQ(hash_of(r.mesh()), hash_of(s.mesh()));
+            } else if (r.summary.kind == Kind::Assembly) {
+                ASSERT_EQ(r.assembly().placements.size(), s.assembly().placements.size());
+                for (size_t p = 0; p < r.assembly().placements.size(); ++p) {
+                    EXPECT_EQ(r.assembly().placements[p].object, s.assembly().placements[p].object);
+                    EXPECT_EQ(r.assembly().placements[p].name, s.assembly().placements[p].name);
+                    EXPECT_EQ(r.assembly().placements[p].transform.offset,
+                              s.assembly().placements[p].transform.offset);
+                }
+            } else {
+                EXPECT_EQ(r.primitive().half_size, s.primitive().half_size);
+                EXPECT_EQ(r.primitive().center, s.primitive().center);
+            }
+        }
+    }
+    ASSERT_EQ(a.cameras.size(), b.cameras.size());
+    EXPECT_EQ(a.cameras[0].position, b.cameras[0].position);
+    EXPECT_EQ(a.world.color, b.world.color);
+}
+
+nlohmann::json tileset_of(const fs::path& folder) {
+    return nlohmann::json::parse(read_file(folder / "tileset.json"));
+}
+
+/// Every tile has a box that holds its children's and an error no smaller than theirs.
+void check_tile(const nlohmann::json& tile, const fs::path& folder, size_t& tiles) {
+    ++tiles;
+    ASSERT_TRUE(tile.contains("boundingVolume"));
+    EXPECT_EQ(tile.at("boundingVolume").at("box").size(), 12u);
+    ASSERT_TRUE(tile.contains("content"));
+    EXPECT_TRUE(fs::is_regular_file(folder / tile.at("content").at("uri").get<std::string>()));
+    for (const auto& child : tile.value("children", nlohmann::json::array())) {
+        EXPECT_LE(child.at("geometricError").get<double>(),
+                  tile.at("geometricError").get<double>());
+        check_tile(child, folder, tiles);
+    }
+    if (!tile.contains("children")) {
+        EXPECT_EQ(tile.at("geometricError"), 0);
+    }
+}
+
+}  // namespace
+
+TEST(Store, EmptyModelRoundTrips) {
+    const segment::Store store(scratch("empty"));
+    EXPECT_FALSE(store.exists());
+    EXPECT_THROW(store.read(), Error);
+    store.write(Model{}, {});
+    EXPECT_TRUE(store.exists());
+    EXPECT_TRUE(store.read().objects.empty());
+}
+
+TEST(Store, ModelComesBackIdentical) {
+    const segment::Store store(scratch("rich"));
+    Model model = rich_model();
+    store.write(model, {});
+    Model back = store.read();
+    EXPECT_FALSE(back.objects[0].representations[0].resident());
+    for (Object& object : back.objects) {
+        for (Representation& representation : object.representations)
+            store.load(representation);
+    }
+    expect_same(model, back);
+}
+
+TEST(Store, SecondWriteOfTheSameModelWritesOnlyTheTileset) {
+    const segment::Store store(scratch("again"));
+    const Model model = rich_model();
+    const uint64_t first = store.write(model, {});
+    const auto text = read_file(store.folder() / "tileset.json");
+    EXPECT_EQ(store.write(model, {}), text.size());
+    EXPECT_GT(first, text.size());
+    EXPECT_EQ(read_file(store.folder() / "tileset.json"), text);
+}
+
+TEST(Store, UnusedFilesGoAfterTheNextButOneWrite) {
+    const segment::Store store(scratch("unused"));
+    Model model = rich_model();
+    store.write(model, {});
+    const fs::path gone =
+        store.folder() / segment::file_of(model.objects[0].representations[3].summary.hash);
+    model.objects[0].representations.pop_back();
+    store.write(model, {});
+    EXPECT_TRUE(fs::exists(gone));  // a reader of the previous tileset may still want it
+    store.write(model, {});
+    EXPECT_FALSE(fs::exists(gone));
+}
+
+TEST(Store, TilesHoldTheirChildrenAndErrorsFall) {
+    const segment::Store store(scratch("tiles"));
+    Model model = rich_model();
+    // Groups get a stand-in, so that every tile has content.
+    for (Object& object : model.objects) {
+        if (!object.group())
+            continue;
+        Representation level;
+        level.summary.kind = Kind::Box;
+        level.payload =
+            Primitive{object.bound().center, glm::dmat3(1.0), 0.5 * object.bound().box.size()};
+        level.materials = {0};
+        summarize(level, model);
+        level.summary.error = 0.02;  // finer than the children's coarsest: must be raised
+        object.representations.push_back(level);
+    }
+    store.write(model, {});
+    const nlohmann::json tileset = tileset_of(store.folder());
+    EXPECT_EQ(tileset.at("asset").at("version"), "1.1");
+    size_t tiles = 0;
+    check_tile(tileset.at("root"), store.folder(), tiles);
+    EXPECT_EQ(tiles, 1u + 2u + 4u * 4u);
+    EXPECT_GE(tileset.at("geometricError").get<double>(),
+              tileset.at("root").at("geometricError").get<double>());
+}
+
+TEST(Store, OtherWriterIsRefusedByName) {
+    const segment::Store store(scratch("locked"));
+    const Model model = rich_model();
+    store.write(model, {});
+    const FileLock lock(store.folder() / "lock");
+    EXPECT_THROW(store.write(model, {}), Error);
+    EXPECT_NO_THROW(store.read());  // readers never wait
+}
+
+TEST(Store, CancelledWriteLeavesTheOldStore) {
+    const segment::Store store(scratch("cancelled"));
+    store.write(models::row_of_balls(2), {});
+    const auto before = read_file(store.folder() / "tileset.json");
+    const int32_t cancel = 1;
+    EXPECT_THROW(store.write(rich_model(), Job(&cancel, nullptr, nullptr)), Error);
+    EXPECT_EQ(read_file(store.folder() / "tileset.json"), before);
+}
+
+TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
+    const segment::Store store(scratch("broken"));
+    store.write(rich_model(), {});
+    const nlohmann::json good = tileset_of(store.folder());
+    const auto refused = [&](const std::function<void(nlohmann::json&)>& damage) {
+        nlohmann::json bad = good;
+        damage(bad["asset"]["extras"]["lodestone"]);
+        try {
+            segment::model_of_tileset(bad.dump());
+            return false;
+        } catch (const Error& error) {
+            return error.status == Status::BadFile && std::string(error.what()).size() > 20;
+        }
+    };
+    EXPECT_FALSE(refused([](nlohmann::json&) {}));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["format"] = 99; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = 99; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = -1; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j.erase("objects"); }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["source_hash"] = "../../etc"; }));
+    EXPECT_TRUE(
+        refused([](nlohmann::json& j) { j["objects"][0]["representations"][0]["hash"] = "../x"; }));
+    EXPECT_TRUE(
+        refused([](nlohmann::json& j) { j["objects"][0]["representations"][1]["error"] = -1; }));
+    EXPECT_TRUE(
+        refused([](nlohmann::json& j) { j["objects"][0]["representations"][1]["error"] = 1e9; }));
+    EXPECT_TRUE(refused(
+        [](nlohmann::json& j) { j["objects"][0]["representations"][0]["kind"] = "program"; }));
+    EXPECT_TRUE(refused(
+        [](nlohmann::json& j) { j["objects"][0]["representations"][0]["materials"] = {7}; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) {
+        j["objects"][1]["representations"][0]["placements"][0]["object"] = 2;  // a cycle
+    }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) {
+        j["objects"][1]["representations"][0]["placements"][0]["transform"] = {1, 2};
+    }));
+    EXPECT_THROW(segment::model_of_tileset("{"), Error);
+    EXPECT_THROW(segment::model_of_tileset(""), Error);
+    EXPECT_THROW(segment::model_of_tileset("{\"asset\":{\"version\":\"1.1\"}}"), Error);
+}
+
+TEST(Store, MissingMeshFileIsNamed) {
+    const segment::Store store(scratch("missing"));
+    const Model model = rich_model();
+    store.write(model, {});
+    const Hash hash = model.objects[0].representations[0].summary.hash;
+    fs::remove(store.folder() / segment::file_of(hash));
+    try {
+        store.load_mesh(hash);
+        FAIL() << "loaded";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(hex16(hash)), std::string::npos);
+    }
+}
