@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/flatten.h"
+
+#include "quality/cut.h"
+
+#include <limits>
+#include <map>
+
+namespace lodestone::build {
+namespace {
+
+constexpr uint64_t kTrianglesOfBox = 12;
+constexpr int kSubdivisions = 1;  // an ellipsoid drawn with 80 triangles
+constexpr uint64_t kTrianglesOfEllipsoid = 80;
+
+/// A view in which a representation is good enough when its error is at most `error`.
+View view_within(double error) {
+    View view;
+    view.camera.orthographic = true;
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 1, 0};
+    view.width = view.height = 1;
+    view.pixel_error = error;
+    return view;
+}
+
+uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
+    uint64_t triangles = cut.triangles;
+    for (const uint32_t index : cut.chosen) {
+        const quality::Node& node = cut.nodes[index];
+        const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
+        if (kind == Kind::Box)
+            triangles += kTrianglesOfBox;
+        else if (kind == Kind::Ellipsoid)
+            triangles += kTrianglesOfEllipsoid;
+    }
+    return triangles;
+}
+
+}  // namespace
+
+Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
+             const Job& job) {
+    Flat flat;
+    const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
+    std::map<uint32_t, uint16_t> slots;
+    const auto slot_of = [&](uint32_t material) {
+        const auto [at, fresh] = slots.try_emplace(material, static_cast<uint16_t>(slots.size()));
+        if (fresh)
+            flat.materials.push_back(model.materials.at(material));
+        return at->second;
+    };
+    for (const uint32_t index : cut.chosen) {
+        job.check();
+        const quality::Node& node = cut.nodes[index];
+        const Object& object = model.objects[node.object];
+        const Representation& representation = object.representations[node.lod];
+        flat.environment = flat.environment || object.role == Role::Environment;
+        flat.child_error =
+            std::max(flat.child_error, representation.summary.error * stretch(node.world));
+        Mesh part;
+        switch (representation.summary.kind) {
+            case Kind::Box:
+                part = tessellate_box(representation.primitive());
+                break;
+            case Kind::Ellipsoid:
+                part = tessellate_ellipsoid(representation.primitive(), kSubdivisions);
+                break;
+            default:
+                part = *source(representation);
+        }
+        part.slots.resize(part.triangles.size(), 0);
+        std::vector<uint16_t> moved;
+        for (const uint32_t material : representation.materials) {
+            if (slots.size() >= std::numeric_limits<uint16_t>::max())
+                fail(Status::InvalidArgument, "group '", model.objects[group].name,
+                     "' uses more than 65535 materials");
+            moved.push_back(slot_of(material));
+        }
+        for (uint16_t& slot : part.slots)
+            slot = slot < moved.size() ? moved[slot] : uint16_t{0};
+        append(flat.mesh, part, node.world);
+    }
+    for (const quality::Node& node : cut.nodes)
+        flat.environment = flat.environment || model.objects[node.object].role == Role::Environment;
+    if (flat.materials.empty())
+        flat.materials.emplace_back();
+    return flat;
+}
+
+double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job) {
+    const double size = model.objects[group].bound().radius;
+    double error = 0;
+    for (double next = size / 4096; next < 8 * size; next *= 2) {
+        const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
+        if (triangles_of(model, cut) <= most)
+            break;
+        error = next;
+    }
+    return error;
+}
+
+}  // namespace lodestone::build

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flatten: a group as one mesh, its children at the detail asked for.
+#pragma once
+
+#include "build/stand_ins.h"
+
+namespace lodestone::build {
+
+struct Flat {
+    Mesh mesh;                        // in the group's frame
+    std::vector<Material> materials;  // by slot
+    double child_error = 0;    // the largest error of a child drawn, after its stretch; metres
+    bool environment = false;  // something below is marked Environment
+};
+
+/// Children are drawn by their cheapest representation within `error` metres (0: the finest);
+/// primitives as triangles.
+Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
+             const Job& job);
+
+/// The finest error (from a rising series) at which flattening gives at most `most` triangles; the
+/// coarsest of the series when none does.
+double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job);
+
+}  // namespace lodestone::build

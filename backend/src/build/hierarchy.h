@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hierarchy: gives every object of a model its stand-ins, from the store where they still fit.
+#pragma once
+
+#include "base/job.h"
+#include "build/settings.h"
+#include "model/model.h"
+#include "segment/store.h"
+
+namespace lodestone::build {
+
+struct Report {
+    uint64_t objects = 0;  // reachable from the root
+    uint64_t built = 0;    // of these, new or changed
+    uint64_t representations = 0;
+    uint64_t triangles = 0;  // of the finest meshes that are new or changed
+    uint64_t bytes_written = 0;
+    double wall_s = 0;
+    double cpu_s = 0;
+};
+
+/// What build_hierarchy would do; wall_s is a guess from the triangles.
+Report estimate(Model& model, const segment::Store& store, const Settings& settings);
+
+/// `model` has finest representations only (resident); afterwards every reachable object has its
+/// list and the store holds it. Objects are matched with the store's by source hash, so names and
+/// places may change freely. The same result on any number of threads.
+/// Throws Error(Cancelled): then the store and the model's lists are as before.
+/// A broken object gets a problem and only its finest level.
+Report build_hierarchy(Model& model, const segment::Store& store, const Settings& settings,
+                       Problems& problems, const Job& job);
+
+}  // namespace lodestone::build

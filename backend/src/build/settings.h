@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Settings of a build: what a stand-in depends on besides its source.
+#pragma once
+
+#include "base/hash.h"
+
+#include <cstdint>
+
+namespace lodestone::build {
+
+struct Settings {
+    /// Triangles of a level over those of the next finer one. Larger: a closer fit to every
+    /// distance, more time and disk.
+    double level_ratio = 0.4;
+    /// Rays to measure an object's attributes.
+    uint64_t rays = 4096;
+    /// Area samples to measure an error, each way.
+    uint32_t samples = 4096;
+    /// Most triangles a group is flattened to before it is simplified.
+    uint64_t group_triangles = 40000;
+    uint64_t seed = 1;
+    /// Also build what the store has already.
+    bool rebuild = false;
+};
+
+/// Of everything that changes a result, and of the version of the algorithms.
+Hash hash_of(const Settings& settings);
+
+}  // namespace lodestone::build

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stand-ins of one object: candidates, their errors, and the list that is kept.
+#pragma once
+
+#include "base/job.h"
+#include "build/settings.h"
+#include "model/model.h"
+
+#include <functional>
+
+namespace lodestone::build {
+
+/// A stand-in on its way into the model; its materials are its own until it is added.
+struct Candidate {
+    Kind kind = Kind::Mesh;
+    double error = 0;
+    double max_error = 0;
+    std::shared_ptr<const Mesh> mesh;  // of a mesh
+    Primitive primitive;               // of a box or ellipsoid
+    std::vector<Material> materials;   // by slot
+};
+
+struct StandIns {
+    Attributes attributes;
+    std::vector<Candidate> candidates;  // errors rise strictly, costs fall
+};
+
+/// Gives the mesh of a representation, resident or not. Called from several threads.
+using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
+
+/// Levels and primitives of an object whose finest representation is a mesh.
+StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Settings& settings,
+                           const MeshSource& source, const Job& job);
+
+/// Of a group whose children have theirs: flattened at a quarter of its finest stand-in's error,
+/// without what cannot be seen from outside, simplified and replaced. Never empty when anything
+/// below can be drawn.
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Settings& settings,
+                            const MeshSource& source, const Job& job);
+
+/// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
+/// bytes and error), and those that cost no less than `finest_bytes`.
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes);
+
+}  // namespace lodestone::build

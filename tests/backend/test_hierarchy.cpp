@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the building of hierarchies: lists in order, only stale objects built, cancel without loss.
+#include "backend/models.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "build/flatten.h"
+#include "build/hierarchy.h"
+#include "build/stand_ins.h"
+#include "quality/cut.h"
+#include "ray/scene.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path scratch(const std::string& name) {
+    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "hierarchy" / name;
+    fs::remove_all(folder);
+    fs::create_directories(folder.parent_path());
+    return folder;
+}
+
+build::Report build_in(Model& model, const fs::path& folder) {
+    Problems problems;
+    const build::Report report =
+        build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    EXPECT_TRUE(problems.empty()) << problems[0].message;
+    return report;
+}
+
+/// A table and chairs, a lamp on a wall: four leaves, two groups, one of them used twice.
+Model room() {
+    Model model;
+    Material wood{"wood", {0.4, 0.2, 0.1}, 0.6, 0, 0.5, {}};
+    Material red{"red", {0.8, 0.1, 0.1}, 0.3, 0, 0.5, {}};
+    const ObjectIndex top =
+        models::add_leaf(model, "top", shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75}), wood);
+    const ObjectIndex vase = models::add_leaf(model, "vase", shapes::sphere(0.1, 4), red);
+    const ObjectIndex wall = models::add_leaf(model, "wall", shapes::box({-3, 2, 0}, {3, 2.2, 3}),
+                                              wood, Role::Environment);
+    const ObjectIndex table = models::add_group(
+        model, "table", {{top, Affine{}, "top"}, {vase, models::moved(0, 0, 0.85), "vase"}});
+    model.root = models::add_group(model, "room",
+                                   {{table, models::moved(-1.5, 0, 0), "table left"},
+                                    {table, models::moved(1.5, 0, 0), "table right"},
+                                    {wall, Affine{}, "wall"}});
+    return model;
+}
+
+void expect_valid(const Model& model) {
+    for (const ObjectIndex index : bottom_up(model)) {
+        const Object& object = model.objects[index];
+        double last_error = -1;
+        uint64_t last_bytes = ~uint64_t{0};
+        bool drawable = false;
+        for (const Representation& representation : object.representations) {
+            EXPECT_GT(representation.summary.error, last_error) << object.name;
+            EXPECT_GE(representation.summary.max_error, representation.summary.error);
+            if (&representation != &object.representations[0] && !object.group()) {
+                EXPECT_LT(representation.summary.cost.bytes, last_bytes) << object.name;
+            }
+            last_error = representation.summary.error;
+            last_bytes = representation.summary.cost.bytes;
+            drawable = drawable || representation.summary.kind != Kind::Assembly;
+        }
+        EXPECT_EQ(object.representations[0].summary.error, 0);
+        EXPECT_TRUE(drawable) << object.name;
+    }
+}
+
+class Hierarchy : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+    }
+};
+
+}  // namespace
+
+TEST_F(Hierarchy, EmptyModelBuildsAnEmptyStore) {
+    Model model;
+    model.root = models::add_group(model, "empty", {});
+    const build::Report report = build_in(model, scratch("empty"));
+    EXPECT_EQ(model.objects[0].representations.size(), 1u);
+    EXPECT_EQ(report.representations, 1u);
+}
+
+TEST_F(Hierarchy, CubeBecomesABoxThatIsTheCube) {
+    Model model;
+    model.root = models::add_leaf(model, "cube", shapes::cube());
+    build_in(model, scratch("cube"));
+    ASSERT_GE(model.objects[0].representations.size(), 2u);
+    const Representation& box = model.objects[0].representations.back();
+    ASSERT_EQ(box.summary.kind, Kind::Box);
+    EXPECT_NEAR(box.primitive().half_size.x, 0.5, 0.01);
+    EXPECT_LT(box.summary.error, 0.02);
+}
+
+TEST_F(Hierarchy, RoomHasListsInOrderAndAStandInEverywhere) {
+    Model model = room();
+    const build::Report report = build_in(model, scratch("room"));
+    EXPECT_EQ(report.objects, 5u);
+    EXPECT_EQ(report.built, 5u);
+    expect_valid(model);
+}
+
+TEST_F(Hierarchy, EnvironmentIsNeverAPrimitiveNorIsAGroupWithOne) {
+    Model model = room();
+    build_in(model, scratch("environment"));
+    for (const Object& object : model.objects) {
+        for (const Representation& representation : object.representations) {
+            if (object.uid == "wall" || object.uid == "room") {
+                EXPECT_NE(representation.summary.kind, Kind::Box) << object.uid;
+                EXPECT_NE(representation.summary.kind, Kind::Ellipsoid) << object.uid;
+            }
+        }
+    }
+}
+
+TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
+    Model model = room();
+    const fs::path folder = scratch("again");
+    build_in(model, folder);
+    Model again = room();
+    const build::Report report = build_in(again, folder);
+    EXPECT_EQ(report.built, 0u);
+    ASSERT_EQ(model.objects.size(), again.objects.size());
+    for (size_t i = 0; i < model.objects.size(); ++i) {
+        ASSERT_EQ(model.objects[i].representations.size(), again.objects[i].representations.size());
+        for (size_t lod = 0; lod < model.objects[i].representations.size(); ++lod) {
+            EXPECT_EQ(model.objects[i].representations[lod].summary.hash,
+                      again.objects[i].representations[lod].summary.hash);
+            EXPECT_EQ(model.objects[i].representations[lod].summary.error,
+                      again.objects[i].representations[lod].summary.error);
+        }
+    }
+}
+
+TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
+    Model model = room();
+    const fs::path folder = scratch("stale");
+    build_in(model, folder);
+    Model changed = room();
+    changed.objects[1].name = "renamed: no reason to build";
+    changed.objects[1].representations[0].payload =
+        std::make_shared<const Mesh>(shapes::sphere(0.12, 4));
+    summarize(changed.objects[1].representations[0], changed);
+    const segment::Store store(folder);
+    EXPECT_EQ(build::estimate(changed, store, {}).built, 3u);  // vase, table, room
+    EXPECT_EQ(build_in(changed, folder).built, 3u);
+    expect_valid(changed);
+}
+
+TEST_F(Hierarchy, ContentEqualObjectsAreBuiltOnce) {
+    Model model;
+    const ObjectIndex a = models::add_leaf(model, "a", shapes::terrain(24));
+    const ObjectIndex b = models::add_leaf(model, "b", shapes::terrain(24));
+    model.root =
+        models::add_group(model, "both", {{a, Affine{}, "a"}, {b, models::moved(3, 0, 0), "b"}});
+    EXPECT_EQ(build_in(model, scratch("equal")).built, 2u);
+    ASSERT_EQ(model.objects[a].representations.size(), model.objects[b].representations.size());
+    EXPECT_GT(model.objects[a].representations.size(), 2u);
+}
+
+TEST_F(Hierarchy, SameListsOnOneAndOnManyThreads) {
+    Model one = room();
+    Model many = room();
+    const fs::path by_one = scratch("one");
+    const fs::path by_many = scratch("many");
+    {
+        const ThreadLimit limit(1);
+        build_in(one, by_one);
+    }
+    build_in(many, by_many);
+    EXPECT_EQ(read_file(by_one / "tileset.json"), read_file(by_many / "tileset.json"));
+}
+
+TEST_F(Hierarchy, CancelledBuildChangesNothing) {
+    Model model = room();
+    const fs::path folder = scratch("cancel");
+    const int32_t cancel = 1;
+    Problems problems;
+    EXPECT_THROW(build::build_hierarchy(model, segment::Store(folder), {}, problems,
+                                        Job(&cancel, nullptr, nullptr)),
+                 Error);
+    EXPECT_FALSE(segment::Store(folder).exists());
+    for (const Object& object : model.objects)
+        EXPECT_EQ(object.representations.size(), 1u);
+}
+
+TEST_F(Hierarchy, WhatNobodySeesCostsAGroupNothing) {
+    // A sphere of 20,480 triangles inside a closed box: the group's stand-ins are boxes.
+    Model model;
+    const ObjectIndex shell = models::add_leaf(model, "shell", shapes::cube());
+    const ObjectIndex inside = models::add_leaf(model, "inside", shapes::sphere(0.3, 5));
+    model.root = models::add_group(model, "safe",
+                                   {{shell, Affine{}, "shell"}, {inside, Affine{}, "inside"}});
+    build_in(model, scratch("hidden"));
+    const Object& safe = model.objects[model.root];
+    ASSERT_GE(safe.representations.size(), 2u);
+    EXPECT_LE(safe.representations[1].summary.cost.triangles, 12u);
+    EXPECT_LT(safe.representations[1].summary.error, 0.05);
+}
+
+TEST_F(Hierarchy, DegenerateObjectsStayAsTheyAre) {
+    Model model;
+    Mesh line;
+    line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    line.triangles = {{0, 1, 2}};
+    const ObjectIndex flat = models::add_leaf(model, "line", line);
+    const ObjectIndex nothing = models::add_leaf(model, "nothing", Mesh{});
+    model.root = models::add_group(model, "root",
+                                   {{flat, Affine{}, "line"}, {nothing, Affine{}, "nothing"}});
+    EXPECT_NO_THROW(build_in(model, scratch("degenerate")));
+    EXPECT_EQ(model.objects[flat].representations.size(), 1u);
+    EXPECT_EQ(model.objects[nothing].representations.size(), 1u);
+}
+
+TEST_F(Hierarchy, CutOfTheBuiltModelKeepsItsPromise) {
+    Model model = models::row_of_balls(16);
+    build_in(model, scratch("promise"));
+    View view;
+    view.camera.position = {24, -60, 0};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 0, 0.5625};
+    const quality::Cut fine = quality::choose(model, view);
+    view.pixel_error = 0;
+    const quality::Cut full = quality::choose(model, view);
+    EXPECT_LE(fine.largest_error_px, 1);
+    EXPECT_LT(fine.triangles * 4, full.triangles);
+}
+
+TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
+    std::vector<build::Candidate> candidates;
+    const auto add = [&](uint32_t side, double error) {
+        build::Candidate candidate;
+        candidate.mesh = std::make_shared<const Mesh>(shapes::terrain(side));
+        candidate.error = error;
+        candidates.push_back(candidate);
+    };
+    add(10, 0.3);
+    add(20, 0.2);
+    add(30, 0.25);  // worse than the cheaper one of 20
+    add(40, 0.1);
+    add(90, 0.01);  // no cheaper than the finest
+    build::keep_useful(candidates, 2 * 90 * 90 * 245);
+    ASSERT_EQ(candidates.size(), 3u);
+    EXPECT_EQ(candidates[0].error, 0.1);
+    EXPECT_EQ(candidates[1].error, 0.2);
+    EXPECT_EQ(candidates[2].error, 0.3);
+}
