@@ -462,6 +462,10 @@ typedef struct lds_povray_report {
 LDS_API lds_status lds_povray_run(const char* folder, const char* picture,
                                   const lds_povray_options* options, lds_job* job,
                                   lds_povray_report* out_report);
+/* VmHWM of POV-Ray on a picture of this size without any object: what to subtract from peak_bytes to
+   know what a scene costs. Measured by running it; remembered for the life of the process. */
+LDS_API lds_status lds_povray_empty_bytes(int32_t width, int32_t height, const char* program,
+                                          uint64_t* out_bytes);
 /* The program that would be run. POVRAY_MISSING says what to do. */
 LDS_API lds_status lds_povray_find(const char* program, const char** out_path);
 /* The color lds_povray_options.false_color gives a representation (linear). */

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/parallel.h"
+#include "build/hierarchy.h"
+#include "capi/guard.h"
+#include "capi/handles.h"
+
+#include <cmath>
+
+using namespace lodestone;
+using namespace lodestone::capi;
+
+namespace {
+
+build::Settings settings_of(const lds_build_options& options) {
+    build::Settings settings;
+    settings.level_ratio = options.level_ratio;
+    settings.rays = options.rays;
+    settings.samples = options.samples;
+    settings.group_triangles = options.group_triangles;
+    settings.seed = options.seed;
+    settings.rebuild = options.rebuild != 0;
+    if (!(settings.level_ratio > 0.01 && settings.level_ratio < 0.96))
+        fail(Status::InvalidArgument, "level_ratio is ", options.level_ratio,
+             "; 0.01 to 0.96 expected");
+    if (settings.rays < 64 || settings.samples < 64)
+        fail(Status::InvalidArgument, "at least 64 rays and samples are needed");
+    return settings;
+}
+
+lds_build_report report_of(const build::Report& report) {
+    lds_build_report out{};
+    out.objects = report.objects;
+    out.built = report.built;
+    out.representations = report.representations;
+    out.triangles = report.triangles;
+    out.bytes_written = report.bytes_written;
+    out.wall_s = report.wall_s;
+    out.cpu_s = report.cpu_s;
+    return out;
+}
+
+}  // namespace
+
+lds_build_options lds_build_options_default(void) {
+    const build::Settings settings;
+    lds_build_options options{};
+    options.struct_size = sizeof options;
+    options.level_ratio = settings.level_ratio;
+    options.rays = settings.rays;
+    options.samples = settings.samples;
+    options.group_triangles = settings.group_triangles;
+    options.seed = settings.seed;
+    return options;
+}
+
+lds_status lds_model_build_estimate(lds_model* model, const char* store,
+                                    const lds_build_options* options,
+                                    lds_build_report* out_report) {
+    return guard([&] {
+        require(model, "model");
+        require(store, "store");
+        const lds_build_options& given = checked(options, "options");
+        const ThreadLimit limit(given.threads);
+        hand_out(
+            out_report,
+            report_of(build::estimate(model->model, segment::Store(store), settings_of(given))),
+            "out_report");
+    });
+}
+
+lds_status lds_model_build(lds_model* model, const char* store, const lds_build_options* options,
+                           lds_job* job, lds_build_report* out_report) {
+    return guard([&] {
+        require(model, "model");
+        require(store, "store");
+        checked(out_report, "out_report");
+        const lds_build_options& given = checked(options, "options");
+        const build::Settings settings = settings_of(given);
+        const ThreadLimit limit(given.threads);
+        model->load_finest();
+        const segment::Store target(store);
+        const build::Report report =
+            build::build_hierarchy(model->model, target, settings, model->problems, job_of(job));
+        model->store.emplace(target);
+        model->summarized = true;
+        hand_out(out_report, report_of(report), "out_report");
+    });
+}

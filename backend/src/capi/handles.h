@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Handles: what the opaque pointers point to, and translation of small structs.
+#pragma once
+
+#include "lodestone/lodestone.h"
+
+#include "build/settings.h"
+#include "quality/cut.h"
+#include "segment/store.h"
+
+#include <memory>
+#include <optional>
+#include <unordered_map>
+
+struct lds_model {
+    lodestone::Model model;
+    uint32_t generation = 0;  // of its ids; no two models of a process share one
+    lodestone::Problems problems;
+    std::optional<lodestone::segment::Store> store;  // where meshes that are not resident lie
+    std::unordered_map<std::string, uint32_t> by_uid;
+    bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
+
+    /// Index of an id; throws Error(StaleId) for another model's.
+    lodestone::ObjectIndex index_of(lds_object object) const;
+    lds_object id_of(lodestone::ObjectIndex index) const { return {index, generation}; }
+    lodestone::Object& at(lds_object object) { return model.objects[index_of(object)]; }
+    /// Brings assemblies' summaries up to date.
+    void summarize();
+    /// Makes a representation resident.
+    void load(lodestone::Representation& representation);
+    /// Makes every finest mesh resident (a model read from a store).
+    void load_finest();
+};
+
+struct lds_cut {
+    lodestone::quality::Cut cut;
+    uint32_t generation = 0;         // of the model it was made from
+    std::vector<std::string> paths;  // by choice
+    std::string largest_error_name;
+    uint64_t originals = 0;
+};
+
+namespace lodestone::capi {
+
+glm::dvec3 vector(const double values[3], const char* what);
+void copy(const glm::dvec3& from, double to[3]);
+std::string name_of(const char* text);
+Camera camera_of(const lds_camera& camera);
+lds_camera camera_of(const Camera& camera);
+View view_of(const lds_view* view);
+lds_model* new_model();
+
+}  // namespace lodestone::capi

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The model's part of the C interface: making one, reading and writing files.
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "format/format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+using namespace lodestone;
+using namespace lodestone::capi;
+
+namespace {
+
+/// Adds an object of that uid; throws when the uid is empty or taken.
+ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest) {
+    const lds_object_info& given = checked(info, "info");
+    Object object;
+    object.uid = name_of(given.uid);
+    object.name = name_of(given.name);
+    if (object.uid.empty())
+        fail(Status::InvalidArgument, "object '", object.name, "' has no uid");
+    if (model.by_uid.count(object.uid) != 0)
+        fail(Status::InvalidArgument, "uid '", object.uid, "' of object '", object.name,
+             "' is taken");
+    if (given.role != LDS_ROLE_ORDINARY && given.role != LDS_ROLE_ENVIRONMENT)
+        fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
+             "' is unknown");
+    object.role = given.role == LDS_ROLE_ENVIRONMENT ? Role::Environment : Role::Ordinary;
+    object.representations.push_back(std::move(finest));
+    const auto index = static_cast<ObjectIndex>(model.model.objects.size());
+    model.by_uid.emplace(object.uid, index);
+    model.model.objects.push_back(std::move(object));
+    model.summarized = false;
+    return index;
+}
+
+bool same(const float* a, const float* b, int count) {
+    return std::equal(a, a + count, b);
+}
+
+/// One vertex for every distinct (position, normal, uv) that a corner uses.
+Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
+    if (view.triangle_count > 0) {
+        require(view.positions, "mesh.positions");
+        require(view.triangles, "mesh.triangles");
+    }
+    const uint32_t* corners = view.corners != nullptr ? view.corners : view.triangles;
+    const size_t corner_count = view.corners != nullptr ? view.corner_count : view.vertex_count;
+    constexpr size_t kMost = size_t{1} << 31u;
+    if (view.vertex_count > kMost || view.triangle_count > kMost)
+        fail(Status::InvalidArgument, "a mesh of ", view.vertex_count, " vertices and ",
+             view.triangle_count, " triangles is larger than 2^31");
+    for (size_t i = 0; i < view.triangle_count * 3; ++i) {
+        if (view.triangles[i] >= view.vertex_count)
+            fail(Status::InvalidArgument, "triangle ", i / 3, " uses vertex ", view.triangles[i],
+                 " of ", view.vertex_count);
+        if (corners[i] >= corner_count)
+            fail(Status::InvalidArgument, "triangle ", i / 3, " uses corner ", corners[i], " of ",
+                 corner_count);
+    }
+    Mesh mesh;
+    const bool split = view.corner_normals != nullptr || view.corner_uvs != nullptr;
+    if (!split) {
+        mesh.positions.resize(view.vertex_count);
+        for (size_t i = 0; i < view.vertex_count; ++i)
+            mesh.positions[i] = {view.positions[3 * i], view.positions[3 * i + 1],
+                                 view.positions[3 * i + 2]};
+    }
+    // Chains of the vertices made so far from each position; almost always one or two long.
+    constexpr uint32_t kEnd = ~uint32_t{0};
+    std::vector<uint32_t> first(split ? view.vertex_count : 0, kEnd);
+    std::vector<uint32_t> next;
+    std::vector<uint32_t> made_from;  // the corner a vertex was made from
+    const auto vertex_of = [&](uint32_t position, uint32_t corner) {
+        for (uint32_t at = first[position]; at != kEnd; at = next[at]) {
+            const uint32_t other = made_from[at];
+            if ((view.corner_normals == nullptr ||
+                 same(view.corner_normals + 3 * size_t{corner},
+                      view.corner_normals + 3 * size_t{other}, 3)) &&
+                (view.corner_uvs == nullptr || same(view.corner_uvs + 2 * size_t{corner},
+                                                    view.corner_uvs + 2 * size_t{other}, 2)))
+                return at;
+        }
+        const auto vertex = static_cast<uint32_t>(mesh.positions.size());
+        const float* p = view.positions + 3 * size_t{position};
+        mesh.positions.emplace_back(p[0], p[1], p[2]);
+        if (view.corner_normals != nullptr) {
+            const float* n = view.corner_normals + 3 * size_t{corner};
+            mesh.normals.emplace_back(n[0], n[1], n[2]);
+        }
+        if (view.corner_uvs != nullptr) {
+            const float* uv = view.corner_uvs + 2 * size_t{corner};
+            mesh.uvs.emplace_back(uv[0], uv[1]);
+        }
+        made_from.push_back(corner);
+        next.push_back(first[position]);
+        first[position] = vertex;
+        return vertex;
+    };
+    mesh.triangles.reserve(view.triangle_count);
+    for (size_t t = 0; t < view.triangle_count; ++t) {
+        Triangle triangle;
+        for (int c = 0; c < 3; ++c) {
+            const uint32_t position = view.triangles[3 * t + static_cast<size_t>(c)];
+            triangle[c] =
+                split ? vertex_of(position, corners[3 * t + static_cast<size_t>(c)]) : position;
+        }
+        mesh.triangles.push_back(triangle);
+    }
+    if (view.slots != nullptr && material_count > 1) {
+        const auto last = static_cast<int32_t>(std::min<size_t>(material_count, 65535)) - 1;
+        mesh.slots.reserve(view.triangle_count);
+        for (size_t t = 0; t < view.triangle_count; ++t)
+            mesh.slots.push_back(static_cast<uint16_t>(std::clamp(view.slots[t], 0, last)));
+    }
+    return mesh;
+}
+
+}  // namespace
+
+lds_status lds_model_create(lds_model** out_model) {
+    return guard([&] {
+        require(out_model, "out_model");
+        *out_model = new_model();
+    });
+}
+
+void lds_model_destroy(lds_model* model) {
+    delete model;
+}
+
+lds_status lds_model_read(const char* path, lds_model** out_model) {
+    return guard([&] {
+        require(path, "path");
+        require(out_model, "out_model");
+        std::unique_ptr<lds_model> model(new_model());
+        const std::filesystem::path file(path);
+        if (file.filename() == "tileset.json" || std::filesystem::is_directory(file)) {
+            model->store.emplace(file);
+            model->model = model->store->read();
+            model->summarized = true;
+        } else {
+            model->model = format::read_model(file, model->problems);
+        }
+        for (uint32_t i = 0; i < model->model.objects.size(); ++i)
+            model->by_uid.emplace(model->model.objects[i].uid, i);
+        *out_model = model.release();
+    });
+}
+
+lds_status lds_model_write(lds_model* model, const char* path) {
+    return guard([&] {
+        require(model, "model");
+        require(path, "path");
+        model->load_finest();
+        format::write_model(path, model->model);
+    });
+}
+
+lds_status lds_model_add_material(lds_model* model, const lds_material* material,
+                                  uint32_t* out_index) {
+    return guard([&] {
+        require(model, "model");
+        require(out_index, "out_index");
+        const lds_material& given = checked(material, "material");
+        Material made;
+        made.name = name_of(given.name);
+        made.base_color = vector(given.base_color, "material.base_color");
+        made.emission = vector(given.emission, "material.emission");
+        const auto share = [&](double value, const char* what) {
+            if (!std::isfinite(value))
+                fail(Status::InvalidArgument, what, " of material '", made.name, "' is not finite");
+            return std::clamp(value, 0.0, 1.0);
+        };
+        made.roughness = share(given.roughness, "roughness");
+        made.metallic = share(given.metallic, "metallic");
+        made.specular = share(given.specular, "specular");
+        model->model.materials.push_back(std::move(made));
+        *out_index = static_cast<uint32_t>(model->model.materials.size() - 1);
+    });
+}
+
+lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
+                              const lds_mesh_view* mesh, const uint32_t* materials,
+                              size_t material_count, lds_object* out_object) {
+    return guard([&] {
+        require(model, "model");
+        require(out_object, "out_object");
+        if (material_count > 0)
+            require(materials, "materials");
+        Representation finest;
+        finest.summary.kind = Kind::Mesh;
+        for (size_t i = 0; i < material_count; ++i) {
+            if (materials[i] >= model->model.materials.size())
+                fail(Status::InvalidArgument, "slot ", i, " uses material ", materials[i], " of ",
+                     model->model.materials.size());
+            finest.materials.push_back(materials[i]);
+        }
+        auto made = std::make_shared<Mesh>(mesh_of(checked(mesh, "mesh"), material_count));
+        repair(*made, name_of(checked(info, "info").name), model->problems);
+        if (finest.materials.empty()) {
+            finest.materials.push_back(static_cast<uint32_t>(model->model.materials.size()));
+            model->model.materials.emplace_back();
+        }
+        finest.payload = std::move(made);
+        summarize(finest, model->model);
+        *out_object = model->id_of(add_object(*model, info, std::move(finest)));
+    });
+}
+
+lds_status lds_model_add_group(lds_model* model, const lds_object_info* info,
+                               lds_object* out_object) {
+    return guard([&] {
+        require(model, "model");
+        require(out_object, "out_object");
+        Representation finest;
+        finest.summary.kind = Kind::Assembly;
+        finest.payload = std::shared_ptr<const Assembly>(std::make_shared<Assembly>());
+        *out_object = model->id_of(add_object(*model, info, std::move(finest)));
+    });
+}
+
+lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
+                                   const double transform[12], const char* name) {
+    return guard([&] {
+        require(model, "model");
+        require(transform, "transform");
+        Object& into = model->at(group);
+        Placement placement;
+        placement.object = model->index_of(child);
+        placement.transform = Affine::from_rows(transform);
+        placement.name = name_of(name);
+        if (!into.group())
+            fail(Status::InvalidArgument, "'", into.name, "' is not a group");
+        if (!placement.transform.finite())
+            fail(Status::InvalidArgument, "the transform of '", placement.name,
+                 "' holds numbers that are not finite");
+        // Assemblies are const to guard sharing; this one was made as Assembly and is ours alone.
+        auto& held = std::get<std::shared_ptr<const Assembly>>(into.representations[0].payload);
+        if (held.use_count() != 1)
+            held = std::make_shared<Assembly>(*held);
+        const_cast<Assembly&>(*held).placements.push_back(std::move(placement));
+        model->summarized = false;
+    });
+}
+
+lds_status lds_model_set_root(lds_model* model, lds_object root) {
+    return guard([&] {
+        require(model, "model");
+        model->model.root = model->index_of(root);
+        model->summarized = false;
+    });
+}
+
+lds_status lds_model_add_light(lds_model* model, const lds_light* light) {
+    return guard([&] {
+        require(model, "model");
+        const lds_light& given = checked(light, "light");
+        Light made;
+        made.name = name_of(given.name);
+        if (given.kind != 0 && given.kind != 1)
+            fail(Status::InvalidArgument, "light '", made.name, "' has kind ", given.kind,
+                 "; 0 (sun) or 1 (point) expected");
+        made.kind = given.kind == 0 ? LightKind::Sun : LightKind::Point;
+        made.color = vector(given.color, "light.color");
+        made.power = given.power;
+        made.position = vector(given.position, "light.position");
+        made.direction = vector(given.direction, "light.direction");
+        made.shadow = given.shadow != 0;
+        if (!std::isfinite(made.power))
+            fail(Status::InvalidArgument, "light '", made.name, "' has no finite power");
+        if (made.kind == LightKind::Sun && glm::length(made.direction) == 0)
+            fail(Status::InvalidArgument, "sun '", made.name, "' has no direction");
+        model->model.lights.push_back(std::move(made));
+    });
+}
+
+lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera) {
+    return guard([&] {
+        require(model, "model");
+        model->model.cameras.push_back(camera_of(checked(camera, "camera")));
+    });
+}
+
+lds_status lds_model_set_world(lds_model* model, const lds_world* world) {
+    return guard([&] {
+        require(model, "model");
+        const lds_world& given = checked(world, "world");
+        model->model.world.color = vector(given.color, "world.color");
+        model->model.world.transparent = given.transparent != 0;
+    });
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// POV-Ray's part of the C interface.
+#include "base/parallel.h"
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "povray_export/empty_scene.h"
+#include "povray_export/finish.h"
+#include "povray_export/runner.h"
+#include "povray_export/scene_writer.h"
+
+#include <map>
+
+using namespace lodestone;
+using namespace lodestone::capi;
+
+namespace {
+
+povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
+    switch (options.antialias) {
+        case LDS_ANTIALIAS_OFF:
+            return povray::Antialiasing::Off;
+        case LDS_ANTIALIAS_FINAL:
+            return povray::Antialiasing::Final;
+        case LDS_ANTIALIAS_REFERENCE:
+            return povray::Antialiasing::Reference;
+        default:
+            fail(Status::InvalidArgument, "options.antialias is ", options.antialias,
+                 "; 0 to 2 expected");
+    }
+}
+
+/// Reads the meshes of the chosen representations that are not in memory yet.
+void load_chosen(lds_model& model, const quality::Cut& cut, const Job& job) {
+    std::map<Hash, std::vector<Representation*>> wanted;
+    for (const uint32_t index : cut.chosen) {
+        const quality::Node& node = cut.nodes[index];
+        if (node.object >= model.model.objects.size() ||
+            node.lod >= model.model.objects[node.object].representations.size())
+            fail(Status::StaleId, "the cut was made before the model's levels changed");
+        Representation& chosen = model.model.objects[node.object].representations[node.lod];
+        if (!chosen.resident())
+            wanted[chosen.summary.hash].push_back(&chosen);
+    }
+    if (wanted.empty())
+        return;
+    if (!model.store)
+        fail(Status::Internal, "chosen meshes are neither in memory nor in a store");
+    std::vector<std::pair<Hash, std::vector<Representation*>>> list(wanted.begin(), wanted.end());
+    parallel_for(list.size(), [&](size_t i) {
+        job.check();
+        const std::shared_ptr<const Mesh> mesh = model.store->load_mesh(list[i].first);
+        for (Representation* representation : list[i].second)
+            representation->payload = mesh;
+    });
+}
+
+}  // namespace
+
+lds_povray_options lds_povray_options_default(void) {
+    lds_povray_options options{};
+    options.struct_size = sizeof options;
+    options.antialias = LDS_ANTIALIAS_FINAL;
+    return options;
+}
+
+lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,
+                             const char* folder, const lds_povray_options* options, lds_job* job,
+                             lds_export_report* out_report) {
+    return guard([&] {
+        require(model, "model");
+        require(cut, "cut");
+        require(folder, "folder");
+        checked(out_report, "out_report");
+        const lds_povray_options& given = checked(options, "options");
+        if (cut->generation != model->generation)
+            fail(Status::StaleId, "the cut belongs to another model");
+        const ThreadLimit limit(given.threads);
+        const Job progress = job_of(job);
+        progress.stage(Stage::Export);
+        load_chosen(*model, cut->cut, progress);
+        povray::ExportOptions wanted;
+        wanted.folder = folder;
+        wanted.antialiasing = antialiasing_of(given);
+        wanted.false_color = given.false_color != 0;
+        wanted.covered_only = given.covered_only != 0;
+        const povray::ExportReport report = povray::export_scene(
+            model->model, cut->cut, view_of(view), wanted, model->problems, progress);
+        lds_export_report out{};
+        out.bytes = report.bytes;
+        out.files = report.files;
+        out.written = report.written;
+        out.cpu_s = report.cpu_s;
+        hand_out(out_report, out, "out_report");
+    });
+}
+
+lds_status lds_povray_run(const char* folder, const char* picture,
+                          const lds_povray_options* options, lds_job* job,
+                          lds_povray_report* out_report) {
+    return guard([&] {
+        require(folder, "folder");
+        require(picture, "picture");
+        checked(out_report, "out_report");
+        const lds_povray_options& given = checked(options, "options");
+        povray::RunOptions wanted;
+        wanted.folder = folder;
+        wanted.program = given.program == nullptr ? "" : given.program;
+        wanted.threads = given.threads;
+        wanted.output_name = picture;
+        const std::string ending = std::filesystem::path(picture).extension().string();
+        if (ending != ".exr" && ending != ".png")
+            fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
+        wanted.output = ending == ".exr" ? povray::Output::Exr : povray::Output::Png;
+        const povray::RunReport report = povray::run(wanted, job_of(job));
+        lds_povray_report out{};
+        out.exit_code = report.exit_code;
+        out.parse_cpu_s = report.parse_cpu_s;
+        out.trace_cpu_s = report.trace_cpu_s;
+        out.wall_s = report.wall_s;
+        out.peak_bytes = report.peak_bytes;
+        hand_out(out_report, out, "out_report");
+    });
+}
+
+lds_status lds_povray_empty_bytes(int32_t width, int32_t height, const char* program,
+                                  uint64_t* out_bytes) {
+    return guard([&] {
+        require(out_bytes, "out_bytes");
+        View view;
+        view.width = width;
+        view.height = height;
+        povray::RunOptions like;
+        like.program = program == nullptr ? "" : program;
+        *out_bytes = povray::empty_scene_bytes(view, povray::Antialiasing::Final, like);
+    });
+}
+
+lds_status lds_povray_find(const char* program, const char** out_path) {
+    return guard([&] {
+        require(out_path, "out_path");
+        thread_local std::string path;
+        path = povray::find_program(program == nullptr ? "" : program);
+        *out_path = path.c_str();
+    });
+}
+
+lds_status lds_povray_false_color(int32_t kind, uint32_t lod, double out_color[3]) {
+    return guard([&] {
+        require(out_color, "out_color");
+        if (kind != LDS_KIND_MESH && kind != LDS_KIND_BOX && kind != LDS_KIND_ELLIPSOID)
+            fail(Status::InvalidArgument, "kind ", kind, " is not drawn");
+        copy(povray::color_of(static_cast<Kind>(kind), lod), out_color);
+    });
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arguments.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace lodestone::tools {
+
+Arguments::Arguments(const std::vector<std::string>& words,
+                     const std::vector<OptionHelp>& options) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string& word = words[i];
+        if (word.rfind("--", 0) != 0) {
+            positional_.push_back(word);
+            continue;
+        }
+        const size_t equals = word.find('=');
+        const std::string name = word.substr(2, equals == std::string::npos ? equals : equals - 2);
+        const auto option = std::find_if(options.begin(), options.end(),
+                                         [&](const OptionHelp& one) { return name == one.name; });
+        if (option == options.end())
+            throw UsageError("unknown option --" + name);
+        if (option->value[0] == '\0') {
+            values_[name] = "";
+        } else if (equals != std::string::npos) {
+            values_[name] = word.substr(equals + 1);
+        } else if (i + 1 < words.size()) {
+            values_[name] = words[++i];
+        } else {
+            throw UsageError("--" + name + " needs a value: --" + name + " " + option->value);
+        }
+    }
+}
+
+std::optional<std::string> Arguments::text(const std::string& option) const {
+    const auto at = values_.find(option);
+    return at == values_.end() ? std::nullopt : std::optional<std::string>(at->second);
+}
+
+double Arguments::number(const std::string& option, double otherwise, double least,
+                         double most) const {
+    const auto at = values_.find(option);
+    if (at == values_.end())
+        return otherwise;
+    double value = 0;
+    const char* end = at->second.data() + at->second.size();
+    const auto parsed = std::from_chars(at->second.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end || !(value >= least && value <= most))
+        throw UsageError("--" + option + " is '" + at->second + "'; a number from " +
+                         std::to_string(least) + " to " + std::to_string(most) + " expected");
+    return value;
+}
+
+uint64_t Arguments::count(const std::string& option, uint64_t otherwise) const {
+    const auto at = values_.find(option);
+    if (at == values_.end())
+        return otherwise;
+    uint64_t value = 0;
+    const char* end = at->second.data() + at->second.size();
+    const auto parsed = std::from_chars(at->second.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end)
+        throw UsageError("--" + option + " is '" + at->second + "'; a whole number expected");
+    return value;
+}
+
+}  // namespace lodestone::tools

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Session: one run of the command: its job with a progress bar, Ctrl-C, errors, the JSON report.
+#pragma once
+
+#include "lodestone/lodestone.h"
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace lodestone::tools {
+
+/// A failed call of the library: its status and sentence.
+struct Failure : std::runtime_error {
+    Failure(lds_status cause, const std::string& sentence)
+        : std::runtime_error(sentence), status(cause) {}
+    lds_status status;
+};
+
+/// Throws Failure with the library's sentence unless the call went well.
+void check(lds_status status);
+
+struct DestroyModel {
+    void operator()(lds_model* model) const { lds_model_destroy(model); }
+};
+struct DestroyCut {
+    void operator()(lds_cut* cut) const { lds_cut_destroy(cut); }
+};
+using ModelHandle = std::unique_ptr<lds_model, DestroyModel>;
+using CutHandle = std::unique_ptr<lds_cut, DestroyCut>;
+
+ModelHandle read_model(const std::string& path);
+
+/// The model's problems as the report's list; printed to stderr too.
+nlohmann::ordered_json problems_of(const lds_model* model);
+
+/// Draws a bar on stderr while it lives (only on a terminal) and passes Ctrl-C to the job.
+class Progress {
+public:
+    explicit Progress(const char* what);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    lds_job* job() { return &job_; }
+
+private:
+    lds_job job_{};
+    volatile bool done_ = false;
+    std::thread watcher_;
+};
+
+/// A report with the fields every verb has.
+nlohmann::ordered_json report_of(const char* verb, const std::string& input);
+
+/// Writes the report where --json says (atomically), if it says so. Throws Failure.
+void write_report(const std::string* path, const nlohmann::ordered_json& report);
+
+}  // namespace lodestone::tools

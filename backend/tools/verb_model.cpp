@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// measure, simplify, build, info.
+#include "session.h"
+#include "verbs.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lodestone::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+int32_t threads_of(const Arguments& arguments) {
+    return static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
+}
+
+const char* kind_name(int32_t kind) {
+    switch (kind) {
+        case LDS_KIND_MESH:
+            return "mesh";
+        case LDS_KIND_BOX:
+            return "box";
+        case LDS_KIND_ELLIPSOID:
+            return "ellipsoid";
+        case LDS_KIND_ASSEMBLY:
+            return "assembly";
+        default:
+            return "unknown";
+    }
+}
+
+lds_object object_at(const lds_model* model, size_t position) {
+    lds_object object{};
+    check(lds_model_object_at(model, position, &object));
+    return object;
+}
+
+lds_object_summary summary_of(lds_model* model, lds_object object) {
+    lds_object_summary summary{};
+    summary.struct_size = sizeof summary;
+    check(lds_model_object_summary(model, object, &summary));
+    return summary;
+}
+
+Json totals_json(lds_model* model) {
+    lds_totals totals{};
+    totals.struct_size = sizeof totals;
+    check(lds_model_totals(model, &totals));
+    return {{"objects", totals.objects},
+            {"placements", totals.occurrences},
+            {"triangles_placed", totals.triangles_placed},
+            {"triangles_unique", totals.triangles_unique},
+            {"representations", totals.representations}};
+}
+
+Json vector(const double* values, size_t count) {
+    return Json(std::vector<double>(values, values + count));
+}
+
+void finish(const Arguments& arguments, const Json& report) {
+    const auto path = arguments.text("json");
+    write_report(path ? &*path : nullptr, report);
+}
+
+}  // namespace
+
+int run_measure(const Arguments& arguments) {
+    const std::string& input = arguments.positional()[0];
+    lds_measure_options options = lds_measure_options_default();
+    options.rays = arguments.count("rays", options.rays);
+    options.relative_error = arguments.number("relative-error", 0, 0, 1);
+    options.seed = arguments.count("seed", options.seed);
+    options.threads = threads_of(arguments);
+    const ModelHandle model = read_model(input);
+    Json report = report_of("measure", input);
+    Json& objects = report["objects"] = Json::array();
+    std::printf("%-32s %12s %12s  %-26s color\n", "object", "visible m^2", "surface m^2",
+                "centroid");
+    for (size_t i = 0; i < lds_model_object_count(model.get()); ++i) {
+        const lds_object object = object_at(model.get(), i);
+        const std::string name = summary_of(model.get(), object).name;
+        lds_attributes a{};
+        a.struct_size = sizeof a;
+        Progress progress("measuring");
+        check(lds_model_measure(model.get(), object, &options, progress.job(), &a));
+        std::printf("%-32.32s %12.6g %12.6g  %8.4g %8.4g %8.4g %5.2f %5.2f %5.2f\n", name.c_str(),
+                    a.visible_area, a.surface_area, a.centroid[0], a.centroid[1], a.centroid[2],
+                    a.color[0], a.color[1], a.color[2]);
+        objects.push_back({{"name", name},
+                           {"visible_area", a.visible_area},
+                           {"surface_area", a.surface_area},
+                           {"centroid", vector(a.centroid, 3)},
+                           {"inertia", vector(a.inertia, 6)},
+                           {"normal_moment", a.normal_moment},
+                           {"color", vector(a.color, 3)},
+                           {"roughness", a.roughness},
+                           {"metallic", a.metallic},
+                           {"relative_error", a.relative_error},
+                           {"rays", a.rays}});
+    }
+    report["problems"] = problems_of(model.get());
+    finish(arguments, report);
+    return 0;
+}
+
+int run_simplify(const Arguments& arguments) {
+    const std::string& input = arguments.positional()[0];
+    const std::string& output = arguments.positional()[1];
+    lds_simplify_options options = lds_simplify_options_default();
+    options.ratio = arguments.number("ratio", 0, 0, 1);
+    options.triangles = arguments.count("triangles", 0);
+    options.error = arguments.number("error", 0, 0, 1e12);
+    options.measure = arguments.has("measure") ? 1 : 0;
+    options.seed = arguments.count("seed", options.seed);
+    options.threads = threads_of(arguments);
+    if ((options.ratio > 0) + (options.triangles > 0) + (options.error > 0) != 1)
+        throw UsageError("give one of --ratio R, --triangles N and --error METRES, more than 0");
+    const ModelHandle model = read_model(input);
+    lds_simplify_report done{};
+    done.struct_size = sizeof done;
+    {
+        Progress progress("simplifying");
+        check(lds_model_simplify(model.get(), &options, progress.job(), &done));
+    }
+    check(lds_model_write(model.get(), output.c_str()));
+    std::printf("%llu -> %llu triangles, %.3f CPU s",
+                static_cast<unsigned long long>(done.triangles_before),
+                static_cast<unsigned long long>(done.triangles), done.cpu_s);
+    if (done.error >= 0)
+        std::printf(", error %.6g m (largest %.6g m)", done.error, done.max_error);
+    std::printf("\n%s\n", output.c_str());
+    Json report = report_of("simplify", input);
+    report["picture"] = nullptr;
+    report["output"] = output;
+    report["simplify"] = {{"cpu_s", done.cpu_s},
+                          {"triangles_before", done.triangles_before},
+                          {"triangles", done.triangles}};
+    if (done.error >= 0) {
+        report["simplify"]["error"] = done.error;
+        report["simplify"]["max_error"] = done.max_error;
+    }
+    report["problems"] = problems_of(model.get());
+    finish(arguments, report);
+    return 0;
+}
+
+int run_build(const Arguments& arguments) {
+    const std::string& input = arguments.positional()[0];
+    const std::string& store = arguments.positional()[1];
+    lds_build_options options = lds_build_options_default();
+    options.level_ratio = arguments.number("level-ratio", options.level_ratio, 0.02, 0.95);
+    options.rays = arguments.count("rays", options.rays);
+    options.samples = static_cast<uint32_t>(
+        std::min<uint64_t>(arguments.count("samples", options.samples), 1u << 24u));
+    options.seed = arguments.count("seed", options.seed);
+    options.threads = threads_of(arguments);
+    options.rebuild = arguments.has("rebuild") ? 1 : 0;
+    const ModelHandle model = read_model(input);
+    lds_build_report done{};
+    done.struct_size = sizeof done;
+    {
+        Progress progress("building");
+        check(lds_model_build(model.get(), store.c_str(), &options, progress.job(), &done));
+    }
+    std::printf(
+        "%llu objects, %llu built, %llu levels, %.1f MB written, %.1f s (%.1f CPU s)\n%s\n",
+        static_cast<unsigned long long>(done.objects), static_cast<unsigned long long>(done.built),
+        static_cast<unsigned long long>(done.representations),
+        static_cast<double>(done.bytes_written) * 1e-6, done.wall_s, done.cpu_s, store.c_str());
+    Json report = report_of("build", input);
+    report["store"] = store;
+    report["model"] = totals_json(model.get());
+    report["build"] = {{"objects", done.objects},
+                       {"built", done.built},
+                       {"representations", done.representations},
+                       {"bytes_written", done.bytes_written},
+                       {"wall_s", done.wall_s},
+                       {"cpu_s", done.cpu_s}};
+    report["problems"] = problems_of(model.get());
+    finish(arguments, report);
+    return 0;
+}
+
+int run_info(const Arguments& arguments) {
+    const std::string& input = arguments.positional()[0];
+    const uint64_t most = arguments.count("objects", 40);
+    const ModelHandle model = read_model(input);
+    Json report = report_of("info", input);
+    report["model"] = totals_json(model.get());
+    const Json& totals = report["model"];
+    std::printf(
+        "%llu objects and groups, %llu occurrences, %llu triangles placed, %llu unique, "
+        "%llu levels\n",
+        totals["objects"].get<unsigned long long>(), totals["placements"].get<unsigned long long>(),
+        totals["triangles_placed"].get<unsigned long long>(),
+        totals["triangles_unique"].get<unsigned long long>(),
+        totals["representations"].get<unsigned long long>());
+    Json& objects = report["objects"] = Json::array();
+    const size_t count = lds_model_object_count(model.get());
+    for (size_t i = 0; i < count; ++i) {
+        const lds_object object = object_at(model.get(), i);
+        const lds_object_summary summary = summary_of(model.get(), object);
+        Json levels = Json::array();
+        if (i < most)
+            std::printf("%s%s\n", summary.name,
+                        summary.role == LDS_ROLE_ENVIRONMENT ? "  (environment)" : "");
+        for (uint32_t lod = 0; lod < summary.representation_count; ++lod) {
+            lds_representation level{};
+            level.struct_size = sizeof level;
+            check(lds_model_representation(model.get(), object, lod, &level));
+            if (i < most)
+                std::printf("  LOD %-2u %-9s %10llu triangles  %12.6g mm\n", lod,
+                            kind_name(level.kind), static_cast<unsigned long long>(level.triangles),
+                            1000 * level.error);
+            levels.push_back({{"lod", lod},
+                              {"kind", kind_name(level.kind)},
+                              {"triangles", level.triangles},
+                              {"error", level.error},
+                              {"max_error", level.max_error}});
+        }
+        objects.push_back({{"uid", summary.uid},
+                           {"name", summary.name},
+                           {"group", summary.group != 0},
+                           {"levels", std::move(levels)}});
+    }
+    if (count > most)
+        std::printf("... and %zu more (--objects N)\n", static_cast<size_t>(count - most));
+    report["problems"] = problems_of(model.get());
+    finish(arguments, report);
+    return 0;
+}
+
+}  // namespace lodestone::tools

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs.h"
+
+namespace lodestone::tools {
+namespace {
+
+const OptionHelp kJson{"json", "FILE", "also write the result as a JSON report"};
+const OptionHelp kThreads{"threads", "N", "use at most N threads (default: all)"};
+const OptionHelp kSeed{"seed", "N", "seed of random samples (default 1)"};
+
+}  // namespace
+
+const std::vector<Verb>& verbs() {
+    static const std::vector<Verb> all{
+        {"measure",
+         "FILE",
+         "visible area, center, inertia and mean color of each object",
+         "FILE is a .obj, .ply, .glb or .gltf, or a store made by `lodestone build`.\n"
+         "Rays are cast from all around; open sheets count both sides.",
+         1,
+         {{"rays", "N", "rays an object (default 4096; more is surer and slower)"},
+          {"relative-error", "E", "cast until the area is this sure instead, e.g. 0.01"},
+          kJson,
+          kThreads,
+          kSeed},
+         run_measure},
+        {"simplify",
+         "IN OUT",
+         "the same model with fewer triangles",
+         "Give one of --ratio, --triangles and --error. IN and OUT are .obj, .ply or .glb.",
+         2,
+         {{"ratio", "R", "keep this share of every object's triangles, e.g. 0.1"},
+          {"triangles", "N", "keep about N triangles in the whole model"},
+          {"error", "METRES", "the fewest triangles that stay within this distance"},
+          {"measure", "", "measure the distance to the original (--error always does)"},
+          kJson,
+          kThreads,
+          kSeed},
+         run_simplify},
+        {"build",
+         "IN STORE",
+         "the approximation hierarchy of a model, in a folder",
+         "Makes simpler levels, boxes and ellipsoids of every object and group of IN and writes\n"
+         "them to the folder STORE, a 3D Tiles 1.1 tileset. What has not changed is kept.",
+         2,
+         {{"level-ratio", "R", "triangles of a level over the finer one's (default 0.4)"},
+          {"rays", "N", "rays to measure an object (default 4096)"},
+          {"samples", "N", "samples to measure an error (default 4096)"},
+          {"rebuild", "", "also build what has not changed"},
+          kJson,
+          kThreads,
+          kSeed},
+         run_build},
+        {"info",
+         "STORE",
+         "what a store or model holds",
+         "Lists every object with its levels: kind, triangles, error.",
+         1,
+         {{"objects", "N", "list at most N objects (default 40)"}, kJson},
+         run_info},
+        {"cut",
+         "STORE",
+         "which level of everything a view would use",
+         "The camera is one of the store (--camera NAME), or placed by --eye and --look-at.",
+         1,
+         {{"pixel-error", "PX", "largest error on screen in pixels (default 1; 0 = originals)"},
+          {"size", "WxH", "picture size in pixels (default 640x360)"},
+          {"camera", "NAME", "a camera of the store (default: its first)"},
+          {"eye", "X,Y,Z", "where the eye is"},
+          {"look-at", "X,Y,Z", "what it looks at (default 0,0,0)"},
+          {"angle-deg", "A", "horizontal field of view (default 50)"},
+          {"list", "", "list every choice"},
+          kJson},
+         run_cut},
+        {"compare",
+         "A B",
+         "how much two pictures differ",
+         "Prints mean, 99.9 % and largest difference of display values (0...1) and the structural\n"
+         "similarity (SSIM, 1 = the same). PNG, JPEG or EXR.",
+         2,
+         {{"mask", "M", "count only pixels where this picture's alpha is more than 1/255"}, kJson},
+         run_compare},
+        {"version",
+         "",
+         "version of Lodestone and what it found on this machine",
+         "",
+         0,
+         {kJson},
+         run_version},
+    };
+    return all;
+}
+
+}  // namespace lodestone::tools
