@@ -45,7 +45,7 @@ const std::vector<Verb>& verbs() {
          2,
          {{"level-ratio", "R", "triangles of a level over the finer one's (default 0.4)"},
           {"rays", "N", "rays to measure an object (default 4096)"},
-          {"samples", "N", "samples to measure an error (default 4096)"},
+          {"samples", "N", "samples to measure an error (default 2048)"},
           {"rebuild", "", "also build what has not changed"},
           kJson,
           kThreads,

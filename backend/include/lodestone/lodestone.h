@@ -344,7 +344,7 @@ typedef struct lds_build_options {
     double level_ratio; /* triangles of a level over those of the finer one; usual 0.4. Larger:
                              more levels, a closer fit to every distance, more time and disk */
     uint64_t rays;      /* measuring an object; usual 4096 */
-    uint32_t samples;   /* measuring an error, each way; usual 4096 */
+    uint32_t samples;   /* measuring an error, each way; usual 2048 */
     uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */
     uint64_t seed;
     int32_t threads; /* 0 = all */

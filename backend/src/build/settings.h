@@ -15,7 +15,7 @@ struct Settings {
     /// Rays to measure an object's attributes.
     uint64_t rays = 4096;
     /// Area samples to measure an error, each way.
-    uint32_t samples = 4096;
+    uint32_t samples = 2048;
     /// Most triangles a group is flattened to before it is simplified.
     uint64_t group_triangles = 40000;
     uint64_t seed = 1;
