@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders the street at full detail and approximated, and writes picture strips and a report.
+
+Run by samples/quickstart.sh with the system's Python:
+    compare.py --blend build/samples/street.blend --out build/samples [--all]
+
+Everything is rendered in one batch job: one reading of the .blend, the levels built when they are
+stale, then for each camera a 16-sample reference, full detail and Pixel Error 0.5, 1, 2, 4 with the
+antialiasing of final pictures, the masks of covered pixels, and the false-colored picture.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+STAGE = Path(os.environ.get("LODESTONE_STAGE", HERE.parents[1] / "build/release/stage"))
+ADDON = STAGE / "addons/lodestone"
+sys.path.insert(0, str(ADDON))
+
+import lodestone_native as native  # noqa: E402
+from report import write_report  # noqa: E402
+from strip import difference, make_strip  # noqa: E402
+
+PIXEL_ERRORS = (0.5, 1.0, 2.0, 4.0)
+CAMERAS = ("far", "middle", "near")
+SIZE = (640, 360)
+
+
+def name_of(pixel_error: float) -> str:
+    return "full" if pixel_error == 0 else f"{pixel_error:g}px"
+
+
+def views_of(camera: str, folder: Path) -> list[dict]:
+    """What batch.py is asked to render for one camera."""
+
+    def view(name: str, pixel_error: float, **more) -> dict:
+        out = str(folder / f"{camera}_{name}.png")
+        return {"camera": camera, "pixel_error": pixel_error, "size": SIZE, "out": out, **more}
+
+    views = [view("reference", 0.0, antialias="reference")]
+    for pixel_error in (0.0, *PIXEL_ERRORS):
+        views.append(view(name_of(pixel_error), pixel_error))
+        views.append(view(name_of(pixel_error) + "_mask", pixel_error, covered_only=True))
+    views.append(view("1px_false", 1.0, false_color=True))
+    return views
+
+
+def render(blend: Path, folder: Path, cameras: tuple[str, ...]) -> dict:
+    """Runs the batch job; returns its report."""
+    views, report = folder / "views.json", folder / "batch.json"
+    views.write_text(json.dumps([v for c in cameras for v in views_of(c, folder)]), "utf-8")
+    command = ["/usr/bin/python3", str(ADDON / "batch.py"), "render", str(blend)]
+    command += ["--store", str(folder / "store"), "--views", str(views), "--json", str(report)]
+    done = subprocess.run(command, check=False)
+    if done.returncode != 0:
+        sys.exit(f"batch.py ended with exit code {done.returncode}; see {report}")
+    return json.loads(report.read_text("utf-8"))
+
+
+def merged_mask(a: Path, b: Path, out: Path) -> Path:
+    """Covered pixels: where either picture has alpha."""
+    first, second = native.image_read(str(a)), native.image_read(str(b))
+    for i in range(3, len(first.pixels), 4):
+        first.pixels[i] = max(first.pixels[i], second.pixels[i])
+    native.image_write_png(str(out), first)
+    return out
+
+
+def compared(camera: str, folder: Path) -> dict:
+    """{"full": {...}, "1px": {...}}: differences from the reference, on covered pixels."""
+    full_mask = folder / f"{camera}_full_mask.png"
+    out = {}
+    for pixel_error in (0.0, *PIXEL_ERRORS):
+        name = name_of(pixel_error)
+        mask = merged_mask(
+            full_mask,
+            folder / f"{camera}_{name}_mask.png",
+            folder / f"{camera}_{name}_covered.png",
+        )
+        found = native.image_compare(
+            str(folder / f"{camera}_reference.png"), str(folder / f"{camera}_{name}.png"), str(mask)
+        )
+        out[name] = {
+            "mean": found.mean,
+            "p999": found.p999,
+            "max": found.max,
+            "ssim": found.ssim,
+            "pixels": found.pixels,
+        }
+    return out
+
+
+def legend() -> list:
+    kinds = native.Kind
+    entries = [(f"LOD {lod}", (kinds.MESH, lod)) for lod in (0, 1, 2, 3, 4, 5)]
+    entries[-1] = ("LOD 5+", entries[-1][1])
+    entries += [("BOX", (kinds.BOX, 0)), ("ELLIPSOID", (kinds.ELLIPSOID, 0))]
+    return [(word, native.povray_false_color(*key)) for word, key in entries]
+
+
+def write_strip(camera: str, folder: Path) -> Path:
+    def picture(name: str):
+        return native.image_read(str(folder / f"{camera}_{name}.png"))
+
+    full, one = picture("full"), picture("1px")
+    panels = [
+        (full, "FULL DETAIL"),
+        (one, "PIXEL ERROR 1"),
+        (picture("1px_false"), "WHICH REPRESENTATION"),
+        (difference(full, one, 8.0), "DIFFERENCE X 8"),
+    ]
+    mask = picture("full_mask")
+    path = folder / f"strip_{camera}.png"
+    native.image_write_png(str(path), make_strip(native, panels, legend(), mask, 2))
+    return path
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--blend", type=Path, required=True)
+    parser.add_argument("--out", type=Path, required=True, help="folder")
+    parser.add_argument("--all", action="store_true", help="also the middle and near cameras")
+    options = parser.parse_args()
+    folder = options.out.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    cameras = CAMERAS if options.all else CAMERAS[:1]
+    batch = render(options.blend.resolve(), folder, cameras)
+    empty = native.povray_empty_bytes(*SIZE)
+    differences = {camera: compared(camera, folder) for camera in cameras}
+    strips = [write_strip(camera, folder) for camera in cameras]
+    report = write_report(folder, batch, differences, empty)
+    for strip in strips:
+        print(f"picture strip: {strip}")
+    print(f"report: {report}")
+
+
+if __name__ == "__main__":
+    main()
