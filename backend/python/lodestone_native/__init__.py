@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lodestone's C interface in Python: the same names without `lds_`, errors as exceptions.
+
+No bpy, no numpy, nothing compiled per Python version. Importing never loads the library; the first
+call does, and says in one sentence when it cannot.
+"""
+
+from .cut import Cut
+from .enums import Antialias, Kind, LightKind, Role, Severity, Stage, Status
+from .errors import LodestoneError
+from .image import Image, image_compare, image_read, image_size, image_write_png
+from .job import Job
+from .library import abi_version, library_path, rays_check, version
+from .measure import surface_inertia
+from .model import BuildOptions, MeasureOptions, MeshBuffers, Model, SimplifyOptions
+from .povray import (
+    PovrayOptions,
+    povray_empty_bytes,
+    povray_export,
+    povray_false_color,
+    povray_find,
+    povray_run,
+)
+from .structs import Object
+from .view import Camera, View
+
+__all__ = [
+    "Antialias",
+    "BuildOptions",
+    "Camera",
+    "Cut",
+    "Image",
+    "Job",
+    "Kind",
+    "LightKind",
+    "LodestoneError",
+    "MeasureOptions",
+    "MeshBuffers",
+    "Model",
+    "Object",
+    "PovrayOptions",
+    "Role",
+    "Severity",
+    "SimplifyOptions",
+    "Stage",
+    "Status",
+    "View",
+    "abi_version",
+    "image_compare",
+    "image_read",
+    "image_size",
+    "image_write_png",
+    "library_path",
+    "povray_empty_bytes",
+    "povray_export",
+    "povray_false_color",
+    "povray_find",
+    "povray_run",
+    "rays_check",
+    "surface_inertia",
+    "version",
+]

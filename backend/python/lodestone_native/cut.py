@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cut: which representation of every occurrence a view uses."""
+
+import ctypes
+from typing import Any, NamedTuple
+
+from . import structs
+from .job import Job
+from .library import check, library
+from .model import Model
+from .structs import Object, record, text_out
+from .view import View
+
+
+class Choice(NamedTuple):
+    object: Object
+    lod: int
+    kind: int
+    error_px: float
+    world: tuple[float, ...]
+
+
+class Cut:
+    """Keeps its model alive; close it (or leave the `with` block) to free its memory."""
+
+    def __init__(self, model: Model, view: View, job: Job | None = None) -> None:
+        self.model = model
+        self.view = view
+        self._handle: ctypes.c_void_p | None = ctypes.c_void_p()
+        check(
+            library().lds_cut_create(model.handle, view.struct(), job, ctypes.byref(self._handle))
+        )
+
+    def __enter__(self) -> "Cut":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+    def close(self) -> None:
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            library().lds_cut_destroy(handle)
+
+    @property
+    def handle(self) -> ctypes.c_void_p:
+        if not self._handle:
+            raise ValueError("the cut is closed")
+        return self._handle
+
+    def summary(self) -> Any:
+        out = structs.CutSummary()
+        check(library().lds_cut_get_summary(self.handle, ctypes.byref(out)))
+        return record(out)
+
+    def choices(self) -> list[Choice]:
+        count = library().lds_cut_choice_count(self.handle)
+        buffer = (structs.Choice * count)()
+        check(library().lds_cut_choice_copy(self.handle, buffer, count))
+        return [
+            Choice(Object(*c.object.key), c.lod, c.kind, c.error_px, tuple(c.world)) for c in buffer
+        ]
+
+    def choice_path(self, position: int) -> str:
+        """Names of the placements from the root, joined by '/'."""
+        return text_out(library().lds_cut_choice_path(self.handle, position))

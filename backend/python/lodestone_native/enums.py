@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numbers of the C interface, by name."""
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    OK = 0
+    INVALID_ARGUMENT = 1
+    OUT_OF_MEMORY = 2
+    INTERNAL = 3
+    CANCELLED = 4
+    STALE_ID = 5
+    IO = 10
+    BAD_FILE = 11
+    RAYS_UNAVAILABLE = 20
+    POVRAY_MISSING = 30
+    POVRAY_FAILED = 31
+
+
+class Stage(IntEnum):
+    """What a long call is doing now."""
+
+    NONE = 0
+    EXTRACT = 1
+    MEASURE = 2
+    SIMPLIFY = 3
+    GROUP = 4
+    STORE = 5
+    CHOOSE = 6
+    EXPORT = 7
+    PARSE = 8
+    TRACE = 9
+
+
+class Role(IntEnum):
+    ORDINARY = 0
+    ENVIRONMENT = 1
+
+
+class Kind(IntEnum):
+    MESH = 1
+    BOX = 3
+    ELLIPSOID = 4
+    ASSEMBLY = 8
+
+
+class Antialias(IntEnum):
+    OFF = 0
+    FINAL = 1
+    REFERENCE = 2
+
+
+class LightKind(IntEnum):
+    SUN = 0
+    POINT = 1
+
+
+class Severity(IntEnum):
+    INFO = 0
+    WARNING = 1
+    ERROR = 2

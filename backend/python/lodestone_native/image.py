@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures: reading, writing and comparing them."""
+
+import ctypes
+from array import array
+from dataclasses import dataclass
+from typing import Any
+
+from . import structs
+from .library import check, library
+from .structs import record, text_in
+
+
+@dataclass(frozen=True)
+class Image:
+    """Linear RGBA with associated alpha; pixels: array('f') [height][width][4]."""
+
+    width: int
+    height: int
+    pixels: array
+
+
+def image_size(path: str) -> tuple[int, int]:
+    width, height = ctypes.c_int32(), ctypes.c_int32()
+    check(library().lds_image_size(text_in(path), ctypes.byref(width), ctypes.byref(height)))
+    return width.value, height.value
+
+
+def image_read(path: str, bottom_up: bool = False) -> Image:
+    """A PNG, JPEG or EXR. bottom_up: the lowest row first (Blender's order)."""
+    width, height = image_size(path)
+    pixels = array("f", bytes(16 * width * height))
+    check(library().lds_image_read(text_in(path), int(bottom_up), _floats(pixels), len(pixels)))
+    return Image(width, height, pixels)
+
+
+def image_write_png(path: str, image: Image) -> None:
+    """Top row first -> 8-bit sRGB."""
+    if image.pixels.itemsize != 4 or len(image.pixels) != 4 * image.width * image.height:
+        raise ValueError("the pixels do not fit the size of the image")
+    check(
+        library().lds_image_write_png(
+            text_in(path), image.width, image.height, _floats(image.pixels)
+        )
+    )
+
+
+def image_compare(path_a: str, path_b: str, mask: str | None = None) -> Any:
+    """mask: a picture whose alpha > 1/255 marks the compared pixels."""
+    out = structs.Difference()
+    check(
+        library().lds_image_compare(
+            text_in(path_a), text_in(path_b), text_in(mask), ctypes.byref(out)
+        )
+    )
+    return record(out)
+
+
+def _floats(buffer: array) -> Any:
+    return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_float))

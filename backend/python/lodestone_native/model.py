@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model: objects, placements, materials, lights, cameras; building and asking it."""
+
+import ctypes
+from array import array
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import structs
+from .enums import LightKind, Role
+from .job import Job
+from .library import check, library
+from .structs import Object, record, text_in
+from .view import Camera, Vector
+
+
+@dataclass
+class MeshBuffers:
+    """A triangle mesh in flat buffers of 4-byte items (array.array 'f', 'i' or 'I').
+
+    positions [vertex][3], triangles [triangle][3]; normals and uvs belong to corners: entry
+    corners[3 t + c] is that of corner c of triangle t (None: corners = triangles).
+    """
+
+    positions: array
+    triangles: array
+    corners: array | None = None
+    corner_normals: array | None = None  # [corner][3]; None: flat shaded
+    corner_uvs: array | None = None  # [corner][2]
+    slots: array | None = None  # [triangle]
+
+    def struct(self) -> structs.MeshView:
+        """Points into the buffers: keep them until the call is over. Raises ValueError when the
+        lengths do not fit together, so that the library never reads past an end."""
+        vertices = _count("positions", self.positions, 3)
+        triangles = _count("triangles", self.triangles, 3)
+        if self.corners is not None and _count("corners", self.corners, 3) != triangles:
+            raise ValueError("corners and triangles differ in length")
+        counts = set()
+        if self.corner_normals is not None:
+            counts.add(_count("corner_normals", self.corner_normals, 3))
+        if self.corner_uvs is not None:
+            counts.add(_count("corner_uvs", self.corner_uvs, 2))
+        if self.corners is None:
+            counts.add(vertices)
+        if len(counts) > 1:
+            raise ValueError("corner_normals and corner_uvs differ in their number of corners")
+        if self.slots is not None and _count("slots", self.slots, 1) != triangles:
+            raise ValueError("slots and triangles differ in length")
+        return structs.MeshView(
+            positions=_address(self.positions),
+            vertex_count=vertices,
+            triangles=_address(self.triangles),
+            triangle_count=triangles,
+            corners=_address(self.corners),
+            corner_count=counts.pop() if counts else 0,
+            corner_normals=_address(self.corner_normals),
+            corner_uvs=_address(self.corner_uvs),
+            slots=_address(self.slots),
+        )
+
+
+class MeasureOptions(structs.MeasureOptions):
+    def __new__(cls, **changes: Any) -> Any:
+        return _changed(library().lds_measure_options_default(), changes)
+
+
+class SimplifyOptions(structs.SimplifyOptions):
+    def __new__(cls, **changes: Any) -> Any:
+        return _changed(library().lds_simplify_options_default(), changes)
+
+
+class BuildOptions(structs.BuildOptions):
+    def __new__(cls, **changes: Any) -> Any:
+        return _changed(library().lds_build_options_default(), changes)
+
+
+class Model:
+    """One thread at a time; close it (or leave the `with` block) to free its memory."""
+
+    def __init__(self, handle: ctypes.c_void_p | None = None) -> None:
+        self._handle = handle
+        if handle is None:
+            self._handle = ctypes.c_void_p()
+            check(library().lds_model_create(ctypes.byref(self._handle)))
+
+    @classmethod
+    def read(cls, path: str) -> "Model":
+        """A .obj, .ply, .glb or .gltf file, or a store."""
+        handle = ctypes.c_void_p()
+        check(library().lds_model_read(text_in(path), ctypes.byref(handle)))
+        return cls(handle)
+
+    def __enter__(self) -> "Model":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+    def close(self) -> None:
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            library().lds_model_destroy(handle)
+
+    @property
+    def handle(self) -> ctypes.c_void_p:
+        if not self._handle:
+            raise ValueError("the model is closed")
+        return self._handle
+
+    def write(self, path: str) -> None:
+        check(library().lds_model_write(self.handle, text_in(path)))
+
+    # ---- Filling ----
+
+    def add_material(
+        self,
+        name: str,
+        base_color: Vector,
+        roughness: float = 0.5,
+        metallic: float = 0.0,
+        specular: float = 0.5,
+        emission: Vector = (0.0, 0.0, 0.0),
+    ) -> int:
+        material = structs.Material(
+            name=text_in(name),
+            base_color=base_color,
+            roughness=roughness,
+            metallic=metallic,
+            specular=specular,
+            emission=emission,
+        )
+        index = ctypes.c_uint32()
+        check(library().lds_model_add_material(self.handle, material, ctypes.byref(index)))
+        return index.value
+
+    def add_mesh(
+        self,
+        uid: str,
+        name: str,
+        mesh: MeshBuffers,
+        materials: Sequence[int] = (),
+        role: int = Role.ORDINARY,
+    ) -> Object:
+        out = Object()
+        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        slots = (ctypes.c_uint32 * len(materials))(*materials)
+        check(
+            library().lds_model_add_mesh(
+                self.handle, info, mesh.struct(), slots, len(materials), ctypes.byref(out)
+            )
+        )
+        return out
+
+    def add_group(self, uid: str, name: str, role: int = Role.ORDINARY) -> Object:
+        out = Object()
+        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        check(library().lds_model_add_group(self.handle, info, ctypes.byref(out)))
+        return out
+
+    def add_placement(
+        self, group: Object, child: Object, transform: Sequence[float], name: str
+    ) -> None:
+        """transform: row-major 3x4, child to group."""
+        rows = (ctypes.c_double * 12)(*transform)
+        check(library().lds_model_add_placement(self.handle, group, child, rows, text_in(name)))
+
+    def set_root(self, root: Object) -> None:
+        check(library().lds_model_set_root(self.handle, root))
+
+    def add_light(
+        self,
+        name: str,
+        kind: LightKind,
+        color: Vector,
+        power: float,
+        position: Vector = (0.0, 0.0, 0.0),
+        direction: Vector = (0.0, 0.0, -1.0),
+        shadow: bool = True,
+    ) -> None:
+        light = structs.Light(
+            name=text_in(name),
+            kind=kind,
+            color=color,
+            power=power,
+            position=position,
+            direction=direction,
+            shadow=int(shadow),
+        )
+        check(library().lds_model_add_light(self.handle, light))
+
+    def add_camera(self, camera: Camera) -> None:
+        check(library().lds_model_add_camera(self.handle, camera.struct()))
+
+    def set_world(self, color: Vector, transparent: bool = False) -> None:
+        world = structs.World(color=color, transparent=int(transparent))
+        check(library().lds_model_set_world(self.handle, world))
+
+    # ---- Asking ----
+
+    def totals(self) -> Any:
+        return self._ask(library().lds_model_totals, structs.Totals())
+
+    def objects(self) -> Iterator[Object]:
+        for position in range(library().lds_model_object_count(self.handle)):
+            out = Object()
+            check(library().lds_model_object_at(self.handle, position, ctypes.byref(out)))
+            yield out
+
+    def find_object(self, uid: str) -> Object | None:
+        out = Object()
+        check(library().lds_model_find_object(self.handle, text_in(uid), ctypes.byref(out)))
+        return out or None
+
+    def object_summary(self, item: Object) -> Any:
+        out = structs.ObjectSummary()
+        check(library().lds_model_object_summary(self.handle, item, ctypes.byref(out)))
+        return record(out)
+
+    def representation(self, item: Object, lod: int) -> Any:
+        """lod 0 is the finest."""
+        out = structs.Representation()
+        check(library().lds_model_representation(self.handle, item, lod, ctypes.byref(out)))
+        return record(out)
+
+    def occurrences(self) -> list[tuple[Object, tuple[float, ...]]]:
+        """Leaves reached along each path of placements, depth first: (object, world transform)."""
+        count = ctypes.c_size_t()
+        check(library().lds_model_occurrence_count(self.handle, ctypes.byref(count)))
+        buffer = (structs.Occurrence * count.value)()
+        check(library().lds_model_occurrence_copy(self.handle, buffer, count.value))
+        return [(Object(*item.object.key), tuple(item.world)) for item in buffer]
+
+    def cameras(self) -> list[Camera]:
+        found = []
+        for position in range(library().lds_model_camera_count(self.handle)):
+            out = structs.Camera()
+            check(library().lds_model_camera(self.handle, position, ctypes.byref(out)))
+            values = record(out)._asdict()
+            values["orthographic"] = bool(values["orthographic"])
+            found.append(Camera(**values))
+        return found
+
+    def problems(self) -> list[Any]:
+        found = []
+        for position in range(library().lds_model_problem_count(self.handle)):
+            out = structs.Problem()
+            check(library().lds_model_problem(self.handle, position, ctypes.byref(out)))
+            found.append(record(out))
+        return found
+
+    # ---- Long calls ----
+
+    def measure(self, item: Object, options: Any = None, job: Job | None = None) -> Any:
+        out = structs.Attributes()
+        check(
+            library().lds_model_measure(
+                self.handle, item, options or MeasureOptions(), job, ctypes.byref(out)
+            )
+        )
+        return record(out)
+
+    def simplify(self, options: Any, job: Job | None = None) -> Any:
+        out = structs.SimplifyReport()
+        check(library().lds_model_simplify(self.handle, options, job, ctypes.byref(out)))
+        return record(out)
+
+    def build_estimate(self, store: str, options: Any = None) -> Any:
+        out = structs.BuildReport()
+        check(
+            library().lds_model_build_estimate(
+                self.handle, text_in(store), options or BuildOptions(), ctypes.byref(out)
+            )
+        )
+        return record(out)
+
+    def build(self, store: str, options: Any = None, job: Job | None = None) -> Any:
+        """Gives every object its stand-ins and brings the store (a folder) up to date."""
+        out = structs.BuildReport()
+        check(
+            library().lds_model_build(
+                self.handle, text_in(store), options or BuildOptions(), job, ctypes.byref(out)
+            )
+        )
+        return record(out)
+
+    def _ask(self, function: Any, out: Any) -> Any:
+        check(function(self.handle, ctypes.byref(out)))
+        return record(out)
+
+
+def _changed(options: Any, changes: dict[str, Any]) -> Any:
+    names = {field[0] for field in options._fields_}
+    for name, value in changes.items():
+        if name not in names:
+            raise TypeError(f"{type(options).__name__} has no {name}")
+        setattr(options, name, value)
+    return options
+
+
+def _count(name: str, buffer: array, width: int) -> int:
+    if buffer.itemsize != 4:
+        raise ValueError(f"{name} needs 4-byte items, not {buffer.itemsize}")
+    if len(buffer) % width:
+        raise ValueError(f"{name} has {len(buffer)} items, not a multiple of {width}")
+    return len(buffer) // width
+
+
+def _address(buffer: array | None) -> int | None:
+    return None if buffer is None else buffer.buffer_info()[0] or None

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writing a POV-Ray scene for a cut, and running POV-Ray on it."""
+
+import ctypes
+from dataclasses import dataclass
+from typing import Any
+
+from . import structs
+from .cut import Cut
+from .enums import Antialias
+from .job import Job
+from .library import check, library
+from .structs import record, text_in, text_out
+
+
+@dataclass(frozen=True)
+class PovrayOptions:
+    antialias: int = Antialias.FINAL
+    false_color: bool = False  # paint by kind and LOD number
+    covered_only: bool = False  # without environment objects and world
+    threads: int = 0  # 0 = all
+    program: str | None = None  # None: $LODESTONE_POVRAY, else povray on the PATH
+
+    def struct(self) -> structs.PovrayOptions:
+        out = library().lds_povray_options_default()
+        out.antialias = self.antialias
+        out.false_color = int(self.false_color)
+        out.covered_only = int(self.covered_only)
+        out.threads = self.threads
+        out.program = text_in(self.program or None)
+        return out
+
+
+def povray_export(cut: Cut, folder: str, options: PovrayOptions, job: Job | None = None) -> Any:
+    """Writes scene.pov, scene.ini and r/<16 hex>.inc into folder."""
+    out = structs.ExportReport()
+    check(
+        library().lds_povray_export(
+            cut.model.handle,
+            cut.handle,
+            cut.view.struct(),
+            text_in(folder),
+            options.struct(),
+            job,
+            ctypes.byref(out),
+        )
+    )
+    return record(out)
+
+
+def povray_run(folder: str, picture: str, options: PovrayOptions, job: Job | None = None) -> Any:
+    """Renders folder/scene.ini to folder/picture (.exr or .png)."""
+    out = structs.PovrayReport()
+    check(
+        library().lds_povray_run(
+            text_in(folder), text_in(picture), options.struct(), job, ctypes.byref(out)
+        )
+    )
+    return record(out)
+
+
+def povray_empty_bytes(width: int, height: int, program: str | None = None) -> int:
+    """POV-Ray's peak memory on a picture of this size without any object: what to subtract."""
+    out = ctypes.c_uint64()
+    check(
+        library().lds_povray_empty_bytes(width, height, text_in(program or None), ctypes.byref(out))
+    )
+    return out.value
+
+
+def povray_find(program: str | None = None) -> str:
+    """The program that would be run; raises POVRAY_MISSING saying what to do."""
+    out = ctypes.c_char_p()
+    check(library().lds_povray_find(text_in(program or None), ctypes.byref(out)))
+    return text_out(out.value)
+
+
+def povray_false_color(kind: int, lod: int) -> tuple[float, float, float]:
+    out = (ctypes.c_double * 3)()
+    check(library().lds_povray_false_color(kind, lod, out))
+    return (out[0], out[1], out[2])

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The C structs, field by field as in lodestone.h, and the ways in and out of them."""
+
+import ctypes
+from collections import namedtuple
+from ctypes import Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from functools import lru_cache
+from typing import Any
+
+
+class Sized(Structure):
+    """A struct that starts with struct_size; the constructor fills it."""
+
+    def __init__(self, **fields: Any) -> None:
+        super().__init__(struct_size=ctypes.sizeof(type(self)), **fields)
+
+
+class Object(Structure):
+    """An id: an object of one model. {0, 0} is none."""
+
+    _fields_ = [("index", c_uint32), ("generation", c_uint32)]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Object) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __bool__(self) -> bool:
+        return self.key != (0, 0)
+
+    def __repr__(self) -> str:
+        return f"Object({self.index}, {self.generation})"
+
+    @property
+    def key(self) -> tuple[int, int]:
+        return (self.index, self.generation)
+
+
+class ObjectInfo(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("uid", c_char_p),
+        ("name", c_char_p),
+        ("role", c_int32),
+    ]
+
+
+class Material(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("name", c_char_p),
+        ("base_color", c_double * 3),
+        ("roughness", c_double),
+        ("metallic", c_double),
+        ("specular", c_double),
+        ("emission", c_double * 3),
+    ]
+
+
+class MeshView(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("positions", c_void_p),
+        ("vertex_count", c_size_t),
+        ("triangles", c_void_p),
+        ("triangle_count", c_size_t),
+        ("corners", c_void_p),
+        ("corner_count", c_size_t),
+        ("corner_normals", c_void_p),
+        ("corner_uvs", c_void_p),
+        ("slots", c_void_p),
+    ]
+
+
+class Light(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("name", c_char_p),
+        ("kind", c_int32),
+        ("color", c_double * 3),
+        ("power", c_double),
+        ("position", c_double * 3),
+        ("direction", c_double * 3),
+        ("shadow", c_int32),
+    ]
+
+
+class Camera(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("name", c_char_p),
+        ("orthographic", c_int32),
+        ("position", c_double * 3),
+        ("direction", c_double * 3),
+        ("right", c_double * 3),
+        ("up", c_double * 3),
+        ("near_clip", c_double),
+    ]
+
+
+class World(Sized):
+    _fields_ = [("struct_size", c_uint32), ("color", c_double * 3), ("transparent", c_int32)]
+
+
+class Totals(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("objects", c_uint64),
+        ("occurrences", c_uint64),
+        ("triangles_placed", c_uint64),
+        ("triangles_unique", c_uint64),
+        ("representations", c_uint64),
+    ]
+
+
+class ObjectSummary(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("uid", c_char_p),
+        ("name", c_char_p),
+        ("role", c_int32),
+        ("group", c_int32),
+        ("representation_count", c_uint32),
+        ("child_count", c_uint32),
+        ("source_hash", c_uint64),
+        ("center", c_double * 3),
+        ("radius", c_double),
+    ]
+
+
+class Representation(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("error", c_double),
+        ("max_error", c_double),
+        ("triangles", c_uint64),
+        ("bytes", c_uint64),
+        ("hash", c_uint64),
+    ]
+
+
+class Occurrence(Structure):
+    _fields_ = [("object", Object), ("world", c_double * 12)]
+
+
+class Problem(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("object", c_char_p),
+        ("severity", c_int32),
+        ("code", c_char_p),
+        ("message", c_char_p),
+    ]
+
+
+class MeasureOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("rays", c_uint64),
+        ("relative_error", c_double),
+        ("seed", c_uint64),
+        ("threads", c_int32),
+    ]
+
+
+class Attributes(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("visible_area", c_double),
+        ("surface_area", c_double),
+        ("centroid", c_double * 3),
+        ("inertia", c_double * 6),
+        ("normal_moment", c_double),
+        ("color", c_double * 3),
+        ("roughness", c_double),
+        ("metallic", c_double),
+        ("relative_error", c_double),
+        ("rays", c_uint64),
+    ]
+
+
+class SimplifyOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("ratio", c_double),
+        ("triangles", c_uint64),
+        ("error", c_double),
+        ("measure", c_int32),
+        ("seed", c_uint64),
+        ("threads", c_int32),
+    ]
+
+
+class SimplifyReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("triangles_before", c_uint64),
+        ("triangles", c_uint64),
+        ("cpu_s", c_double),
+        ("error", c_double),
+        ("max_error", c_double),
+    ]
+
+
+class BuildOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("level_ratio", c_double),
+        ("rays", c_uint64),
+        ("samples", c_uint32),
+        ("group_triangles", c_uint64),
+        ("seed", c_uint64),
+        ("threads", c_int32),
+        ("rebuild", c_int32),
+    ]
+
+
+class BuildReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("objects", c_uint64),
+        ("built", c_uint64),
+        ("representations", c_uint64),
+        ("triangles", c_uint64),
+        ("bytes_written", c_uint64),
+        ("wall_s", c_double),
+        ("cpu_s", c_double),
+    ]
+
+
+class View(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("camera", Camera),
+        ("width", c_int32),
+        ("height", c_int32),
+        ("pixel_error", c_double),
+        ("kinds", c_uint32),
+    ]
+
+
+class CutSummary(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("occurrences", c_uint64),
+        ("opened", c_uint64),
+        ("mesh", c_uint64),
+        ("box", c_uint64),
+        ("ellipsoid", c_uint64),
+        ("originals", c_uint64),
+        ("triangles", c_uint64),
+        ("bytes", c_uint64),
+        ("largest_error_px", c_double),
+        ("largest_error_name", c_char_p),
+    ]
+
+
+class Choice(Structure):
+    _fields_ = [
+        ("object", Object),
+        ("lod", c_uint32),
+        ("kind", c_int32),
+        ("error_px", c_double),
+        ("world", c_double * 12),
+    ]
+
+
+class PovrayOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("antialias", c_int32),
+        ("false_color", c_int32),
+        ("covered_only", c_int32),
+        ("threads", c_int32),
+        ("program", c_char_p),
+    ]
+
+
+class ExportReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("bytes", c_uint64),
+        ("files", c_uint64),
+        ("written", c_uint64),
+        ("cpu_s", c_double),
+    ]
+
+
+class PovrayReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("exit_code", c_int32),
+        ("parse_cpu_s", c_double),
+        ("trace_cpu_s", c_double),
+        ("wall_s", c_double),
+        ("peak_bytes", c_uint64),
+    ]
+
+
+class Difference(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("mean", c_double),
+        ("p999", c_double),
+        ("max", c_double),
+        ("ssim", c_double),
+        ("pixels", c_uint64),
+    ]
+
+
+def text_in(text: str | None) -> bytes | None:
+    """UTF-8 for the library; bytes of a name that is no UTF-8 travel through unchanged."""
+    return None if text is None else text.encode("utf-8", "surrogateescape")
+
+
+def text_out(data: bytes | None) -> str:
+    return "" if data is None else data.decode("utf-8", "replace")
+
+
+@lru_cache(maxsize=None)
+def _record_type(struct: type[Structure]) -> Any:
+    names = [field[0] for field in struct._fields_ if field[0] != "struct_size"]
+    return namedtuple(struct.__name__, names)
+
+
+def record(struct: Structure) -> Any:
+    """The struct's values as a named tuple that stays valid: strings and arrays are copied."""
+    kind = _record_type(type(struct))
+    return kind(*(_plain(getattr(struct, name)) for name in kind._fields))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes) or value is None:
+        return text_out(value)
+    if isinstance(value, ctypes.Array):
+        return tuple(value)
+    if isinstance(value, Object):
+        return Object(value.index, value.generation)
+    return value

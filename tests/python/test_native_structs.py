@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards the binding against the header: sizes and offsets of every struct, every function."""
+
+import ctypes
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import addon_path
+from lodestone_native import enums, library, prototypes, structs
+from lodestone_native.job import Job
+
+HEADER = addon_path.ROOT / "backend" / "include" / "lodestone" / "lodestone.h"
+C_NAMES = {Job: "lds_job"}
+
+
+def c_name(struct):
+    return C_NAMES.get(struct) or "lds_" + re.sub(r"(?<!^)([A-Z])", r"_\1", struct.__name__).lower()
+
+
+def bound_structs():
+    found = [Job]
+    for value in vars(structs).values():
+        if isinstance(value, type) and issubclass(value, ctypes.Structure):
+            if hasattr(value, "_fields_") and value is not ctypes.Structure:
+                found.append(value)
+    return found
+
+
+class Structs(unittest.TestCase):
+    def test_every_struct_of_the_header_is_bound(self):
+        named = set(re.findall(r"typedef struct (lds_\w+) \{", HEADER.read_text()))
+        self.assertEqual({c_name(struct) for struct in bound_structs()}, named)
+
+    def test_sizes_and_offsets_are_the_compilers(self):
+        compiler = shutil.which("cc") or shutil.which("gcc")
+        if compiler is None:
+            self.skipTest("no C compiler")
+        lines, expected = [], []
+        for struct in bound_structs():
+            name = c_name(struct)
+            lines.append(f'printf("%zu\\n", sizeof({name}));')
+            expected.append((name, ctypes.sizeof(struct)))
+            for field, *_ in struct._fields_:
+                lines.append(f'printf("%zu\\n", offsetof({name}, {field}));')
+                expected.append((f"{name}.{field}", getattr(struct, field).offset))
+        source = (
+            '#include <stdio.h>\n#include "lodestone/lodestone.h"\n'
+            "int main(void) {" + "\n".join(lines) + "return 0;}\n"
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            program = str(Path(folder) / "sizes")
+            include = f"-I{HEADER.parents[1]}"
+            subprocess.run(
+                [compiler, "-x", "c", "-", include, "-o", program],
+                input=source,
+                text=True,
+                check=True,
+            )
+            said = subprocess.run([program], capture_output=True, text=True, check=True).stdout
+        actual = [int(line) for line in said.split()]
+        for (name, ours), theirs in zip(expected, actual, strict=True):
+            self.assertEqual(ours, theirs, name)
+
+    def test_struct_size_is_filled(self):
+        self.assertEqual(structs.View().struct_size, ctypes.sizeof(structs.View))
+        self.assertEqual(Job().struct_size, ctypes.sizeof(Job))
+
+    def test_a_record_outlives_its_struct(self):
+        struct = structs.ObjectSummary(uid=b"u", name="名".encode(), center=(1, 2, 3))
+        copied = structs.record(struct)
+        del struct
+        self.assertEqual((copied.uid, copied.name, copied.center), ("u", "名", (1.0, 2.0, 3.0)))
+
+
+class Functions(unittest.TestCase):
+    def test_every_function_of_the_header_is_declared_in_its_order(self):
+        text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+        named = re.findall(r"LDS_API [^;(]*?(lds_\w+)\(", text)
+        self.assertEqual([name for name, _, _ in prototypes.PROTOTYPES], named)
+
+    def test_argument_counts_are_the_headers(self):
+        text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+        for name, _, arguments in prototypes.PROTOTYPES:
+            found = re.search(rf"\b{name}\(([^;]*)\);", text)
+            listed = found[1].strip()
+            count = 0 if listed == "void" else listed.count(",") + 1
+            self.assertEqual(len(arguments), count, name)
+
+    def test_abi_is_the_headers(self):
+        found = re.search(r"#define LDS_ABI_VERSION (\d+)", HEADER.read_text())
+        self.assertEqual(library.ABI_VERSION, int(found[1]))
+
+    def test_enums_are_the_headers(self):
+        text = HEADER.read_text()
+        for enum, prefix in (
+            (enums.Stage, "LDS_STAGE_"),
+            (enums.Role, "LDS_ROLE_"),
+            (enums.Kind, "LDS_KIND_"),
+            (enums.Antialias, "LDS_ANTIALIAS_"),
+            (enums.Status, "LDS_ERROR_"),
+        ):
+            named = {n: int(v) for n, v in re.findall(rf"{prefix}(\w+) = (\d+)", text)}
+            ours = {member.name: member.value for member in enum}
+            ours.pop("OK", None)
+            self.assertEqual(ours, named)
+
+
+class Loading(unittest.TestCase):
+    def test_a_missing_library_is_a_sentence(self):
+        code = (
+            "import lodestone_native as n\n"
+            "try:\n n.version()\n"
+            "except n.LodestoneError as error:\n print(error)\n"
+        )
+        said = subprocess.run(
+            ["/usr/bin/python3", "-c", code],
+            capture_output=True,
+            text=True,
+            check=True,
+            env={
+                "PYTHONPATH": str(addon_path.ROOT / "backend" / "python"),
+                "LODESTONE_LIBRARY": "/nowhere/liblodestone.so",
+            },
+        ).stdout
+        self.assertIn("/nowhere/liblodestone.so", said)
+
+    def test_a_foreign_library_is_a_sentence(self):
+        code = (
+            "import lodestone_native as n\n"
+            "try:\n n.version()\n"
+            "except n.LodestoneError as error:\n print(error)\n"
+        )
+        said = subprocess.run(
+            ["/usr/bin/python3", "-c", code],
+            capture_output=True,
+            text=True,
+            check=True,
+            env={
+                "PYTHONPATH": str(addon_path.ROOT / "backend" / "python"),
+                "LODESTONE_LIBRARY": __file__,
+            },
+        ).stdout
+        self.assertIn("cannot be loaded", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
