@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lodestone: author at full detail, render with just the detail each picture needs.
+
+Importing this package needs no Blender: batch.py and the tests of core/ use it from plain Python.
+"""
+
+import importlib
+
+bl_info = {
+    "name": "Lodestone",
+    "author": "The Lodestone authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Properties > Render > Levels of Detail",
+    "description": "Levels of detail for objects and groups, and POV-Ray pictures that use just "
+    "the detail they need",
+    "category": "Render",
+    "support": "COMMUNITY",
+}
+
+_MODULES = (
+    "properties",
+    "preferences",
+    "engine",
+    "operators.update_levels",
+    "operators.clear_levels",
+    "operators.select_object",
+    "panels",
+    "compat_panels",
+)
+_loaded: list = []
+
+
+def register() -> None:
+    try:
+        for name in _MODULES:
+            module = importlib.import_module(f"{__name__}.{name}")
+            module.register()
+            _loaded.append(module)
+    except Exception:
+        unregister()  # leave Blender as it was, then let the error be seen
+        raise
+
+
+def unregister() -> None:
+    while _loaded:
+        _loaded.pop().unregister()

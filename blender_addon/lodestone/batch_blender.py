@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The half of batch.py that runs inside Blender: one file, one reading of it per frame."""
+
+import os
+import resource
+import shutil
+import signal
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+PACKAGE = Path(__file__).resolve().parent
+if __name__ == "__main__":  # never enabled in any preferences: registered from its own folder
+    sys.path.insert(0, str(PACKAGE.parent))
+
+import lodestone  # noqa: E402
+from lodestone import extract_engine  # noqa: E402
+from lodestone.core import progress, report, store_path  # noqa: E402
+from lodestone.core.batch_arguments import FileJob, PictureRequest  # noqa: E402
+from lodestone.core.exit_codes import ExitCode  # noqa: E402
+from lodestone.core.native import lodestone_native as native  # noqa: E402
+from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
+from lodestone.core.problems import ERROR, Problems  # noqa: E402
+from lodestone.core.work import Stopped, Work  # noqa: E402
+
+
+class Failed(Exception):
+    """Ends the file with a code and a sentence."""
+
+    def __init__(self, code: ExitCode, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+class FileRun:
+    """Everything done with one file; `result` is its report."""
+
+    def __init__(self, job: FileJob) -> None:
+        self.job = job
+        self.result = report.file_report(job.verb, job.file, ExitCode.DONE)
+        self.problems = Problems()
+        self.work = Work()
+        self.clock = progress.StageClock(0)
+        self._said = 0.0
+        self._built = False
+
+    def run(self) -> ExitCode:
+        code, text = ExitCode.DONE, ""
+        try:
+            self._check_outputs()
+            self._open()
+            self._frames()
+        except (Stopped, KeyboardInterrupt):
+            code, text = ExitCode.CANCELLED, "cancelled"
+        except Failed as error:
+            code, text = error.code, str(error)
+        except native.LodestoneError as error:
+            code, text = _code_of(error), str(error)
+        except extract_engine.CameraMissing as error:
+            code, text = ExitCode.FAILED, str(error)
+        except Exception as error:
+            traceback.print_exc()
+            code, text = ExitCode.FAILED, f"Lodestone failed: {error!r}"
+        if code == ExitCode.DONE and self.problems.wrong:
+            code = ExitCode.FAILED if self.job.strict else ExitCode.INCOMPLETE
+            text = f"the picture is incomplete: {self.problems.wrong[0].sentence}"
+        self.result.update(report.file_report(self.job.verb, self.job.file, code, text))
+        self.result["problems"] = report.problems_part(self.problems)
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+        self.result["memory"] = {"blender_peak_bytes": peak}
+        report.write(self.job.report, self.result)
+        return code
+
+    # ---- Before ----
+
+    def _check_outputs(self) -> None:
+        """Hours of work must not end at a folder that cannot be written."""
+        for picture in self.job.pictures:
+            folder = Path(picture.out)
+            folder = folder if self.job.verb == "export" else folder.parent
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise Failed(ExitCode.FAILED, f"cannot make the folder of {picture.out}: {error}")
+            if not os.access(folder, os.W_OK | os.X_OK):
+                raise Failed(ExitCode.FAILED, f"cannot write into {folder}")
+            if Path(picture.out).is_dir() and self.job.verb == "render":
+                raise Failed(ExitCode.FAILED, f"{picture.out} is a folder, not a picture")
+
+    def _open(self) -> None:
+        try:
+            bpy.ops.wm.open_mainfile(filepath=self.job.file, load_ui=False, use_scripts=False)
+        except RuntimeError as error:
+            text = " ".join(str(error).split())
+            raise Failed(ExitCode.UNREADABLE, f"Blender cannot read the file: {text}") from None
+        for library in bpy.data.libraries:
+            path = bpy.path.abspath(library.filepath, library=library.library)
+            if not os.path.exists(path):
+                text = f'Library "{library.name}" is missing ({path}): what it holds is left out'
+                self.problems.add(library.name, ERROR, "library_missing", text)
+
+    # ---- Pictures ----
+
+    def _frames(self) -> None:
+        scene = bpy.context.scene
+        first, last = self.job.frames or (scene.frame_current, scene.frame_current)
+        pictures: list[dict] = []
+        for frame in range(first, last + 1):
+            scene.frame_set(frame)
+            self.clock = progress.StageClock(frame)
+            requests = self.job.pictures
+            if self.job.frames:
+                requests = tuple(picture.for_frame(frame) for picture in requests)
+            pictures += [
+                {**({"frame": frame} if self.job.frames else {}), **made}
+                for made in self._frame(scene, requests)
+            ]
+            if pictures:
+                single = len(self.job.pictures) == 1 and not self.job.frames
+                self.result.update(pictures[0] if single else {"pictures": pictures})
+
+    def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
+        request = extract_engine.Request(
+            cameras=[(picture.camera, picture.size) for picture in requests], tick=self._tick
+        )
+        wall, cpu = time.monotonic(), time.process_time()
+        extraction = extract_engine.extract_now(scene, request)
+        self.problems.extend(extraction.problems)
+        with extraction.model as model:
+            totals = model.totals()
+            self.result.setdefault("model", report.model_part(totals))
+            spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
+            self.result.setdefault("extract", spent)
+            if totals.occurrences == 0:
+                text = "nothing to draw: no object with faces is visible in renders"
+                raise Failed(ExitCode.FAILED, text)
+            self.clock.tail = f"{progress.count(totals.triangles_placed)} triangles"
+            store = store_path.store_folder(self.job.file, self.job.store)
+            self.result["store"] = str(store)
+            try:
+                if self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests):
+                    self._build(model, store)
+                made = [
+                    self._picture(scene, model, store, picture, view, size)
+                    for picture, (view, size) in zip(requests, request.frames)
+                ]
+            finally:
+                self.problems.extend_native(model.problems())
+        return made
+
+    def _build(self, model, store: Path) -> None:
+        try:
+            store.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise Failed(ExitCode.FAILED, f"cannot make the folder of the levels: {error}")
+        options = native.BuildOptions(threads=self.job.threads)
+        done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
+        self.result.setdefault("build", report.build_part(done))
+
+    def _picture(
+        self, scene, model, store: Path, picture: PictureRequest, view, size: tuple[int, int]
+    ) -> dict:
+        settings = Settings(
+            pixel_error=picture.pixel_error,
+            antialias=native.Antialias[picture.antialias.upper()],
+            false_color=picture.false_color,
+            covered_only=picture.covered_only,
+            threads=self.job.threads,
+            program=self.job.program,
+        )
+        about = {
+            "camera": view.name,
+            "antialias": picture.antialias,
+            "size": list(size),
+            "pixel_error": picture.pixel_error,
+        }
+        if self.job.verb == "export":
+            folder = Path(picture.out)
+            new_job = self.work.new_job
+            parts, _ = self._long(
+                lambda: cut_and_export(model, view, size, settings, folder, new_job("Export"))
+            )
+            return {**about, **parts, "scene": str(folder / "scene.pov")}
+        with SceneFolder(store_path.scene_folder(store), "FAILED") as folder:
+            try:
+                made = self._long(
+                    lambda: make_picture(
+                        model, view, size, settings, folder.path, self.work.new_job
+                    )
+                )
+            except native.LodestoneError as error:
+                if error.status == native.Status.POVRAY_FAILED:
+                    text = f"{error} (its files: {folder.path})"
+                    raise Failed(ExitCode.POVRAY, text) from error
+                raise
+            save(scene, made.path, Path(picture.out), picture.covered_only)
+            if self.job.keep_exr:
+                _replace_by_copy(made.path, Path(picture.out).with_suffix(".exr"))
+        return {**about, **made.parts, "picture": picture.out}
+
+    # ---- Progress ----
+
+    def _long(self, function):
+        return self.work.run(function, self._say)
+
+    def _tick(self) -> None:
+        if self.work.stopping:
+            raise Stopped
+        self._print("Extract", None)
+
+    def _say(self) -> None:
+        stage = self.work.stage
+        if self.work.library_stage == native.Stage.PARSE:
+            stage = "Parse"
+        self._print(stage, self.work.fraction)
+
+    def _print(self, stage: str, fraction: float | None) -> None:
+        now = time.monotonic()
+        line = self.clock.line(stage, now, fraction)
+        if now - self._said > 0.5:
+            self._said = now
+            print(f"Lodestone: progress: {line}", flush=True)
+
+
+def save(scene, exr: Path, out: Path, with_alpha: bool) -> None:
+    """The picture as F12 would save it: through the scene's view transform, as a PNG. The old one
+    is replaced only when the new one is complete."""
+    format_ = scene.render.image_settings
+    before = (format_.file_format, format_.color_mode, format_.color_depth)
+    temporary = out.with_name(f".{out.stem}-{os.getpid()}.png")
+    image = bpy.data.images.load(str(exr))
+    try:
+        if format_.file_format != "PNG":
+            format_.file_format = "PNG"
+            format_.color_mode, format_.color_depth = "RGBA", "8"
+        if with_alpha or scene.render.film_transparent:
+            format_.color_mode = "RGBA"
+        image.save_render(str(temporary), scene=scene)
+        os.replace(temporary, out)
+    except (OSError, RuntimeError) as error:
+        raise Failed(ExitCode.FAILED, f"cannot write {out}: {error}") from error
+    finally:
+        format_.file_format, format_.color_mode, format_.color_depth = before
+        bpy.data.images.remove(image)
+        temporary.unlink(missing_ok=True)
+
+
+def _replace_by_copy(source: Path, target: Path) -> None:
+    temporary = target.with_name(f".{target.name}-{os.getpid()}")
+    try:
+        shutil.copyfile(source, temporary)
+        os.replace(temporary, target)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise Failed(ExitCode.FAILED, f"cannot write {target}: {error}") from error
+
+
+def _code_of(error) -> ExitCode:
+    if error.status in (native.Status.POVRAY_MISSING, native.Status.POVRAY_FAILED):
+        return ExitCode.POVRAY
+    return ExitCode.CANCELLED if error.cancelled else ExitCode.FAILED
+
+
+def main() -> None:
+    job = FileJob.load(Path(sys.argv[sys.argv.index("--") + 1]).read_text("utf-8"))
+    lodestone.register()
+    run = FileRun(job)
+    signal.signal(signal.SIGTERM, lambda number, frame: run.work.stop())
+    run.run()
+
+
+if __name__ == "__main__":
+    main()

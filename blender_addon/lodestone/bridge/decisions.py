@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writing and clearing `.lodestone` on objects and collections; only local ones are touched."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import bpy
+
+from ..core import identity
+from . import ids
+
+_INHERITED = {"rna_type", "name"}
+
+Thing = tuple[str, Any]  # "object" or "collection", the datablock
+
+
+def reachable(collections: Iterable[Any], objects: Iterable[Any]) -> list[Thing]:
+    """These objects and collections and all they hold or instance, each once, by kind and name."""
+    found: dict[int, Thing] = {}
+    waiting: list[Thing] = [("collection", c) for c in collections]
+    waiting += [("object", o) for o in objects]
+    while waiting:
+        kind, item = waiting.pop()
+        if item.as_pointer() in found:
+            continue
+        found[item.as_pointer()] = (kind, item)
+        if kind == "collection":
+            waiting += [("collection", child) for child in item.children]
+            waiting += [("object", member) for member in item.objects]
+        elif item.instance_type == "COLLECTION" and item.instance_collection is not None:
+            waiting.append(("collection", item.instance_collection))
+    return sorted(found.values(), key=lambda thing: (thing[0], thing[1].name_full))
+
+
+def in_scope(context: Any, scope: str) -> list[Thing]:
+    """What Update Levels gives uids to: scope is SCENE, COLLECTION or SELECTED."""
+    if scope == "SELECTED":
+        things = reachable([], context.selected_objects)
+    elif scope == "COLLECTION":
+        things = reachable([context.collection], [])
+    else:
+        things = reachable([context.scene.collection], [])
+    masters = {scene.collection.as_pointer() for scene in bpy.data.scenes}
+    return [thing for thing in things if thing[1].as_pointer() not in masters]
+
+
+def issue_uids(things: Iterable[Thing]) -> list[tuple[Any, str]]:
+    """Gives every local thing its uid, copies a new one. Returns (datablock, uid before) of those
+    that changed, for take_back()."""
+    local = [(kind, item) for kind, item in things if item.library is None]
+    pointers = {item.as_pointer() for _, item in local}
+    others = [
+        item.lodestone.uid
+        for item in (*bpy.data.collections, *bpy.data.objects)
+        if item.as_pointer() not in pointers and item.lodestone.uid
+    ]
+    described = [(kind, "", item.name, item.lodestone.uid) for kind, item in local]
+    changed = []
+    for (_, item), uid in zip(local, identity.assign_uids(described, others)):
+        if item.lodestone.uid != uid:
+            changed.append((item, item.lodestone.uid))
+            item.lodestone.uid = uid
+    return changed
+
+
+def take_back(changed: Iterable[tuple[Any, str]]) -> None:
+    """Undoes issue_uids()."""
+    for item, uid in changed:
+        if uid:
+            item.lodestone.uid = uid
+        else:
+            forget(item, False)
+
+
+def forget(item: Any, decisions: bool) -> bool:
+    """Removes the uid, with `decisions` the role too. True when something was there."""
+    settings = item.lodestone
+    names = ("uid", "role") if decisions else ("uid",)
+    found = [name for name in names if settings.is_property_set(name)]
+    for name in found:
+        settings.property_unset(name)
+    drop_empty(item)
+    return bool(found)
+
+
+def drop_empty(item: Any) -> None:
+    """Leaves a datablock without any decision as if we had never been there: reading `.lodestone`
+    is enough for Blender to store an empty group."""
+    settings = item.lodestone
+    own = (p.identifier for p in settings.bl_rna.properties if p.identifier not in _INHERITED)
+    if not any(settings.is_property_set(name) for name in own):
+        try:
+            del item["lodestone"]
+        except KeyError:  # nothing stored, or a Blender that keeps it elsewhere
+            pass
+
+
+def levels_uids(item: Any) -> list[str]:
+    """The uids under which an object's or collection's levels may be in the store, likeliest
+    first: an unmodified mesh is shared and has its own."""
+    if isinstance(item, bpy.types.Collection):
+        return [ids.uid_of("collection", item)]
+    own = ids.uid_of("object", item)
+    uids = [own]
+    if item.type == "MESH" and item.data is not None:
+        shared = ids.uid_of("mesh", item.data)
+        slots = [slot.material for slot in item.material_slots]
+        linked = identity.stable_id(shared, *(ids.named_id_of(m) for m in slots))
+        uids = [shared, linked, own]
+    if ids.is_environment(item) or any(ids.is_environment(c) for c in item.users_collection):
+        uids = [identity.stable_id(uid, "environment") for uid in uids] + uids
+    if item.instance_collection is not None:
+        uids.append(ids.uid_of("collection", item.instance_collection))
+    uids.append(identity.stable_id(own, "instances"))
+    return uids

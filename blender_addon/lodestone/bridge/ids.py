@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a Blender datablock is called outside Blender: its uid, and its role."""
+
+from typing import Any
+
+from ..core import identity
+from ..core.native import lodestone_native as native
+
+
+def library_of(datablock: Any) -> str:
+    """The path of the library it is linked from; "" for a local one."""
+    return datablock.library.filepath if datablock.library else ""
+
+
+def uid_of(kind: str, datablock: Any) -> str:
+    """The stored uid of an object or collection, else one made of its library and name."""
+    settings = getattr(datablock, "lodestone", None)
+    stored = settings.uid if settings is not None else ""
+    if identity.is_uid(stored):
+        return stored
+    return identity.named_id(kind, library_of(datablock), datablock.name)
+
+
+def scene_uid(name: str) -> str:
+    return identity.named_id("scene", "", name)
+
+
+def named_id_of(material: Any | None) -> str:
+    """A material's id by library and name; "" for an empty slot."""
+    if material is None:
+        return ""
+    return identity.named_id("material", library_of(material), material.name)
+
+
+def is_environment(datablock: Any) -> bool:
+    settings = getattr(datablock, "lodestone", None)
+    return settings is not None and settings.role == "ENVIRONMENT"
+
+
+def role(environment: bool) -> int:
+    return native.Role.ENVIRONMENT if environment else native.Role.ORDINARY
+
+
+class Uids:
+    """Gives out uids, each once in a model: a second thing that claims one gets the next best."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def claim(self, uid: str) -> str:
+        chosen, attempt = uid, 0
+        while chosen in self._taken:
+            attempt += 1
+            chosen = identity.stable_id(uid, "again", attempt)
+        self._taken.add(chosen)
+        return chosen

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mean colors of images: what a texture counts as until textures themselves are drawn."""
+
+from array import array
+from typing import Any
+
+SAMPLES = 1 << 16  # pixels looked at in a large image
+_STRIDE = 7919  # prime: samples do not line up in columns
+
+Color = tuple[float, float, float]
+
+
+def to_linear(value: float) -> float:
+    """One sRGB-encoded component to linear."""
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+
+
+_LINEAR = [to_linear(i / 255.0) for i in range(256)]
+
+
+def mean_of_pixels(pixels: array, encoded: bool) -> Color | None:
+    """Alpha-weighted linear mean of RGBA floats; None when nothing is opaque anywhere."""
+    count = len(pixels) // 4
+    if count == 0:
+        return None
+    if count > SAMPLES:
+        chosen = [(k * count) // SAMPLES for k in range(SAMPLES)]
+        chosen = [4 * ((c + (c * _STRIDE) % 61) % count) for c in chosen]
+    else:
+        chosen = list(range(0, 4 * count, 4))
+    red = green = blue = weight = 0.0
+    table = _LINEAR
+    for at in chosen:
+        alpha = pixels[at + 3]
+        if alpha <= 0.0:
+            continue
+        r, g, b = pixels[at], pixels[at + 1], pixels[at + 2]
+        if encoded:
+            r = table[min(255, max(0, int(r * 255.0 + 0.5)))]
+            g = table[min(255, max(0, int(g * 255.0 + 0.5)))]
+            b = table[min(255, max(0, int(b * 255.0 + 0.5)))]
+        red += alpha * r
+        green += alpha * g
+        blue += alpha * b
+        weight += alpha
+    mean = (red / weight, green / weight, blue / weight) if weight > 0.0 else None
+    return mean if mean and all(0.0 <= c < 1e30 for c in mean) else None
+
+
+class ImageMeans:
+    """The mean of every image asked for, read once and given back to Blender unloaded."""
+
+    def __init__(self) -> None:
+        self._means: dict[int, Color | None] = {}
+
+    def mean(self, image: Any) -> Color | None:
+        """None when the image cannot be read."""
+        key = image.as_pointer()
+        if key not in self._means:
+            self._means[key] = _mean(image)
+        return self._means[key]
+
+
+def _mean(image: Any) -> Color | None:
+    loaded = image.has_data
+    width, height = image.size  # loads it
+    channels = image.channels
+    count = width * height * channels
+    if count == 0 or len(image.pixels) != count:
+        return None
+    pixels = array("f", bytes(4 * count))
+    image.pixels.foreach_get(pixels)
+    encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
+    if not loaded and not image.is_dirty and image.source == "FILE":
+        image.buffers_free()
+    if channels != 4:
+        pixels = _with_four_channels(pixels, channels)
+    return mean_of_pixels(pixels, encoded)
+
+
+def _with_four_channels(pixels: array, channels: int) -> array:
+    wide = array("f", [1.0]) * (len(pixels) // channels * 4)
+    for channel in range(3):
+        wide[channel::4] = pixels[min(channel, channels - 1) :: channels]
+    return wide

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A finished picture into Blender's render result."""
+
+from array import array
+from typing import Any
+
+from . import compat
+from ..core.native import lodestone_native as native
+
+
+def read(path: str) -> Any:
+    """An EXR as Blender wants it: linear, lowest row first."""
+    return native.image_read(path, bottom_up=True)
+
+
+def cropped(image: Any, left: int, bottom: int, width: int, height: int) -> Any:
+    """A part of a bottom-up image."""
+    if (left, bottom, width, height) == (0, 0, image.width, image.height):
+        return image
+    pixels = array("f")
+    for row in range(bottom, bottom + height):
+        start = 4 * (row * image.width + left)
+        pixels.extend(image.pixels[start : start + 4 * width])
+    return native.Image(width, height, pixels)
+
+
+def border(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
+    """Left, bottom, width, height of the part of the picture that is to be drawn."""
+    if not render.use_border:
+        return (0, 0, width, height)
+    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
+    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    left, bottom = min(left, width - 1), min(bottom, height - 1)
+    return (left, bottom, max(1, right - left), max(1, top - bottom))
+
+
+def hand_over(engine: Any, layer: str, image: Any) -> None:
+    """Into the layer's combined pass; other passes stay empty. The result's corner is that of the
+    border. An exception between begin and end would take Blender down, so nothing but the pixels
+    is done between them."""
+    result = engine.begin_result(0, 0, image.width, image.height, layer=layer)
+    try:
+        combined = result.layers[0].passes.find_by_name("Combined", "")
+        compat.set_pass(combined, image.width, image.height, image.pixels)
+    finally:
+        engine.end_result(result)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The world as one color: exact for a flat background, else its mean, named."""
+
+from typing import Any
+
+from ..core.problems import WARNING, Problems
+from .images import ImageMeans
+from .node_values import NodeValues
+
+
+# Mean radiance of a clear noon sky as Blender's sky texture shows it at strength 1, to one figure:
+# a sky is drawn in one color in any case, this one at least lights like one.
+_CLEAR_SKY = (0.25, 0.42, 0.75)
+
+
+def color(world: Any | None, problems: Problems) -> tuple[float, float, float]:
+    """Linear radiance of an evaluated world; no world is black."""
+    if world is None:
+        return (0.0, 0.0, 0.0)
+    if not world.use_nodes or world.node_tree is None:
+        return tuple(world.color)
+    name = world.name
+
+    def note(code: str, text: str) -> None:
+        message = f'World "{name}": drawn as one flat color ({text})'
+        problems.add(name, WARNING, f"world_{code}", message)
+
+    output = world.node_tree.get_output_node("ALL")
+    node = _background(output.inputs["Surface"], set()) if output else None
+    if node is None:
+        if output and output.inputs["Surface"].is_linked:
+            note("shader", "its shader is not known")
+            return tuple(world.color)
+        return (0.0, 0.0, 0.0)
+    values = NodeValues(ImageMeans(), note)
+    source = node.inputs["Color"]
+    tint = _environment(source, values, note)
+    if tint is None:
+        tint = values.color(source)
+    strength = values.number(node.inputs["Strength"])
+    return tuple(min(1e9, max(0.0, strength * c)) for c in tint)
+
+
+def _background(socket: Any, seen: set) -> Any | None:
+    """The first background node that feeds this socket."""
+    for link in socket.links:
+        node = link.from_node
+        if node.name in seen:
+            continue
+        seen.add(node.name)
+        if node.type == "BACKGROUND":
+            return node
+        for inner in node.inputs:
+            found = _background(inner, seen)
+            if found is not None:
+                return found
+    return None
+
+
+def _environment(socket: Any, values: NodeValues, note: Any) -> Any | None:
+    """The mean of an environment or sky texture right behind the socket."""
+    if not socket.is_linked:
+        return None
+    node = socket.links[0].from_node
+    if node.type == "TEX_ENVIRONMENT" and node.image is not None:
+        mean = ImageMeans().mean(node.image)
+        if mean is not None:
+            note("texture_mean", "the mean of its environment texture")
+        return mean
+    if node.type == "TEX_SKY":
+        note("sky", "a clear sky's mean")
+        return _CLEAR_SKY
+    return None

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a batch run ends with, and which one stands for several files."""
+
+from collections.abc import Iterable
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    DONE = 0
+    FAILED = 1
+    USAGE = 2
+    INCOMPLETE = 3  # done, but the picture is known to be wrong or incomplete somewhere
+    UNREADABLE = 4  # the input cannot be read, or Blender died on it
+    POVRAY = 5  # POV-Ray missing or failed
+    CANCELLED = 130
+
+
+STATUS = {
+    ExitCode.DONE: "done",
+    ExitCode.FAILED: "failed",
+    ExitCode.USAGE: "usage",
+    ExitCode.INCOMPLETE: "incomplete",
+    ExitCode.UNREADABLE: "unreadable",
+    ExitCode.POVRAY: "povray_failed",
+    ExitCode.CANCELLED: "cancelled",
+}
+
+
+def of_many(codes: Iterable[int]) -> ExitCode:
+    """One file: its own code. Several: 130, 1 when any failed, 3 when any is incomplete, else 0."""
+    found = [ExitCode(code) for code in codes]
+    if len(found) == 1:
+        return found[0]
+    if ExitCode.CANCELLED in found:
+        return ExitCode.CANCELLED
+    if any(code not in (ExitCode.DONE, ExitCode.INCOMPLETE) for code in found):
+        return ExitCode.FAILED
+    return ExitCode.INCOMPLETE if ExitCode.INCOMPLETE in found else ExitCode.DONE

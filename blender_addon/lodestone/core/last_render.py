@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last picture of each scene used, for the panels. Never part of the file."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class LastRender:
+    """Numbers of a finished picture; `in_use` maps a uid to {LOD number: occurrences}."""
+
+    triangles_placed: int
+    triangles: int
+    kinds: dict[str, int]
+    largest_error_px: float
+    largest_error_name: str
+    in_use: dict[str, dict[int, int]] = field(default_factory=dict)
+    problems: tuple[Any, ...] = ()
+
+
+_renders: dict[str, LastRender] = {}
+
+
+def put(scene: str, render: LastRender) -> None:
+    _renders[scene] = render
+
+
+def get(scene: str) -> LastRender | None:
+    return _renders.get(scene)
+
+
+def clear() -> None:
+    _renders.clear()

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
+
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from . import report
+from .native import lodestone_native as native
+
+PICTURE = "picture.exr"
+POVRAY_KINDS = (1 << native.Kind.MESH) | (1 << native.Kind.BOX) | (1 << native.Kind.ELLIPSOID)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a picture is made; pixel_error 0 draws the originals."""
+
+    pixel_error: float = 1.0
+    antialias: int = native.Antialias.FINAL
+    false_color: bool = False
+    covered_only: bool = False
+    threads: int = 0
+    program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
+
+    def povray(self) -> Any:
+        return native.PovrayOptions(
+            antialias=self.antialias,
+            false_color=self.false_color,
+            covered_only=self.covered_only,
+            threads=self.threads,
+            program=self.program,
+        )
+
+
+@dataclass
+class Picture:
+    """What making it took; `parts` are the report's. The EXR lies at `path`."""
+
+    path: Path
+    parts: dict[str, Any] = field(default_factory=dict)
+    in_use: dict[str, dict[int, int]] = field(default_factory=dict)  # uid: {LOD: occurrences}
+
+
+def cut_and_export(
+    model: Any, camera: Any, size: tuple[int, int], settings: Settings, folder: Path, job: Any
+) -> tuple[dict[str, Any], dict[str, dict[int, int]]]:
+    """Writes the scene for one view into folder (made when missing); returns the report's parts
+    and how often which level is in use."""
+    folder.mkdir(parents=True, exist_ok=True)
+    view = native.View(camera, size[0], size[1], settings.pixel_error, POVRAY_KINDS)
+    with native.Cut(model, view, job) as cut:
+        parts = {"cut": report.cut_part(cut.summary())}
+        in_use = levels_in_use(model, cut)
+        exported = native.povray_export(cut, str(folder), settings.povray(), job)
+    parts["export"] = report.export_part(exported)
+    return parts, in_use
+
+
+def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
+    """By uid of the object: how many occurrences draw which LOD number."""
+    counted = Counter((choice.object, choice.lod) for choice in cut.choices())
+    found: dict[str, dict[int, int]] = {}
+    for (item, lod), number in counted.items():
+        found.setdefault(model.object_summary(item).uid, {})[lod] = number
+    return found
+
+
+def make_picture(
+    model: Any,
+    camera: Any,
+    size: tuple[int, int],
+    settings: Settings,
+    folder: Path,
+    new_job: Callable[[str], Any],
+) -> Picture:
+    """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
+    each long call and gives its Job. Raises LodestoneError; then no new picture is there."""
+    parts, in_use = cut_and_export(model, camera, size, settings, folder, new_job("Export"))
+    ran = native.povray_run(str(folder), PICTURE, settings.povray(), new_job("Trace"))
+    parts["povray"] = report.povray_part(ran)
+    parts["pixel_error"] = settings.pixel_error
+    return Picture(folder / PICTURE, parts, in_use)
+
+
+class SceneFolder:
+    """Where scene files go: `keep` is NEVER, FAILED or ALWAYS. A context; `path` names it.
+
+    What is not kept is removed on leaving; a failed one stays for the user to look at.
+    """
+
+    def __init__(self, kept: Path, keep: str) -> None:
+        self._keep = keep
+        self._kept = kept
+        self.path = kept
+        self.stays = keep == "ALWAYS"
+
+    def __enter__(self) -> "SceneFolder":
+        self._kept.parent.mkdir(parents=True, exist_ok=True)
+        if self._keep == "ALWAYS":
+            self._kept.mkdir(exist_ok=True)
+        else:
+            prefix = f"{self._kept.name}-"
+            self.path = Path(tempfile.mkdtemp(prefix=prefix, dir=self._kept.parent))
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
+        failed = kind is not None and not getattr(error, "cancelled", False)
+        self.stays = self._keep == "ALWAYS" or (self._keep == "FAILED" and failed)
+        if not self.stays:
+            shutil.rmtree(self.path, ignore_errors=True)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The texts of progress lines and of numbers, the same in every place that shows them."""
+
+
+def clock(seconds: float) -> str:
+    """0:07, 12:30, 1:02:03."""
+    total = max(0, int(seconds))
+    minutes, second = divmod(total, 60)
+    hours, minute = divmod(minutes, 60)
+    return f"{hours}:{minute:02}:{second:02}" if hours else f"{minute}:{second:02}"
+
+
+def count(number: float) -> str:
+    """812, 41.3 k, 1.2 M, 3.4 G: three figures at most."""
+    for size, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
+        if number >= size:
+            value = number / (1e3 if unit == " k" else size)
+            return f"{value:.0f}{unit}" if value >= 100 else f"{value:.1f}{unit}"
+    return f"{int(number):,}"
+
+
+def length(metres: float) -> str:
+    """An error as artists read it: 0.4 mm, 11 mm, 1.25 m."""
+    if metres >= 1.0:
+        return f"{metres:.2f} m"
+    if metres >= 0.01:
+        return f"{metres * 1e3:.0f} mm"
+    return f"{metres * 1e3:.2g} mm" if metres > 0.0 else "0 mm"
+
+
+def memory(size: float) -> str:
+    for unit, name in ((1e9, "GB"), (1e6, "MB"), (1e3, "kB")):
+        if size >= unit:
+            return f"{size / unit:.1f} {name}" if size < 10 * unit else f"{size / unit:.0f} {name}"
+    return f"{int(size)} B"
+
+
+def percent(part: float, whole: float) -> str:
+    return f"{100.0 * part / whole:.0f} %" if whole > 0 else "0 %"
+
+
+class StageClock:
+    """Builds lines like `Frame 1 | Levels 0:42 | Parse 0:11 | Trace 64 % | 1.2 M of 22.4 M`."""
+
+    def __init__(self, frame: int) -> None:
+        self._parts = [f"Frame {frame}"]
+        self._stage = ""
+        self._since = 0.0
+        self.tail = ""
+
+    def line(self, stage: str, now: float, fraction: float | None = None) -> str:
+        """`now` in seconds of any steady clock; fraction 0...1 of the stage when it is known."""
+        if stage != self._stage:
+            if self._stage:
+                self._parts.append(f"{self._stage} {clock(now - self._since)}")
+            self._stage, self._since = stage, now
+        running = f"{stage} {percent(fraction, 1.0)}" if fraction else stage
+        return " | ".join([*self._parts, running, *([self.tail] if self.tail else [])])
+
+
+def building(done: int, total: int) -> str:
+    return f"Lodestone: building levels {done:,}/{total:,}   [Esc] Cancel"

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report, schema 1: what a run did, in SI units, for people and programs."""
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from .exit_codes import STATUS, ExitCode
+from .problems import Problem
+
+SCHEMA = 1
+
+
+def file_report(verb: str, source: str, code: ExitCode, message: str = "") -> dict[str, Any]:
+    """The frame of one input's report; the other parts are added as they become known."""
+    report = {
+        "schema": SCHEMA,
+        "verb": verb,
+        "status": STATUS[code],
+        "exit_code": int(code),
+        "input": source,
+    }
+    if message:
+        report["message"] = message
+    return report
+
+
+def model_part(totals: Any) -> dict[str, int]:
+    return {
+        "objects": totals.objects,
+        "placements": totals.occurrences,
+        "triangles_placed": totals.triangles_placed,
+        "triangles_unique": totals.triangles_unique,
+    }
+
+
+def build_part(report: Any) -> dict[str, Any]:
+    return {
+        "objects": report.objects,
+        "built": report.built,
+        "representations": report.representations,
+        "bytes_written": report.bytes_written,
+        "wall_s": report.wall_s,
+        "cpu_s": report.cpu_s,
+    }
+
+
+def cut_part(summary: Any) -> dict[str, Any]:
+    return {
+        "kinds": {"mesh": summary.mesh, "box": summary.box, "ellipsoid": summary.ellipsoid},
+        "occurrences": summary.occurrences,
+        "originals": summary.originals,
+        "triangles": summary.triangles,
+        "bytes": summary.bytes,
+        "largest_error_px": summary.largest_error_px,
+        "largest_error_name": summary.largest_error_name,
+    }
+
+
+def export_part(report: Any) -> dict[str, Any]:
+    return {
+        "bytes": report.bytes,
+        "files": report.files,
+        "written": report.written,
+        "cpu_s": report.cpu_s,
+    }
+
+
+def povray_part(report: Any) -> dict[str, Any]:
+    return {
+        "parse_cpu_s": report.parse_cpu_s,
+        "trace_cpu_s": report.trace_cpu_s,
+        "wall_s": report.wall_s,
+        "peak_bytes": report.peak_bytes,
+        "exit_code": report.exit_code,
+    }
+
+
+def problems_part(problems: Iterable[Problem]) -> list[dict[str, str]]:
+    return [problem.as_dict() for problem in problems]
+
+
+def many_report(verb: str, reports: list[dict[str, Any]], code: ExitCode) -> dict[str, Any]:
+    """Several inputs: their reports under `files`."""
+    return {
+        "schema": SCHEMA,
+        "verb": verb,
+        "status": STATUS[code],
+        "exit_code": int(code),
+        "files": reports,
+    }
+
+
+def write(path: str | Path, report: dict[str, Any]) -> None:
+    """Writes to a temporary name, then renames: readers never see half a report. Raises OSError."""
+    target = Path(path)
+    handle, name = tempfile.mkstemp(dir=target.parent or ".", prefix=".report-")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", errors="replace") as file:
+            json.dump(report, file, indent=1, ensure_ascii=False)
+            file.write("\n")
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a store holds, for panels: read once for each state of the store, never blocking twice."""
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .native import lodestone_native as native
+
+INDEX = "tileset.json"
+
+
+@dataclass(frozen=True)
+class Level:
+    lod: int
+    kind: int
+    triangles: int
+    error: float  # metres
+
+
+class Store:
+    """The levels of a store by uid; `problem` says why there are none."""
+
+    def __init__(self, folder: Path) -> None:
+        self.problem = ""
+        self._levels: dict[str, tuple[Level, ...]] = {}
+        self._model: Any = None
+        if not (folder / INDEX).is_file():
+            return
+        try:
+            self._model = native.Model.read(str(folder))
+        except native.LodestoneError as error:
+            self.problem = str(error)
+
+    def levels(self, uid: str) -> tuple[Level, ...]:
+        """Finest first; () when the store knows no such thing."""
+        if self._model is None:
+            return ()
+        if uid not in self._levels:
+            self._levels[uid] = self._read(uid)
+        return self._levels[uid]
+
+    def _read(self, uid: str) -> tuple[Level, ...]:
+        try:
+            item = self._model.find_object(uid)
+            if item is None:
+                return ()
+            count = self._model.object_summary(item).representation_count
+            found = [self._model.representation(item, lod) for lod in range(count)]
+        except native.LodestoneError as error:
+            self.problem = str(error)
+            return ()
+        return tuple(Level(i, r.kind, r.triangles, r.error) for i, r in enumerate(found))
+
+
+_cached: tuple[tuple[str, int], Store] | None = None
+
+
+def open_store(folder: Path) -> Store:
+    """The store as it is now; read again only after it has changed."""
+    global _cached
+    try:
+        stamp = (folder / INDEX).stat().st_mtime_ns
+    except OSError:
+        stamp = 0
+    key = (str(folder), stamp)
+    if _cached is None or _cached[0] != key:
+        _cached = (key, Store(folder))
+    return _cached[1]
+
+
+def forget() -> None:
+    global _cached
+    _cached = None
+
+
+def is_store(folder: Path) -> bool:
+    return (folder / INDEX).is_file()
+
+
+def remove(folder: Path) -> bool:
+    """Deletes a store, and only a store: a folder without its index is left alone. True if it was
+    there. Raises OSError."""
+    if not is_store(folder):
+        return False
+    forget()
+    shutil.rmtree(folder)
+    return True

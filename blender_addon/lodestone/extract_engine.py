@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An engine that renders nothing: its render() only extracts, from the same depsgraph a picture
+would be made from. Registered while it is used, so that users never meet it.
+"""
+
+import contextlib
+import traceback
+
+import bpy
+
+from .bridge import camera, check, scene
+from .core.work import Stopped
+
+_request = None
+
+
+class Request:
+    """What to extract; afterwards the result, or why there is none. One at a time.
+
+    `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
+    (None for the scene's): their frames are in `frames` in the same order.
+    """
+
+    def __init__(self, cameras=(), tick=None, compare=False):
+        self.cameras = tuple(cameras)
+        self.tick = tick or (lambda: None)
+        self.compare = compare
+        self.extraction = None
+        self.frames = []
+        self.differences = []
+        self.error = None
+
+
+class LODESTONE_RE_extract(bpy.types.RenderEngine):
+    bl_idname = "LODESTONE_EXTRACT"
+    bl_label = "Lodestone (reading the scene)"
+    bl_use_preview = False
+
+    def render(self, depsgraph):
+        request = _request
+        if request is None or request.extraction is not None or request.error is not None:
+            return  # further view layers: the first one counts
+
+        def tick():
+            if self.test_break():
+                raise Stopped
+            request.tick()
+
+        try:
+            extraction = scene.extract(depsgraph, tick)
+            try:
+                for name, size in request.cameras:
+                    request.frames.append(_frame(depsgraph, name, size, extraction.problems))
+                if request.compare:
+                    request.differences = check.compare_occurrences(depsgraph, extraction)
+            except BaseException:
+                extraction.model.close()
+                raise
+            request.extraction = extraction
+        except Exception as error:
+            if not isinstance(error, (Stopped, CameraMissing)):
+                traceback.print_exc()
+            request.error = error
+
+
+class CameraMissing(Exception):
+    """A picture was asked for without a camera; the text says what to do."""
+
+
+def _frame(depsgraph, name, size, problems):
+    """(camera, (width, height)) of one picture."""
+    evaluated = depsgraph.scene_eval
+    found = evaluated.objects.get(name) if name else evaluated.camera
+    if found is None or found.type != "CAMERA":
+        if name:
+            raise CameraMissing(f'Scene "{evaluated.name}" has no camera "{name}"')
+        raise CameraMissing(
+            f'Scene "{evaluated.name}" has no camera: add one, or choose one in Scene > Camera'
+        )
+    frame = camera.Frame.of(evaluated.render)
+    if size is not None:
+        frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
+    found = found.evaluated_get(depsgraph)
+    return camera.extract(found, frame, problems), (frame.width, frame.height)
+
+
+@contextlib.contextmanager
+def prepared(target, request):
+    """Makes a render of the scene `target` an extraction for `request`; all is put back after."""
+    global _request
+    render = target.render
+    names = ("engine", "use_compositing", "use_sequencer", "use_lock_interface")
+    before = {name: getattr(render, name) for name in names}
+    camera_before, stand_in = target.camera, None
+    bpy.utils.register_class(LODESTONE_RE_extract)
+    _request = request
+    try:
+        if target.camera is None:  # Blender renders nothing without one
+            data = bpy.data.cameras.new("Lodestone")
+            stand_in = bpy.data.objects.new("Lodestone", data)
+            target.camera = stand_in
+        render.engine = LODESTONE_RE_extract.bl_idname
+        render.use_compositing = render.use_sequencer = False
+        render.use_lock_interface = True
+        yield
+    finally:
+        _request = None
+        for name, value in before.items():
+            setattr(render, name, value)
+        if stand_in is not None:
+            target.camera = camera_before
+            data = stand_in.data
+            bpy.data.objects.remove(stand_in)
+            bpy.data.cameras.remove(data)
+        bpy.utils.unregister_class(LODESTONE_RE_extract)
+
+
+def extract_now(target, request):
+    """Extracts synchronously (batch jobs and scripts). Raises what stopped it."""
+    with prepared(target, request):
+        bpy.ops.render.render(scene=target.name)
+    if request.error is not None:
+        raise request.error
+    if request.extraction is None:
+        raise RuntimeError("Blender did not render: nothing was read")
+    return request.extraction

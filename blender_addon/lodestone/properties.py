@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the designer decides, kept in the file: `.lodestone` on scenes, collections and objects."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, PointerProperty, StringProperty
+
+ROLES = (
+    ("ORDINARY", "Ordinary", "May be drawn as a simpler mesh, a box or an ellipsoid"),
+    (
+        "ENVIRONMENT",
+        "Environment",
+        "Wall, ground or sky: simplified, but never replaced by one shape",
+    ),
+)
+SCOPES = (
+    ("SCENE", "Scene", "Everything the scene renders"),
+    ("COLLECTION", "Active Collection", "The active collection and what it instances"),
+    ("SELECTED", "Selected", "The selected objects and what they instance"),
+)
+ANTIALIAS = (
+    ("OFF", "Off", "One sample per pixel: for drafts"),
+    ("FINAL", "Final", "Adaptive: more samples where the picture needs them"),
+    ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing"),
+)
+KEEP = (
+    ("NEVER", "Never", "Remove the files of the POV-Ray scene after each render"),
+    ("FAILED", "If Failed", "Keep them when POV-Ray fails, to look at what it was given"),
+    ("ALWAYS", "Always", "Keep them in a folder beside the levels; what did not change is reused"),
+)
+
+
+def _role_changed(self, context):
+    self.id_data.update_tag()  # writing to a property group does not tag the depsgraph
+
+
+class LODESTONE_PG_scene(bpy.types.PropertyGroup):
+    pixel_error_render: FloatProperty(
+        name="Pixel Error",
+        description="Largest deviation from the original on the rendered image, in pixels. "
+        "Lower is finer; 0 renders the originals",
+        default=1.0,
+        min=0.0,
+        soft_max=16.0,
+        max=1024.0,
+        subtype="PIXEL",
+        precision=2,
+        step=10,
+    )
+    antialias: EnumProperty(
+        name="Antialiasing",
+        description="How many samples POV-Ray takes in a pixel",
+        items=ANTIALIAS,
+        default="FINAL",
+    )
+    scope: EnumProperty(
+        name="Build",
+        description="What Update Levels and Clear work on",
+        items=SCOPES,
+        default="SCENE",
+    )
+    keep_scene_files: EnumProperty(
+        name="Keep Scene Files",
+        description="Whether the files written for POV-Ray stay",
+        items=KEEP,
+        default="FAILED",
+    )
+
+
+class _Identified:
+    uid: StringProperty(
+        name="ID",
+        description="16 hexadecimal digits that keep the levels through renaming",
+        maxlen=16,
+        options={"HIDDEN"},
+    )
+    role: EnumProperty(
+        name="Role",
+        description="What kind of thing this is",
+        items=ROLES,
+        default="ORDINARY",
+        update=_role_changed,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+
+
+class LODESTONE_PG_collection(_Identified, bpy.types.PropertyGroup):
+    pass
+
+
+class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
+    pass
+
+
+_CLASSES = (LODESTONE_PG_scene, LODESTONE_PG_collection, LODESTONE_PG_object)
+_OWNERS = (bpy.types.Scene, bpy.types.Collection, bpy.types.Object)
+_register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
+
+
+def register():
+    _register()
+    try:
+        for owner, group in zip(_OWNERS, _CLASSES):
+            owner.lodestone = PointerProperty(
+                type=group, override={"LIBRARY_OVERRIDABLE"}, options={"HIDDEN"}
+            )
+    except Exception:
+        unregister()
+        raise
+
+
+def unregister():
+    for owner in _OWNERS:
+        if hasattr(owner, "lodestone"):
+            del owner.lodestone
+    _unregister()

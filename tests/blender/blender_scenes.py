@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small scenes for tests inside Blender, and the add-on they are tested with."""
+
+import addon_utils
+import bpy
+
+
+def enable():
+    """The staged add-on, enabled as a user does it."""
+    if addon_utils.enable("lodestone", default_set=True) is None:
+        raise RuntimeError("the staged add-on cannot be enabled: is BLENDER_USER_SCRIPTS set?")
+
+
+def fresh():
+    """An empty scene with a camera that looks along -Z from 10 m above, and the add-on."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    enable()
+    scene = bpy.context.scene
+    data = bpy.data.cameras.new("Camera")
+    camera = link(bpy.data.objects.new("Camera", data))
+    camera.location = (0, 0, 10)
+    scene.camera = camera
+    scene.render.resolution_x, scene.render.resolution_y = 64, 36
+    scene.view_settings.view_transform = "Standard"
+    return scene
+
+
+def link(item, collection=None):
+    (collection or bpy.context.scene.collection).objects.link(item)
+    return item
+
+
+def mesh(name, vertices, faces):
+    made = bpy.data.meshes.new(name)
+    made.from_pydata(vertices, [], faces)
+    return made
+
+
+def cube_mesh(name="Cube", size=1.0):
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return mesh(name, [[size / 2 * c for c in corner] for corner in corners], faces)
+
+
+def cube(name="Cube", location=(0, 0, 0), size=1.0, data=None, collection=None):
+    made = bpy.data.objects.new(name, data or cube_mesh(name, size))
+    made.location = location
+    return link(made, collection)
+
+
+def collection(name, parent=None):
+    """A new collection, in parent, or in no scene when parent is None."""
+    made = bpy.data.collections.new(name)
+    if parent is not None:
+        parent.children.link(made)
+    return made
+
+
+def instance(name, of, location=(0, 0, 0), scale=(1, 1, 1), turn=(0, 0, 0), parent=None):
+    """An empty that instances a collection."""
+    made = bpy.data.objects.new(name, None)
+    made.instance_type, made.instance_collection = "COLLECTION", of
+    made.location, made.scale, made.rotation_euler = location, scale, turn
+    return link(made, parent)
+
+
+def material(name, color=(0.8, 0.1, 0.1)):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    made.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*color, 1.0)
+    return made
+
+
+def sun(name="Sun", energy=3.0):
+    data = bpy.data.lights.new(name, "SUN")
+    data.energy = energy
+    return link(bpy.data.objects.new(name, data))
+
+
+def extract(compare=True, cameras=()):
+    """(extraction, differences to the depsgraph); close the extraction's model."""
+    from lodestone import extract_engine
+
+    request = extract_engine.Request(cameras=cameras, compare=compare)
+    extraction = extract_engine.extract_now(bpy.context.scene, request)
+    return extraction, request

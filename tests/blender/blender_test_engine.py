@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards F12: the cube is where it should be, and a failure is never a picture."""
+
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+
+class Engine(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.out = self.folder / "picture.png"
+        self.scene.render.engine = "LODESTONE_POVRAY"
+        self.scene.render.filepath = str(self.out)
+        self.scene.render.film_transparent = True
+        self.scene.render.image_settings.color_mode = "RGBA"
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
+
+    def render(self):
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(str(self.out))
+        self.addCleanup(lambda: None)
+        width, height = image.size
+        pixels = list(image.pixels)
+        bpy.data.images.remove(image)
+        return [
+            [pixels[4 * (y * width + x) : 4 * (y * width + x) + 4] for x in range(width)]
+            for y in range(height)
+        ]
+
+    def refused(self, text):
+        self.out.write_bytes(b"last night's picture")
+        with self.assertRaisesRegex(RuntimeError, text):
+            bpy.ops.render.render(write_still=True)
+        self.assertEqual(self.out.read_bytes(), b"last night's picture")
+
+    def with_environment(self, **changes):
+        before = {name: os.environ.get(name) for name in changes}
+
+        def put_back():
+            for name, value in before.items():
+                os.environ.pop(name, None)
+                if value is not None:
+                    os.environ[name] = value
+
+        self.addCleanup(put_back)
+        os.environ.update(changes)
+
+    def povray(self, script):
+        """A program that takes POV-Ray's place."""
+        program = self.folder / "povray"
+        program.write_text("#!/bin/sh\n" + script)
+        program.chmod(0o755)
+        self.with_environment(LODESTONE_POVRAY=str(program))
+
+    def test_the_cube_is_where_it_should_be(self):
+        cube = scenes.cube("Red", (1.0, 0.5, 0.0), 1.0)
+        cube.data.materials.append(scenes.material("Red", (0.8, 0.05, 0.05)))
+        scenes.sun()
+        rows = self.render()
+        # The camera is 10 m above; a pixel at the cube's top (z = 0.5) is 9.5 * 36/50 / 64 m
+        pixel = 9.5 * 0.72 / 64
+        covered = [(x, y) for y, row in enumerate(rows) for x, p in enumerate(row) if p[3] > 0.5]
+        left, right = min(x for x, _ in covered), max(x for x, _ in covered) + 1
+        bottom, top = min(y for _, y in covered), max(y for _, y in covered) + 1
+        self.assertAlmostEqual((left + right) / 2, 32 + 1.0 / pixel, delta=1.0)
+        self.assertAlmostEqual((bottom + top) / 2, 18 + 0.5 / pixel, delta=1.0)
+        self.assertAlmostEqual(right - left, 1.0 / pixel, delta=1.1)
+        red, green, blue, _ = rows[(bottom + top) // 2][(left + right) // 2]
+        self.assertGreater(red, 0.5)
+        self.assertGreater(red, 2 * green)
+
+    def test_light_is_blenders(self):
+        # A white plane under a sun of strength pi from above: radiance albedo
+        plane = scenes.mesh(
+            "Plane", [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 2, 3)]
+        )
+        material = scenes.material("Grey", (0.5, 0.5, 0.5))
+        material.use_nodes = False
+        material.diffuse_color = (0.5, 0.5, 0.5, 1.0)
+        material.roughness, material.specular_intensity = 1.0, 0.0
+        plane.materials.append(material)
+        scenes.link(bpy.data.objects.new("Plane", plane))
+        scenes.sun(energy=3.14159265)
+        rows = self.render()
+        self.assertAlmostEqual(rows[18][32][0], 0.7354, delta=0.02)  # 0.5 display-encoded
+
+    def test_nothing_is_written_into_the_file(self):
+        scenes.cube()
+        self.render()
+        self.assertFalse(any("lodestone" in item.keys() for item in bpy.data.objects))
+        self.assertTrue((self.folder / "lodestone" / "file" / "tileset.json").is_file())
+        self.assertEqual(os.listdir(self.folder / "lodestone"), ["file"])
+
+    def test_scene_files_are_kept_when_asked(self):
+        scenes.cube()
+        self.scene.lodestone.keep_scene_files = "ALWAYS"
+        self.render()
+        self.assertTrue((self.folder / "lodestone" / "file.scene" / "scene.pov").is_file())
+
+    def test_a_border_draws_only_its_part(self):
+        scenes.cube(size=5.0)
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.25, 0.5
+        render.border_min_y, render.border_max_y = 0.5, 0.75
+        rows = self.render()
+        covered = [(x, y) for y, row in enumerate(rows) for x, p in enumerate(row) if p[3] > 0.5]
+        self.assertTrue(all(16 <= x < 32 and 18 <= y < 27 for x, y in covered))
+        self.assertGreater(len(covered), 40)
+
+    def test_every_frame_of_an_animation_is_its_own(self):
+        cube = scenes.cube()
+        for frame, x in ((1, -2.0), (2, 2.0)):
+            cube.location.x = x
+            cube.keyframe_insert("location", frame=frame)
+        centers = []
+        for frame in (1, 2):
+            self.scene.frame_set(frame)
+            rows = self.render()
+            covered = [x for row in rows for x, p in enumerate(row) if p[3] > 0.5]
+            centers.append(sum(covered) / len(covered))
+        self.assertLess(centers[0], 28)
+        self.assertGreater(centers[1], 36)
+
+    def test_without_a_camera_nothing_is_written(self):
+        scenes.cube()
+        bpy.data.objects.remove(self.scene.camera)
+        self.refused("(?i)camera")
+
+    def test_without_objects_nothing_is_written(self):
+        self.refused("Nothing to render")
+
+    def test_a_missing_povray_is_a_sentence(self):
+        scenes.cube()
+        self.with_environment(LODESTONE_POVRAY="/nowhere/povray")
+        self.refused("/nowhere/povray")
+
+    def test_a_failing_povray_is_a_sentence(self):
+        scenes.cube()
+        self.povray("echo 'Parse Error: no such thing' >&2; exit 1\n")
+        self.refused("no such thing")
+
+    def test_a_killed_povray_is_a_sentence(self):
+        scenes.cube()
+        self.povray("kill -KILL $$\n")
+        self.refused("(?i)kill|signal")
+
+    def test_a_povray_that_writes_no_picture_is_a_sentence(self):
+        scenes.cube()
+        self.povray("exit 0\n")
+        self.refused(".")
+
+    def test_an_unwritable_store_is_a_sentence(self):
+        scenes.cube()
+        (self.folder / "lodestone").mkdir()
+        (self.folder / "lodestone" / "file").write_text("in the way")
+        self.with_environment(LODESTONE_CACHE=str(self.folder / "file.blend"))
+        self.refused(".")
+
+
+if __name__ == "__main__":
+    unittest.main()

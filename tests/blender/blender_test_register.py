@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards coming and going: enabling and disabling leaves nothing behind, also when it fails."""
+
+import importlib
+import unittest
+
+import addon_utils
+import bpy
+
+import blender_scenes
+
+OWNERS = (bpy.types.Scene, bpy.types.Collection, bpy.types.Object)
+
+
+def traces():
+    """Everything of ours that Blender knows now."""
+    names = [name for name in dir(bpy.types) if name.startswith("LODESTONE_")]
+    names += [owner.__name__ for owner in OWNERS if hasattr(owner, "lodestone")]
+    names += [f"bpy.ops.{name}" for name in dir(bpy.ops.lodestone)]
+    for name in dir(bpy.types):
+        engines = getattr(getattr(bpy.types, name, None), "COMPAT_ENGINES", ())
+        if "LODESTONE_POVRAY" in engines:
+            names.append(f"{name}.COMPAT_ENGINES")
+    for handlers in (bpy.app.handlers.load_pre, bpy.app.handlers.load_post):
+        names += [h.__module__ for h in handlers if "lodestone" in h.__module__]
+    return names
+
+
+class Register(unittest.TestCase):
+    def tearDown(self):
+        blender_scenes.enable()
+
+    def test_on_and_off_twice_leaves_nothing(self):
+        for _ in range(2):
+            blender_scenes.enable()
+            self.assertIn("Scene", traces())
+            addon_utils.disable("lodestone", default_set=True)
+            self.assertEqual(traces(), [])
+
+    def test_a_part_that_fails_leaves_nothing_and_is_seen(self):
+        addon_utils.disable("lodestone", default_set=True)
+        addon = importlib.import_module("lodestone")
+        panels = importlib.import_module("lodestone.panels")
+        original = panels.register
+
+        def fail():
+            raise RuntimeError("a part that fails")
+
+        panels.register = fail
+        try:
+            with self.assertRaisesRegex(RuntimeError, "a part that fails"):
+                addon.register()
+        finally:
+            panels.register = original
+        self.assertEqual(traces(), [])
+
+    def test_stock_panels_join_the_engine(self):
+        blender_scenes.enable()
+        joined = [name for name in traces() if name.endswith("COMPAT_ENGINES")]
+        for panel in (
+            "RENDER_PT_format",
+            "RENDER_PT_color_management",
+            "DATA_PT_lens",
+            "EEVEE_MATERIAL_PT_surface",
+            "EEVEE_WORLD_PT_surface",
+        ):
+            self.assertIn(f"{panel}.COMPAT_ENGINES", joined)
+
+    def test_opening_a_file_changes_nothing_in_it(self):
+        blender_scenes.fresh()
+        blender_scenes.cube()
+        self.assertFalse(any("lodestone" in item.keys() for item in bpy.data.objects))
+
+
+if __name__ == "__main__":
+    unittest.main()

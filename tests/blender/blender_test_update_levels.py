@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards the designer's file: Update Levels writes ids and nothing else, Clear takes them back."""
+
+import importlib.util
+import json
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+
+def street():
+    scene = scenes.fresh()
+    house = scenes.collection("House")
+    wall = scenes.cube("Wall", collection=house)
+    wall.data.materials.append(scenes.material("Plaster"))
+    wall.modifiers.new("Subdivision", "SUBSURF").render_levels = 4
+    scenes.cube("Chair", (1, 0, 0), 0.3, collection=scenes.collection("Furniture", house))
+    row = scenes.collection("Row", scene.collection)
+    for i in range(3):
+        scenes.instance(f"House.{i}", house, (4 * i, 0, 0), parent=row)
+    scenes.cube("Ground", (0, 0, -1), 9)
+    return scene
+
+
+def described(datablock):
+    """Everything Blender saves of it but our own settings: {property path: value}."""
+    found = {}
+
+    def tell(item, depth, path):
+        for prop in item.bl_rna.properties:
+            if prop.identifier in {"rna_type", "original", "lodestone", "is_evaluated"}:
+                continue
+            try:
+                value = getattr(item, prop.identifier)
+            except (AttributeError, RuntimeError):
+                continue
+            name = f"{path}.{prop.identifier}"
+            if prop.type == "COLLECTION":
+                found[name] = len(value)
+                for number, child in enumerate(value if depth < 2 else ()):
+                    tell(child, depth + 1, f"{name}[{number}]")
+            elif prop.type == "POINTER":
+                found[name] = getattr(value, "name", "") if value else None
+            else:
+                found[name] = repr(value[:] if hasattr(value, "__getitem__") else value)
+
+    tell(datablock, 0, f"{type(datablock).__name__} {datablock.name}")
+    return found
+
+
+def all_described():
+    found = {}
+    for kind in ("scenes", "collections", "objects", "meshes", "materials", "cameras", "lights"):
+        for item in getattr(bpy.data, kind):
+            found.update(described(item))
+    return found
+
+
+def ours():
+    """Names of the datablocks that hold anything of ours."""
+    blocks = (*bpy.data.scenes, *bpy.data.collections, *bpy.data.objects)
+    return [item.name for item in blocks if "lodestone" in item.keys()]
+
+
+class UpdateLevels(unittest.TestCase):
+    def setUp(self):
+        self.scene = street()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.blend = str(self.folder / "street.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=self.blend)
+
+    def uids(self):
+        things = (*bpy.data.collections, *bpy.data.objects)
+        return {item.name: item.lodestone.uid for item in things}
+
+    def test_fills_the_store_beside_the_file_and_gives_everything_an_id(self):
+        self.assertEqual(bpy.ops.lodestone.update_levels(), {"FINISHED"})
+        self.assertTrue((self.folder / "lodestone" / "street" / "tileset.json").is_file())
+        uids = self.uids()
+        self.assertTrue(all(len(uid) == 16 for uid in uids.values()), uids)
+        self.assertEqual(len(set(uids.values())), len(uids))
+
+    def test_a_second_time_builds_nothing(self):
+        from lodestone.operators.update_levels import update_levels
+
+        first = update_levels(bpy.context, "SCENE")
+        second = update_levels(bpy.context, "SCENE")
+        self.assertGreater(first.built, 0)
+        self.assertEqual(second.built, 0)
+
+    def test_writing_ids_makes_nothing_stale(self):
+        from lodestone import extract_engine
+        from lodestone.core.native import lodestone_native as native
+        from lodestone.operators.update_levels import update_levels
+
+        store = str(self.folder / "lodestone" / "street")
+        extraction = extract_engine.extract_now(self.scene, extract_engine.Request())
+        with extraction.model as model:  # as F12 and batch build: no ids in the file
+            Path(store).mkdir(parents=True)
+            self.assertGreater(model.build(store, native.BuildOptions()).built, 0)
+        self.assertEqual(update_levels(bpy.context, "SCENE").built, 0)
+
+    def test_a_renamed_object_keeps_its_levels(self):
+        from lodestone.operators.update_levels import update_levels
+
+        update_levels(bpy.context, "SCENE")
+        for item in (*bpy.data.objects, *bpy.data.collections):
+            item.name = item.name + " renamed"
+        self.assertEqual(update_levels(bpy.context, "SCENE").built, 0)
+
+    def test_a_copy_gets_an_id_of_its_own(self):
+        bpy.ops.lodestone.update_levels()
+        wall = bpy.data.objects["Wall"]
+        copied = scenes.link(wall.copy())
+        self.assertEqual(copied.lodestone.uid, wall.lodestone.uid)
+        before = wall.lodestone.uid
+        bpy.ops.lodestone.update_levels()
+        self.assertEqual(wall.lodestone.uid, before)
+        self.assertNotEqual(copied.lodestone.uid, before)
+
+    def test_the_users_datablocks_are_equal_before_and_after_clear(self):
+        before, held = all_described(), ours()
+        bpy.ops.lodestone.update_levels()
+        self.assertEqual(all_described(), before)
+        bpy.ops.lodestone.clear_levels()
+        self.assertEqual(all_described(), before)
+        self.assertEqual((held, ours()), ([], []))
+        self.assertFalse((self.folder / "lodestone" / "street").exists())
+
+    def test_clear_keeps_decisions_until_they_are_asked_for(self):
+        ground = bpy.data.objects["Ground"]
+        ground.lodestone.role = "ENVIRONMENT"
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.clear_levels()
+        self.assertEqual((ground.lodestone.role, ground.lodestone.uid), ("ENVIRONMENT", ""))
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.clear_levels(decisions=True)
+        self.assertNotIn("lodestone", ground.keys())
+        self.assertEqual(ground.lodestone.role, "ORDINARY")
+
+    def test_clear_never_removes_a_folder_that_is_no_store(self):
+        mine = self.folder / "lodestone" / "street"
+        mine.mkdir(parents=True)
+        (mine / "notes.txt").write_text("mine")
+        bpy.ops.lodestone.clear_levels()
+        self.assertEqual((mine / "notes.txt").read_text(), "mine")
+
+    def test_a_failed_update_leaves_the_file_as_it_was(self):
+        (self.folder / "lodestone").mkdir()
+        (self.folder / "lodestone" / "street").write_text("in the way")
+        cache = os.environ.get("LODESTONE_CACHE", "")
+        self.addCleanup(os.environ.__setitem__, "LODESTONE_CACHE", cache)
+        os.environ["LODESTONE_CACHE"] = self.blend  # no folder can be made in a file
+        before = all_described()
+        with self.assertRaises(RuntimeError):
+            bpy.ops.lodestone.update_levels()
+        self.assertEqual(all_described(), before)
+        self.assertEqual(set(self.uids().values()), {""})
+
+    def test_settings_and_ids_survive_saving_and_loading(self):
+        self.scene.lodestone.pixel_error_render = 4.0
+        self.scene.lodestone.antialias = "OFF"
+        bpy.data.collections["Row"].lodestone.role = "ENVIRONMENT"
+        bpy.ops.lodestone.update_levels()
+        uids = self.uids()
+        bpy.ops.wm.save_mainfile()
+        bpy.ops.wm.open_mainfile(filepath=self.blend)
+        settings = bpy.context.scene.lodestone
+        self.assertEqual((settings.pixel_error_render, settings.antialias), (4.0, "OFF"))
+        self.assertEqual(bpy.data.collections["Row"].lodestone.role, "ENVIRONMENT")
+        self.assertEqual(self.uids(), uids)
+
+    def test_the_file_grows_by_two_percent_at_most(self):
+        size = Path(self.blend).stat().st_size
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.wm.save_mainfile()
+        self.assertLessEqual(Path(self.blend).stat().st_size, 1.02 * size)
+
+    def test_panels_find_the_levels(self):
+        from lodestone.bridge import decisions
+        from lodestone.core import store_levels, store_path
+
+        bpy.ops.lodestone.update_levels()
+        store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+        self.assertEqual(store.problem, "")
+        for item in (bpy.data.objects["Wall"], bpy.data.collections["House"]):
+            uid = next(u for u in decisions.levels_uids(item) if store.levels(u))
+            levels = store.levels(uid)
+            self.assertEqual(levels[0].error, 0.0)
+            self.assertEqual(sorted(lv.error for lv in levels), [lv.error for lv in levels])
+            self.assertGreater(len(levels), 1, item.name)
+
+    def test_an_ordinary_gltf_export_is_the_same(self):
+        if importlib.util.find_spec("numpy") is None:
+            self.skipTest("Blender's glTF exporter needs numpy")
+        bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
+
+        def exported(name):
+            path = str(self.folder / name)
+            bpy.ops.export_scene.gltf(filepath=path, export_format="GLTF_EMBEDDED")
+            return json.loads(Path(path).read_text())
+
+        before = exported("before.gltf")
+        bpy.ops.lodestone.update_levels()
+        self.assertEqual(exported("after.gltf"), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

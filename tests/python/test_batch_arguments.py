@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards batch.py's command line: what is asked for is what Blender is told, or exit 2."""
+
+import contextlib
+import io
+import json
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+import addon_path  # noqa: F401
+from lodestone.core.batch_arguments import FileJob, jobs, parser
+
+
+def parse(*arguments):
+    return jobs(parser().parse_args(arguments))
+
+
+class Usage(unittest.TestCase):
+    def refused(self, *arguments):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            with self.assertRaises((SystemExit, ValueError)) as caught:
+                parse(*arguments)
+        if isinstance(caught.exception, SystemExit):
+            self.assertEqual(caught.exception.code, 2)
+        return said.getvalue() + str(caught.exception)
+
+    def test_nothing_is_refused(self):
+        self.refused()
+        self.refused("render")
+
+    def test_a_render_needs_somewhere_to_go(self):
+        self.assertIn("--out", self.refused("render", "a.blend"))
+
+    def test_a_picture_is_a_png(self):
+        self.assertIn(".png", self.refused("render", "a.blend", "--out", "a.jpg"))
+
+    def test_bad_numbers_are_named(self):
+        for option, value in (
+            ("--pixel-error", "-1"),
+            ("--pixel-error", "nan"),
+            ("--pixel-error", "inf"),
+            ("--threads", "x"),
+            ("--size", "640"),
+            ("--size", "0x5"),
+            ("--size", "99999999x1"),
+            ("--frames", "5-1"),
+            ("--frames", "a-b"),
+            ("--timeout", "0"),
+        ):
+            said = self.refused("render", "a.blend", "--out", "a.png", f"{option}={value}")
+            self.assertIn(option, said)
+
+    def test_two_files_of_one_name_would_overwrite_each_other(self):
+        self.assertIn("two files", self.refused("render", "x/a.blend", "y/a.blend", "--out", "o"))
+        parse("build", "x/a.blend", "y/a.blend")
+        self.refused("build", "x/a.blend", "y/a.blend", "--store", "s")
+
+
+class Jobs(unittest.TestCase):
+    def test_one_picture_goes_to_its_file(self):
+        (job,) = parse("render", "a.blend", "--out", "o/p.png", "--pixel-error", "0.5")
+        self.assertEqual(job.pictures[0].out, os.path.abspath("o/p.png"))
+        self.assertEqual(job.pictures[0].pixel_error, 0.5)
+        self.assertEqual(job.file, os.path.abspath("a.blend"))
+
+    def test_several_files_go_into_a_folder_and_have_stores_of_their_own(self):
+        found = parse("render", "a.blend", "b.blend", "--out", "o", "--store", "s")
+        self.assertEqual(
+            [job.pictures[0].out for job in found],
+            [os.path.abspath("o/a.png"), os.path.abspath("o/b.png")],
+        )
+        self.assertEqual([Path(job.store).name for job in found], ["a", "b"])
+
+    def test_frames_are_numbered(self):
+        (job,) = parse("render", "a.blend", "--out", "o", "--frames", "1-3")
+        self.assertEqual(job.frames, (1, 3))
+        self.assertEqual(Path(job.pictures[0].for_frame(2).out).name, "a_0002.png")
+
+    def test_negative_frames_are_frames(self):
+        (job,) = parse("render", "a.blend", "--out", "o", "--frames=-3--1")
+        self.assertEqual(job.frames, (-3, -1))
+
+    def test_an_export_goes_to_its_folder(self):
+        (job,) = parse("export", "a.blend", "--out", "scene")
+        self.assertEqual(job.pictures[0].out, os.path.abspath("scene"))
+
+    def test_a_job_survives_the_way_to_blender(self):
+        for job in parse(
+            "render", 'q"uote\n{名}.blend', "--out", "o.png", "--size", "64x36", "--camera", "名"
+        ):
+            self.assertEqual(FileJob.load(job.dump()), job)
+
+
+class Views(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name) / "views.json"
+
+    def read(self, value, *options):
+        self.path.write_text(json.dumps(value))
+        return parse("render", "a.blend", "--views", str(self.path), *options)[0].pictures
+
+    def test_entries_fill_up_from_the_command_line(self):
+        pictures = self.read(
+            [{"out": "a.png"}, {"out": "b.png", "pixel_error": 0, "size": [64, 36]}],
+            "--camera=Far",
+            "--size=640x360",
+        )
+        self.assertEqual([p.camera for p in pictures], ["Far", "Far"])
+        self.assertEqual([p.pixel_error for p in pictures], [1.0, 0.0])
+        self.assertEqual([p.size for p in pictures], [(640, 360), (64, 36)])
+
+    def test_mistakes_are_named_with_their_entry(self):
+        for value, word in (
+            ({}, "list"),
+            ([], "list"),
+            ([1], "entry 0"),
+            ([{"out": "a.png"}, {}], "entry 1"),
+            ([{"out": "a.png", "colour": 1}], "colour"),
+            ([{"out": "a.png", "antialias": "more"}], "antialias"),
+            ([{"out": "a.png", "size": "big"}], "size"),
+            ([{"out": "a.png", "pixel_error": "x"}], "number"),
+            ([{"out": "a.png"}, {"out": "a.png"}], "same out"),
+        ):
+            with self.assertRaises(ValueError) as caught:
+                self.read(value)
+            self.assertIn(word, str(caught.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
