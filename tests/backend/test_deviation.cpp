@@ -173,10 +173,94 @@ TEST(Deviation, SameBitsOnOneAndManyThreads) {
     EXPECT_GT(std::get<0>(once), 0);
 }
 
+namespace {
+
+Material colored(double r, double g, double b) {
+    Material material;
+    material.base_color = {r, g, b};
+    return material;
+}
+
+/// 20 x 20 m of grass (slot 0) with a road (slot 1) of 2 x 20 m, 2 cm above its middle.
+Mesh field_with_road() {
+    Mesh mesh = shapes::quad(20, 20);
+    Affine above;
+    above.offset = {9, 0, 0.02};
+    append(mesh, shapes::quad(2, 20), above, 1);
+    return mesh;
+}
+
+Deviation of_looks(const Mesh& finest, const std::vector<Material>& materials, const Mesh& stand_in,
+                   const std::vector<Material>& own) {
+    measure::Looks palette;
+    const std::vector<uint16_t> looks = palette.of(finest, materials);
+    const DeviationReference reference(finest, {}, {looks, &palette});
+    return reference.of(stand_in, palette.of(stand_in, own));
+}
+
+}  // namespace
+
+TEST(DeviationLooks, RoadThatIsGoneIsAsWrongAsHalfItsWidth) {
+    const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.1, 0.1, 0.1)};
+    const Mesh finest = field_with_road();
+    const Deviation gone = of_looks(finest, materials, shapes::quad(20, 20), materials);
+    EXPECT_NEAR(gone.error, 1, 0.25);
+    EXPECT_LT(of_looks(finest, materials, finest, materials).error, 1e-5);
+}
+
+TEST(DeviationLooks, RoadThatMovedIsWrongByAsMuch) {
+    const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.1, 0.1, 0.1)};
+    Mesh moved = field_with_road();
+    for (glm::vec3& position : moved.positions) {
+        if (position.z > 0)
+            position.x += 0.3f;
+    }
+    EXPECT_NEAR(of_looks(field_with_road(), materials, moved, materials).error, 0.3, 0.06);
+}
+
+TEST(DeviationLooks, BoardsAreRepaintedLikeTheTilesThatLayOnThem) {
+    Mesh roof = shapes::quad(4, 4);  // boards, slot 0
+    for (int i = 0; i < 16; ++i) {
+        Affine place;
+        place.offset = {i % 4, i / 4, 0.05};
+        append(roof, shapes::box({0, 0, 0}, {1, 1, 0.02}), place, 1);
+    }
+    const DeviationReference reference(roof, {});
+    Mesh boards = shapes::quad(4, 4);
+    boards.slots = {0, 0};
+    reference.repaint(boards);
+    EXPECT_EQ(boards.slots, (std::vector<uint16_t>{1, 1}));
+    Mesh same = roof;
+    reference.repaint(same);
+    EXPECT_EQ(same.slots, roof.slots);
+}
+
+TEST(DeviationLooks, ColorsThatNobodyCanTellApartDoNotCount) {
+    const std::vector<Material> alike{colored(0.1, 0.5, 0.1), colored(0.11, 0.5, 0.1)};
+    EXPECT_NEAR(of_looks(field_with_road(), alike, shapes::quad(20, 20), alike).error, 0.02, 1e-3);
+}
+
+TEST(DeviationLooks, MeanColorIsRightFromWhereTheColorsMix) {
+    // A chessboard of 1 m fields, and the same board in the mean color.
+    const std::vector<Material> materials{colored(0, 0, 0), colored(1, 1, 1)};
+    Mesh board;
+    for (int i = 0; i < 16; ++i) {
+        for (int j = 0; j < 16; ++j) {
+            Affine place;
+            place.offset = {i, j, 0};
+            append(board, shapes::quad(1, 1), place, static_cast<uint16_t>((i + j) % 2));
+        }
+    }
+    const std::vector<Material> gray{colored(0.2140, 0.2140, 0.2140)};  // 0.5 on the screen
+    const double error = of_looks(board, materials, shapes::quad(16, 16), gray).error;
+    EXPECT_GT(error, 0.4);
+    EXPECT_LT(error, 5);
+}
+
 TEST(Deviation, CancelledJobsStop) {
     const int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
-    EXPECT_THROW(DeviationReference(shapes::cube(), {}, job), Error);
+    EXPECT_THROW(DeviationReference(shapes::cube(), {}, {}, job), Error);
     const DeviationReference reference(shapes::cube(), {});
-    EXPECT_THROW((void)reference.of(shapes::cube(), job), Error);
+    EXPECT_THROW((void)reference.of(shapes::cube(), {}, job), Error);
 }

@@ -100,4 +100,33 @@ double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most,
     return error;
 }
 
+std::vector<uint64_t> uses_of(const Model& model) {
+    std::vector<uint64_t> uses(model.objects.size(), 0);
+    std::vector<ObjectIndex> order = bottom_up(model);
+    if (!order.empty())
+        uses[model.root] = 1;
+    for (auto at = order.rbegin(); at != order.rend(); ++at) {
+        const Object& object = model.objects[*at];
+        if (!object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            uses[placement.object] += uses[*at];
+    }
+    return uses;
+}
+
+double bytes_within(const Model& model, ObjectIndex group, double error,
+                    const std::vector<uint64_t>& uses, const Job& job) {
+    const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
+    double bytes = 0;
+    for (const uint32_t index : cut.chosen) {
+        const quality::Node& node = cut.nodes[index];
+        const Summary& summary = model.objects[node.object].representations[node.lod].summary;
+        bytes += static_cast<double>(quality::kBytesPerOccurrence) +
+                 static_cast<double>(summary.cost.bytes) /
+                     static_cast<double>(std::max<uint64_t>(1, uses[node.object]));
+    }
+    return bytes;
+}
+
 }  // namespace lodestone::build

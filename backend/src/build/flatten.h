@@ -22,4 +22,13 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
 /// coarsest of the series when none does.
 double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job);
 
+/// How often each object is drawn: the number of paths to it from the root.
+std::vector<uint64_t> uses_of(const Model& model);
+
+/// What an occurrence of the group's children costs POV-Ray within an error: a share of every
+/// representation (its bytes over its object's uses, for all occurrences share it) and the
+/// occurrences themselves. The group's own stand-ins do not count.
+double bytes_within(const Model& model, ObjectIndex group, double error,
+                    const std::vector<uint64_t>& uses, const Job& job);
+
 }  // namespace lodestone::build

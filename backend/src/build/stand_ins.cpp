@@ -6,7 +6,9 @@
 #include "approximate/stand_in_material.h"
 #include "build/flatten.h"
 #include "measure/deviation.h"
+#include "measure/looks.h"
 #include "measure/visible.h"
+#include "quality/cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +23,10 @@ constexpr double kMostAreaChange = 0.25;
 constexpr size_t kFewestTriangles = 8;
 // An error below this fraction of the size is float noise; the finest alone has error 0.
 constexpr double kLeastRelativeError = 1e-7;
-// DESIGN 1: a group is measured against children whose own error is at most a quarter of the result.
-constexpr double kChildShare = 0.25;
+// Roads, pavements and lawns lie on the ground in thin layers. A level that sinks by a little more
+// than the layer is thick hides it, which shows from as far as the layer is wide: environment counts
+// as this many times wider than it is off.
+constexpr double kLayerWidth = 16;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 24;
 constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
@@ -42,79 +46,93 @@ std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
     return targets;
 }
 
+/// The ground is large, and what lies on it (roads, fields) a small share of it.
+uint32_t samples_of(bool environment, const Settings& settings) {
+    return environment ? 8 * settings.samples : settings.samples;
+}
+
 /// Measures candidates against one finest mesh.
 class Judge {
 public:
     Judge(const Mesh& finest, std::span<const Material> materials, const Settings& settings,
-          uint64_t seed, double child_error, const Job& job)
-        : scene_(finest),
-          reference_(finest, {settings.samples, settings.samples, seed}),
-          size_(bound_of(finest.positions).radius),
+          bool environment, uint64_t seed, double child_error, const Job& job)
+        : size_(bound_of(finest.positions).radius),
           child_error_(child_error),
+          layer_width_(environment ? kLayerWidth : 1),
           seed_(seed),
-          rays_(settings.rays) {
+          rays_(settings.rays),
+          finest_looks_(looks_.of(finest, materials)),
+          reference_(finest, {samples_of(environment, settings), settings.samples, seed},
+                     {finest_looks_, &looks_}, job) {
         measure::VisibleOptions options;
         options.rays = settings.rays;
         options.seed = seed;
-        attributes_ =
-            measure::measure_visible(finest, scene_, materials, options, {}, job).attributes;
+        attributes_ = measure::measure_visible(finest, materials, options, {}, job).attributes;
     }
 
     const Attributes& attributes() const { return attributes_; }
 
+    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, job); }
+
     /// False when the mesh shows another amount of surface than the finest.
-    bool measure_mesh(Candidate& candidate, std::span<const Material> materials,
-                      const Job& job) const {
+    bool measure_mesh(Candidate& candidate, const Job& job) {
         measure::VisibleOptions options;
         options.rays = rays_ / 2;
         options.seed = seed_;
-        const Attributes now =
-            measure::measure_visible(*candidate.mesh, materials, options, {}, job).attributes;
-        set_error(candidate, reference_.of(*candidate.mesh));
-        return std::abs(now.visible_area - attributes_.visible_area) <=
+        const double visible =
+            measure::measure_visible(*candidate.mesh, candidate.materials, options, {}, job)
+                .attributes.visible_area;
+        set_error(candidate, reference_.of(*candidate.mesh,
+                                           looks_.of(*candidate.mesh, candidate.materials), job));
+        return std::abs(visible - attributes_.visible_area) <=
                kMostAreaChange * attributes_.visible_area;
     }
 
-    void measure_primitive(Candidate& candidate) const {
-        set_error(candidate,
-                  reference_.of(candidate.kind == Kind::Box
-                                    ? tessellate_box(candidate.primitive)
-                                    : tessellate_ellipsoid(candidate.primitive, kSubdivisions)));
+    void measure_primitive(Candidate& candidate, const Job& job) {
+        const Mesh mesh = candidate.kind == Kind::Box
+                              ? tessellate_box(candidate.primitive)
+                              : tessellate_ellipsoid(candidate.primitive, kSubdivisions);
+        set_error(candidate, reference_.of(mesh, looks_.of(mesh, candidate.materials), job));
     }
 
 private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const {
-        candidate.error = std::max({deviation.error + child_error_, child_error_ / kChildShare,
-                                    kLeastRelativeError * size_});
-        candidate.max_error = std::max(candidate.error, deviation.max + child_error_);
+        candidate.error =
+            std::max(layer_width_ * deviation.error + child_error_, kLeastRelativeError * size_);
+        candidate.max_error =
+            std::max(candidate.error, layer_width_ * deviation.max + child_error_);
     }
 
-    ray::Scene scene_;
-    measure::DeviationReference reference_;
-    Attributes attributes_;
+    measure::Looks looks_;
     double size_;
     double child_error_;
+    double layer_width_;
     uint64_t seed_;
     uint64_t rays_;
+    std::vector<uint16_t> finest_looks_;
+    measure::DeviationReference reference_;
+    Attributes attributes_;
 };
 
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Judge& judge, const Job& job) {
+                Judge& judge, const Job& job) {
     if (targets.empty())
         return;
     for (Mesh& level : approximate::simplify_chain(mesh, targets, {}, job)) {
         if (level.empty())
             continue;
+        judge.repaint(level, job);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
-        if (judge.measure_mesh(candidate, materials, job))
+        if (judge.measure_mesh(candidate, job))
             candidates.push_back(std::move(candidate));
     }
 }
 
-void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, const Judge& judge) {
+void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, Judge& judge,
+                    const Job& job) {
     const Material material = approximate::mean_material(judge.attributes());
     const auto add = [&](Kind kind, const std::optional<Primitive>& primitive) {
         if (!primitive)
@@ -123,11 +141,18 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, cons
         candidate.kind = kind;
         candidate.primitive = *primitive;
         candidate.materials = {material};
-        judge.measure_primitive(candidate);
+        judge.measure_primitive(candidate, job);
         candidates.push_back(std::move(candidate));
     };
     add(Kind::Box, approximate::fit_box(judge.attributes(), bound));
     add(Kind::Ellipsoid, approximate::fit_ellipsoid(judge.attributes(), bound));
+}
+
+/// What no ray from outside reaches is left out; everything stays when nothing would.
+Mesh without_hidden(const Mesh& mesh, uint64_t seed, const Job& job) {
+    Mesh shell = subset(
+        mesh, measure::seen_from_outside(mesh, ray::Scene(mesh), kRaysPerTriangle, seed, job));
+    return shell.empty() ? mesh : shell;
 }
 
 uint64_t seed_of(const Object& object, const Settings& settings) {
@@ -137,7 +162,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 1;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 9;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -175,7 +200,8 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
         materials.push_back(model.materials.at(material));
     if (materials.empty())
         materials.emplace_back();
-    const Judge judge(*mesh, materials, settings, seed_of(object, settings), 0, job);
+    Judge judge(*mesh, materials, settings, object.role == Role::Environment,
+                seed_of(object, settings), 0, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
@@ -184,50 +210,59 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
     add_levels(out.candidates, *mesh, materials, targets_of(count, first, settings.level_ratio),
                judge, job);
     if (object.role != Role::Environment)
-        add_primitives(out.candidates, finest.summary.bound, judge);
+        add_primitives(out.candidates, finest.summary.bound, judge, job);
     keep_useful(out.candidates, finest.summary.cost.bytes);
     return out;
 }
 
-StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Settings& settings,
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
+                            const std::vector<uint64_t>& uses, const Settings& settings,
                             const MeshSource& source, const Job& job) {
     StandIns out;
     const Object& object = model.objects[group];
     const Summary& finest = object.representations.at(0).summary;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
-    const double error = error_for_triangles(model, group, budget, job);
-    Flat flat = flatten(model, group, error, source, job);
-    if (flat.mesh.empty())
+    const double fine = error_for_triangles(model, group, budget, job);
+    const Flat reference = flatten(model, group, fine, source, job);
+    if (reference.mesh.empty())
         return out;
     const uint64_t seed = seed_of(object, settings);
-    const Judge judge(flat.mesh, flat.materials, settings, seed, flat.child_error, job);
+    Judge judge(reference.mesh, reference.materials, settings, reference.environment, seed,
+                reference.child_error, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
 
-    const std::vector<uint8_t> seen =
-        measure::seen_from_outside(flat.mesh, ray::Scene(flat.mesh), kRaysPerTriangle, seed, job);
-    Mesh shell = subset(flat.mesh, seen);
-    if (shell.empty())
-        shell = flat.mesh;
+    Mesh shell = without_hidden(reference.mesh, seed, job);
     const size_t count = shell.triangles.size();
-    add_levels(out.candidates, shell, flat.materials,
+    add_levels(out.candidates, shell, reference.materials,
                targets_of(count + 1, count, settings.level_ratio), judge, job);
-    if (object.role != Role::Environment && !flat.environment)
-        add_primitives(out.candidates, finest.bound, judge);
-    std::vector<Candidate> all = out.candidates;
-    keep_useful(out.candidates, finest.cost.bytes);
-    if (out.candidates.empty()) {
+    if (object.role != Role::Environment && !reference.environment)
+        add_primitives(out.candidates, finest.bound, judge, job);
+
+    // A stand-in that costs more than what the children would use at its error is none: parts that
+    // many groups share are cheap, one mesh for each of the groups is not.
+    std::vector<Candidate> useful;
+    for (const Candidate& candidate : out.candidates) {
+        const double own = static_cast<double>(bytes_of(candidate)) /
+                               static_cast<double>(std::max<uint64_t>(1, uses[group])) +
+                           static_cast<double>(quality::kBytesPerOccurrence);
+        if (own < bytes_within(model, group, candidate.error, uses, job))
+            useful.push_back(candidate);
+    }
+    keep_useful(useful, finest.cost.bytes);
+    if (useful.empty()) {
         // Every group has a stand-in, even one that saves nothing but the occurrences.
         Candidate whole;
         whole.mesh = std::make_shared<Mesh>(std::move(shell));
-        whole.materials = flat.materials;
-        judge.measure_mesh(whole, flat.materials, job);
-        all.push_back(std::move(whole));
-        keep_useful(all, ~uint64_t{0});
-        out.candidates = {all.back()};
+        whole.materials = reference.materials;
+        judge.measure_mesh(whole, job);
+        out.candidates.push_back(std::move(whole));
+        keep_useful(out.candidates, ~uint64_t{0});
+        useful = {out.candidates.back()};
     }
+    out.candidates = std::move(useful);
     return out;
 }
 

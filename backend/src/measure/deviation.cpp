@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace lodestone::measure {
 namespace {
@@ -14,6 +15,10 @@ namespace {
 using Sample = DeviationReference::Sample;
 
 constexpr double kQuantile = 0.999;
+// Of the places of one look; and looks of a smaller share of the area than this are details, which
+// their places alone answer for.
+constexpr double kLookQuantile = 0.99;
+constexpr double kLeastLookShare = 0.002;
 constexpr int kVertexRays = 16;
 constexpr uint32_t kMostRaysPerSample = 16;  // for visible points of a mesh that is hard to hit
 constexpr size_t kBlock = 256;
@@ -84,16 +89,24 @@ void add_area_samples(const Mesh& mesh, uint32_t count, uint64_t seed, std::vect
             const glm::dvec2 weights = uniform_in_triangle(u, v);
             out.push_back({a + weights.x * (glm::dvec3(mesh.positions[t.y]) - a) +
                                weights.y * (glm::dvec3(mesh.positions[t.z]) - a),
-                           step});
+                           step, DeviationReference::kAnyLook});
             ++taken;
             next = (taken + random.uniform()) * step;
         }
     }
 }
 
+glm::dvec3 side_of(const Mesh& mesh, const VisiblePoint& point) {
+    const glm::dvec3 area = area_vector(mesh, point.triangle);
+    const double length = glm::length(area);
+    if (!(length > 0))
+        return glm::dvec3(0.0);
+    return (glm::dot(area, point.seen_from) < 0 ? -area : area) / length;
+}
+
 /// Points that rays from outside hit, sharing the visible area of one side equally.
-void add_visible_points(const VisibleSampler& sampler, uint32_t count, const Job& job,
-                        std::vector<Sample>& out) {
+void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const LookScenes& scenes,
+                        uint32_t count, const Job& job, std::vector<Sample>& out) {
     const uint64_t most = uint64_t{count} * kMostRaysPerSample;
     struct Found {
         std::array<VisiblePoint, 2> points;
@@ -130,7 +143,8 @@ void add_visible_points(const VisibleSampler& sampler, uint32_t count, const Job
         [](const VisiblePoint& a, const VisiblePoint& b) { return a.triangle < b.triangle; });
     const double weight = visible / static_cast<double>(points.size());
     for (const VisiblePoint& point : points)
-        out.push_back({point.point, weight});
+        out.push_back({point.point, weight, scenes.look_of(point.triangle), side_of(mesh, point),
+                       mesh.slot(point.triangle)});
 }
 
 /// Vertices from beside which some ray sees infinity.
@@ -187,37 +201,133 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
     });
     for (size_t i = 0; i < corners.size(); ++i) {
         if (seen[i] != 0)
-            out.push_back({glm::dvec3(mesh.positions[corners[i].vertex]), corners[i].weight});
+            out.push_back({glm::dvec3(mesh.positions[corners[i].vertex]), corners[i].weight,
+                           DeviationReference::kAnyLook});
     }
 }
 
-/// The smallest distance that samples of 99.9 % of the weight do not exceed, and the largest.
-Deviation summary(const std::vector<Sample>& samples, const std::vector<double>& distances) {
-    Deviation out;
-    std::vector<size_t> order(samples.size());
-    double all = 0;
-    for (size_t i = 0; i < order.size(); ++i) {
-        order[i] = i;
-        all += samples[i].weight;
-        out.max = std::max(out.max, distances[i]);
-    }
+double weight_of(const std::vector<Sample>& samples, const std::vector<size_t>& indices) {
+    double sum = 0;
+    for (const size_t i : indices)
+        sum += samples[i].weight;
+    return sum;
+}
+
+/// The smallest distance that `share` of the weight of the samples in `order` does not exceed.
+double quantile(const std::vector<Sample>& samples, const std::vector<double>& distances,
+                std::vector<size_t> order, double share) {
+    const double all = weight_of(samples, order);
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
         return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
     });
     double above = 0;
+    double out = 0;
     for (const size_t i : order) {
-        out.error = distances[i];
+        out = distances[i];
         above += samples[i].weight;
-        if (above > (1 - kQuantile) * all)
+        if (above > (1 - share) * all)
             break;
     }
     return out;
 }
 
-/// From the samples to the nearest points of the scene; `none` where there is nothing to find.
-Deviation measure(const std::vector<Sample>& samples, const ray::Scene& scene, double none,
-                  const Job& job) {
-    std::vector<double> distances(samples.size(), 0);
+/// `places`: how far every sample is from the other surface; `moves`: how far its look was moved.
+Deviation summary(const std::vector<Sample>& samples, const std::vector<double>& places,
+                  const std::vector<double>& moves) {
+    Deviation out;
+    std::vector<size_t> all(samples.size());
+    std::map<uint16_t, std::vector<size_t>> moved;  // looks of which anything moved
+    for (size_t i = 0; i < all.size(); ++i) {
+        all[i] = i;
+        out.max = std::max({out.max, places[i], moves[i]});
+        if (moves[i] > 0)
+            moved[samples[i].look];
+    }
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const auto at = moved.find(samples[i].look);
+        if (at != moved.end())
+            at->second.push_back(i);
+    }
+    const double least = kLeastLookShare * weight_of(samples, all);
+    out.error = quantile(samples, places, std::move(all), kQuantile);
+    for (const auto& [look, indices] : moved) {
+        if (weight_of(samples, indices) >= least)
+            out.error = std::max(out.error, quantile(samples, moves, indices, kLookQuantile));
+    }
+    return out;
+}
+
+/// Whether two places can be seen at once: not the grass from above and the road from below.
+bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
+    constexpr double kUnknown = 0.5;  // square of a length; sides are unit vectors
+    return glm::dot(a, a) < kUnknown || glm::dot(b, b) < kUnknown || glm::dot(a, b) > 0;
+}
+
+/// Distance to the nearest point of look `look` that can be seen of the finest, from the same side.
+double nearest_visible(const std::vector<Sample>& visible, const Sample& from, uint16_t look) {
+    double square = std::numeric_limits<double>::infinity();
+    for (const Sample& sample : visible) {
+        const glm::dvec3 arm = sample.point - from.point;
+        const double here = glm::dot(arm, arm);
+        if (here < square && sample.look == look && face_alike(sample.side, from.side))
+            square = here;
+    }
+    return std::sqrt(square);
+}
+
+/// The radius around a point within which the visible colors of the finest mix to `color`; never
+/// (infinity) when not even all of them do.
+double mixing_radius(const std::vector<Sample>& visible, const Looks& palette, const Sample& from,
+                     const glm::dvec3& color) {
+    // Every so many of the visible points are enough for a mean.
+    constexpr size_t kMostPoints = 512;
+    const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
+    std::vector<std::pair<double, uint16_t>> near;
+    for (size_t i = 0; i < visible.size(); i += step) {
+        const glm::dvec3 arm = visible[i].point - from.point;
+        if (visible[i].look != DeviationReference::kAnyLook &&
+            face_alike(visible[i].side, from.side))
+            near.emplace_back(glm::dot(arm, arm), visible[i].look);
+    }
+    std::sort(near.begin(), near.end());
+    glm::dvec3 sum(0.0);
+    double count = 0;
+    for (const auto& [square, look] : near) {
+        sum += palette.color(look);
+        ++count;
+        const glm::dvec3 off = glm::abs(sum / count - color);
+        if (std::max({off.x, off.y, off.z}) <= Looks::kSameLook)
+            return std::sqrt(square);
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+/// What the samples of one mesh are compared with.
+struct Against {
+    const LookScenes& other;
+    const std::vector<Sample>& visible;  // of the finest
+    const LookScenes& finest;
+    const Looks* palette;
+    double none;  // the answer where there is nothing to find
+};
+
+/// How far the looks were moved at a sample where the other mesh shows `theirs`.
+double moved_by(const Sample& sample, uint16_t theirs, const Against& against) {
+    const double least =
+        std::min(against.none, against.other.nearest(sample.look, sample.point).distance);
+    if (against.finest.has(theirs))
+        return std::min(least, nearest_visible(against.visible, sample, theirs));
+    if (against.palette == nullptr)
+        return least;
+    return std::min(least, mixing_radius(against.visible, *against.palette, sample,
+                                         against.palette->color(theirs)));
+}
+
+/// From the samples to the nearest points of the other mesh.
+Deviation measure(const std::vector<Sample>& samples, const Against& against, const Job& job) {
+    std::vector<double> places(samples.size(), 0);
+    std::vector<double> moves(samples.size(), 0);
+    const ray::Scene& scene = against.other.whole();
     parallel_for((samples.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         double radius = std::numeric_limits<double>::infinity();
@@ -231,40 +341,78 @@ Deviation measure(const std::vector<Sample>& samples, const ray::Scene& scene, d
             if (!std::isfinite(closest.distance))
                 closest = scene.closest_point(point);
             // Nothing in reach at all: a scene of triangles that have no finite corners.
-            distances[i] = std::isfinite(closest.distance) ? closest.distance : none;
+            places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
             last = closest.point;
             radius = closest.distance;
+            if (samples[i].look == DeviationReference::kAnyLook || !std::isfinite(radius))
+                continue;
+            const uint16_t theirs = against.other.look_of(closest.triangle);
+            if (theirs != samples[i].look)
+                moves[i] = moved_by(samples[i], theirs, against);
         }
     });
-    return summary(samples, distances);
+    return summary(samples, places, moves);
 }
 
 }  // namespace
 
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
-                                       const Job& job)
-    : options_(options), scene_(finest), diameter_(2 * radius_of(finest)) {
-    const VisibleSampler sampler(finest, scene_, options.seed);
+                                       const Surface& surface, const Job& job)
+    : options_(options),
+      scenes_(finest, surface.looks),
+      palette_(surface.palette),
+      diameter_(2 * radius_of(finest)) {
+    const VisibleSampler sampler(finest, scenes_.whole(), options.seed);
     if (sampler.empty())
         return;
-    add_visible_points(sampler, options.samples, job, visible_);
-    add_visible_vertices(finest, scene_, sampler.sides(),
+    add_visible_points(finest, sampler, scenes_, options.samples, job, visible_);
+    add_visible_vertices(finest, scenes_.whole(), sampler.sides(),
                          weighted_vertices(finest, options.most_vertices, options.seed),
                          ray_lift(diameter_ / 2), options.seed, job, visible_);
 }
 
-Deviation DeviationReference::of(const Mesh& stand_in, const Job& job) const {
-    const ray::Scene scene(stand_in);
+Deviation DeviationReference::of(const Mesh& stand_in, std::span<const uint16_t> looks,
+                                 const Job& job) const {
+    const LookScenes scenes(stand_in, looks);
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
-    if (scene.triangles() == 0 || scene_.triangles() == 0)
+    if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
+    // What the stand-in shows where, the visible points have asked already.
     std::vector<Sample> samples;
     add_area_samples(stand_in, options_.samples, options_.seed, samples);
     for (const Corner& corner : weighted_vertices(stand_in, options_.most_vertices, options_.seed))
-        samples.push_back({glm::dvec3(stand_in.positions[corner.vertex]), corner.weight});
-    const Deviation there = measure(visible_, scene, none, job);
-    const Deviation back = measure(samples, scene_, none, job);
+        samples.push_back({glm::dvec3(stand_in.positions[corner.vertex]), corner.weight, kAnyLook});
+    const Deviation there = measure(visible_, {scenes, visible_, scenes_, palette_, none}, job);
+    const Deviation back = measure(samples, {scenes_, visible_, scenes_, palette_, none}, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
+}
+
+void DeviationReference::repaint(Mesh& level, const Job& job) const {
+    constexpr uint32_t kLeastVotes = 3;
+    if (level.slots.empty())
+        return;
+    const ray::Scene scene(level);
+    std::vector<uint32_t> nearest(visible_.size(), ray::kNoTriangle);
+    parallel_for((visible_.size() + kBlock - 1) / kBlock, [&](size_t block) {
+        job.check();
+        for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
+            if (visible_[i].look != kAnyLook)
+                nearest[i] = scene.closest_point(visible_[i].point).triangle;
+        }
+    });
+    std::map<uint32_t, std::map<uint16_t, uint32_t>> votes;  // by triangle and slot
+    for (size_t i = 0; i < nearest.size(); ++i) {
+        if (nearest[i] != ray::kNoTriangle)
+            ++votes[nearest[i]][visible_[i].slot];
+    }
+    for (const auto& [triangle, slots] : votes) {
+        const auto most =
+            std::max_element(slots.begin(), slots.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
+        const auto own = slots.find(level.slots[triangle]);
+        if (most->second >= kLeastVotes && (own == slots.end() || most->second > own->second))
+            level.slots[triangle] = most->first;
+    }
 }
 
 }  // namespace lodestone::measure

@@ -3,14 +3,20 @@
 #pragma once
 
 #include "base/job.h"
-#include "ray/scene.h"
+#include "measure/look_scenes.h"
+#include "measure/looks.h"
 
 namespace lodestone::measure {
 
 /// Distances in metres, of both directions together: from the visible surface of the finest to the
-/// stand-in, and from the stand-in (all of it) to the finest (all of it).
+/// stand-in, and from the stand-in (all of it) to the finest (all of it). Where the nearest surface of
+/// the stand-in has another look than a visible point, it also counts by how much the looks were
+/// moved, the least of: the distance to the look that is missed; to where the finest shows the look
+/// that is there instead; and, for a look that the finest has nowhere (a mean color), the radius
+/// within which the finest's own colors mix to it. So a road that is gone is as wrong as half its
+/// width, whatever its share of the area: every look has its own quantile (99 %).
 struct Deviation {
-    double error = 0;  // the larger of the two directions' 99.9 % quantiles
+    double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
     double max = 0;    // the largest distance that was seen
 };
 
@@ -20,32 +26,52 @@ struct DeviationOptions {
     uint64_t seed = 1;
 };
 
+/// What the finest looks like: one look a triangle, and what their numbers mean. Stand-ins must be
+/// numbered by the same Looks, which must outlive the reference.
+struct Surface {
+    std::span<const uint16_t> looks;
+    const Looks* palette = nullptr;
+};
+
 /// The finest surface made ready to be compared with. A direction's quantile is over two sets of
 /// equal weight: points uniform in (visible) area, which share it equally, and (visible) vertices,
 /// each with a third of its triangles' area. A point of the finest is visible when a ray from
 /// outside its bound hits it; a vertex when one of 16 rays from beside it sees infinity.
 class DeviationReference {
 public:
-    /// Keeps what it needs of the mesh. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
-    DeviationReference(const Mesh& finest, const DeviationOptions& options, const Job& job = {});
+    /// Keeps what it needs of the mesh; `looks` is kept by reference (null: all looks alike).
+    /// Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+    DeviationReference(const Mesh& finest, const DeviationOptions& options,
+                       const Surface& surface = {}, const Job& job = {});
 
     /// Same bits on any number of threads. Where one of the two meshes has nothing to measure to,
     /// both numbers are the diameter of the other's bounding sphere; two empty ones agree. May be
     /// called from any thread.
-    Deviation of(const Mesh& stand_in, const Job& job = {}) const;
+    Deviation of(const Mesh& stand_in, std::span<const uint16_t> looks = {},
+                 const Job& job = {}) const;
+
+    /// Gives each triangle of a level (of the finest's slots) the slot that most of the visible points
+    /// nearest to it show, where enough of them agree: boards look like the tiles that lay on them.
+    void repaint(Mesh& level, const Job& job = {}) const;
 
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return visible_.size(); }
 
-    /// A point and its share of a direction's weight.
+    /// A point, its share of a direction's weight, and what it looks like.
     struct Sample {
         glm::dvec3 point;
         double weight;
+        uint16_t look;         // kAnyLook: only its place counts (vertices lie on borders of looks)
+        glm::dvec3 side{0.0};  // unit normal towards whoever sees it
+        uint16_t slot = 0;     // the material slot it shows
+        glm::dvec3 sight{0.0};  // unit direction towards whoever sees it
     };
+    static constexpr uint16_t kAnyLook = 0xffff;
 
 private:
     DeviationOptions options_;
-    ray::Scene scene_;
+    LookScenes scenes_;
+    const Looks* palette_;
     std::vector<Sample> visible_;  // neighbors in the list are mostly neighbors in space
     double diameter_ = 0;
 };

@@ -147,14 +147,14 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
     const ray::Hit near = scene_->first_hit(line.origin, line.direction);
     if (!near.hit)
         return 0;
-    points[0] = {near.point, near.triangle};
+    points[0] = {near.point, near.triangle, -line.direction};
     // The same line from its other end: past everything, looking back.
     const glm::dvec3 arm = near.point - line.origin;
     const double beyond = std::abs(glm::dot(arm, line.direction)) + 4e5 * lift_;
     const ray::Hit far = scene_->first_hit(line.origin + beyond * line.direction, -line.direction);
     if (!far.hit)
         return 1;
-    points[1] = {far.point, far.triangle};
+    points[1] = {far.point, far.triangle, line.direction};
     return 2;
 }
 
@@ -186,7 +186,7 @@ int VisibleSampler::cast_from_surface(const std::array<double, 4>& u,
                              weights.y * (glm::dvec3(mesh_->positions[t.z]) - a);
     if (scene_->occluded(point + lift_ * normal, cosine_direction(normal, u[2], u[3])))
         return 0;
-    points[0] = {point, static_cast<uint32_t>(index)};
+    points[0] = {point, static_cast<uint32_t>(index), normal};
     return 1;
 }
 

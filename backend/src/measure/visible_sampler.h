@@ -20,6 +20,7 @@ Sides sides_of(const Mesh& mesh);
 struct VisiblePoint {
     glm::dvec3 point{0.0};
     uint32_t triangle = 0;
+    glm::dvec3 seen_from{0.0};  // direction towards whoever sees it, any length
 };
 
 /// Draws visible points by one of two kinds of rays, whichever hits more surely on this mesh:

@@ -8,9 +8,6 @@
 namespace lodestone::quality {
 namespace {
 
-// POV-Ray 3.7 keeps about 1.5 KB for an object{} that refers to a declared mesh.
-constexpr uint64_t kBytesPerOccurrence = 1500;
-
 /// The cheapest good representation that the view can draw, or the finest drawable one, or none.
 /// Representations are ordered finest first with strictly rising errors and falling costs.
 const Representation* pick(const Object& object, const View& view, double enlarge, double z) {

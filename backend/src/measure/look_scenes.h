@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Look scenes: a mesh made ready for closest points, as a whole and by look.
+#pragma once
+
+#include "ray/scene.h"
+
+#include <map>
+#include <span>
+#include <vector>
+
+namespace lodestone::measure {
+
+class LookScenes {
+public:
+    /// `looks` is empty (all alike) or one a triangle. Throws as ray::Scene does.
+    LookScenes(const Mesh& mesh, std::span<const uint16_t> looks);
+
+    const ray::Scene& whole() const { return whole_; }
+    /// Of a triangle of the whole.
+    uint16_t look_of(uint32_t triangle) const {
+        return looks_.empty() ? uint16_t{0} : looks_[triangle];
+    }
+    bool several() const { return by_look_.size() > 1; }
+    bool has(uint16_t look) const { return looks_.empty() ? look == 0 : by_look_.count(look) != 0; }
+    /// The nearest point of a look; at infinity when there is none.
+    ray::Closest nearest(uint16_t look, const glm::dvec3& point) const;
+
+private:
+    ray::Scene whole_;
+    std::vector<uint16_t> looks_;
+    std::map<uint16_t, ray::Scene> by_look_;
+};
+
+}  // namespace lodestone::measure
