@@ -17,6 +17,7 @@ from .core import last_render, progress, store_path
 from .core.native import lodestone_native as native
 from .core.picture import SceneFolder, Settings, make_picture
 from .core.work import Stopped, Work
+from .extract_engine import NO_CAMERA
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
@@ -70,8 +71,7 @@ class _Run:
     def render(self):
         camera_object = self.engine.camera_override or self.scene.camera
         if camera_object is None or camera_object.type != "CAMERA":
-            name = self.scene.name
-            raise Refused(f'Scene "{name}" has no camera: add one, or choose one in Scene > Camera')
+            raise Refused(NO_CAMERA.format(self.scene.name))
         frame = camera.Frame.of(self.scene.render)
         extraction = scene.extract(self.depsgraph, self._tick)
         problems = extraction.problems

@@ -11,6 +11,7 @@ import bpy
 from .bridge import camera, check, scene
 from .core.work import Stopped
 
+NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 _request = None
 
 
@@ -25,6 +26,7 @@ class Request:
         self.cameras = tuple(cameras)
         self.tick = tick or (lambda: None)
         self.compare = compare
+        self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
         self.frames = []
         self.differences = []
@@ -50,6 +52,8 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             extraction = scene.extract(depsgraph, tick)
             try:
                 for name, size in request.cameras:
+                    if not name and request.without_camera:
+                        raise CameraMissing(NO_CAMERA.format(depsgraph.scene_eval.name))
                     request.frames.append(_frame(depsgraph, name, size, extraction.problems))
                 if request.compare:
                     request.differences = check.compare_occurrences(depsgraph, extraction)
@@ -74,9 +78,7 @@ def _frame(depsgraph, name, size, problems):
     if found is None or found.type != "CAMERA":
         if name:
             raise CameraMissing(f'Scene "{evaluated.name}" has no camera "{name}"')
-        raise CameraMissing(
-            f'Scene "{evaluated.name}" has no camera: add one, or choose one in Scene > Camera'
-        )
+        raise CameraMissing(NO_CAMERA.format(evaluated.name))
     frame = camera.Frame.of(evaluated.render)
     if size is not None:
         frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
@@ -89,6 +91,7 @@ def prepared(target, request):
     """Makes a render of the scene `target` an extraction for `request`; all is put back after."""
     global _request
     render = target.render
+    request.without_camera = target.camera is None
     names = ("engine", "use_compositing", "use_sequencer", "use_lock_interface")
     before = {name: getattr(render, name) for name in names}
     camera_before, stand_in = target.camera, None

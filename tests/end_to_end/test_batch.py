@@ -35,7 +35,7 @@ if kind != "no_camera":
         scene.camera = scene.camera or camera
 place("Sun", bpy.data.lights.new("Sun", "SUN")).data.energy = 3
 if kind != "no_objects":
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5, location=(1, 0, 0))
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6, location=(1, 0, 0))
     bpy.context.object.name = "Ball" if kind != "names" else 'q"uote\\n{brace} \\u540d'
 if kind == "animated":
     ball = bpy.context.object

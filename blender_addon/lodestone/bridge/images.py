@@ -4,7 +4,7 @@
 from array import array
 from typing import Any
 
-SAMPLES = 1 << 16  # pixels looked at in a large image
+SAMPLES = 1 << 14  # pixels looked at in a large image
 _STRIDE = 7919  # prime: samples do not line up in columns
 
 Color = tuple[float, float, float]

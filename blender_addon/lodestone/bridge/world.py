@@ -8,9 +8,13 @@ from .images import ImageMeans
 from .node_values import NodeValues
 
 
-# Mean radiance of a clear noon sky as Blender's sky texture shows it at strength 1, to one figure:
-# a sky is drawn in one color in any case, this one at least lights like one.
-_CLEAR_SKY = (0.25, 0.42, 0.75)
+# Mean radiance of the upper half of Blender's sky textures with their default settings, measured
+# with Cycles in 3.4: drawn in one color a sky still lights as much as it would.
+_SKIES = {
+    "PREETHAM": (0.415, 0.602, 1.056),
+    "HOSEK_WILKIE": (0.0676, 0.1076, 0.1739),
+    "NISHITA": (3.27, 3.54, 3.73),
+}
 
 
 def color(world: Any | None, problems: Problems) -> tuple[float, float, float]:
@@ -68,6 +72,6 @@ def _environment(socket: Any, values: NodeValues, note: Any) -> Any | None:
             note("texture_mean", "the mean of its environment texture")
         return mean
     if node.type == "TEX_SKY":
-        note("sky", "a clear sky's mean")
-        return _CLEAR_SKY
+        note("sky", "the mean of a sky like it")
+        return _SKIES.get(node.sky_type, _SKIES["HOSEK_WILKIE"])
     return None
