@@ -156,6 +156,27 @@ TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
     expect_valid(changed);
 }
 
+TEST_F(Hierarchy, ScopeBuildsWhatItReachesAndTheRestStaysStale) {
+    Model model = room();
+    const fs::path folder = scratch("scope");
+    build::Settings settings;
+    settings.scope = {3};  // the table
+    Problems problems;
+    const segment::Store store(folder);
+    EXPECT_EQ(build::estimate(model, store, settings).built, 3u);
+    const build::Report report = build::build_hierarchy(model, store, settings, problems, {});
+    EXPECT_EQ(report.built, 3u);  // table, top, vase
+    EXPECT_EQ(model.objects[2].representations.size(), 1u);
+    EXPECT_EQ(model.objects[model.root].representations.size(), 1u);
+    Model rest = room();
+    EXPECT_EQ(build_in(rest, folder).built, 2u);  // wall, room
+    expect_valid(rest);
+
+    settings.scope = {99};
+    Model again = room();
+    EXPECT_THROW(build::build_hierarchy(again, store, settings, problems, {}), Error);
+}
+
 TEST_F(Hierarchy, ContentEqualObjectsAreBuiltOnce) {
     Model model;
     const ObjectIndex a = models::add_leaf(model, "a", shapes::terrain(24));

@@ -347,8 +347,11 @@ typedef struct lds_build_options {
     uint32_t samples;   /* measuring an error, each way; usual 2048 */
     uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */
     uint64_t seed;
-    int32_t threads; /* 0 = all */
-    int32_t rebuild; /* 1: also what is not stale */
+    int32_t threads;         /* 0 = all */
+    int32_t rebuild;         /* 1: also what is not stale */
+    const lds_object* scope; /* build only what is reachable from these; what is stale elsewhere
+                                keeps its finest level alone, and stays stale */
+    size_t scope_count;      /* 0: everything */
 } lds_build_options;
 LDS_API lds_build_options lds_build_options_default(void);
 

@@ -72,8 +72,14 @@ class SimplifyOptions(structs.SimplifyOptions):
 
 
 class BuildOptions(structs.BuildOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return _changed(library().lds_build_options_default(), changes)
+    """`scope`: a sequence of Objects; only what is reachable from them is built."""
+
+    def __new__(cls, scope: Sequence[Object] = (), **changes: Any) -> Any:
+        options = _changed(library().lds_build_options_default(), changes)
+        if scope:
+            options.scope = (Object * len(scope))(*scope)  # ctypes keeps it alive with options
+            options.scope_count = len(scope)
+        return options
 
 
 class Model:

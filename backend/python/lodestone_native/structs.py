@@ -3,7 +3,17 @@
 
 import ctypes
 from collections import namedtuple
-from ctypes import Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import (
+    POINTER,
+    Structure,
+    c_char_p,
+    c_double,
+    c_int32,
+    c_size_t,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
 from functools import lru_cache
 from typing import Any
 
@@ -214,6 +224,8 @@ class BuildOptions(Sized):
         ("seed", c_uint64),
         ("threads", c_int32),
         ("rebuild", c_int32),
+        ("scope", POINTER(Object)),
+        ("scope_count", c_size_t),
     ]
 
 

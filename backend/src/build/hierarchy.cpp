@@ -116,6 +116,26 @@ std::vector<size_t> heights_of(const Model& model, const std::vector<ObjectIndex
     return heights;
 }
 
+/// Whether an object may be built: true for everything below the scope, or for all without one.
+std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& model,
+                         const std::vector<ObjectIndex>& order) {
+    std::vector<bool> inside(model.objects.size(), scope.empty());
+    for (const ObjectIndex index : scope) {
+        if (index >= model.objects.size())
+            fail(Status::InvalidArgument, "the scope names object ", index, " of ",
+                 model.objects.size());
+        inside[index] = true;
+    }
+    for (auto at = order.rbegin(); at != order.rend(); ++at) {  // parents before children
+        const Object& object = model.objects[*at];
+        if (!inside[*at] || !object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            inside[placement.object] = true;
+    }
+    return inside;
+}
+
 class Builder {
 public:
     Builder(Model& model, const segment::Store& store, const Settings& settings, Problems& problems,
@@ -137,6 +157,7 @@ public:
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
         uses_ = uses_of(model_);
+        const std::vector<bool> inside = within(settings_.scope, model_, order);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
         std::map<Hash, ObjectIndex> first_of;              // content-equal objects are built once
@@ -147,12 +168,14 @@ public:
                 continue;
             ++report.objects;
             const Hash wanted = build_hash_of(object, settings);
-            const auto [at, fresh] = first_of.try_emplace(wanted, index);
-            if (!fresh) {
-                copies.emplace_back(index, at->second);
+            const auto first = first_of.find(wanted);
+            if (first != first_of.end()) {
+                copies.emplace_back(index, first->second);
             } else if (const Object* stored = shelf.find(wanted)) {
+                first_of.emplace(wanted, index);
                 adopt(object, *stored, shelf.stored(), palette_);
-            } else {
+            } else if (inside[index]) {
+                first_of.emplace(wanted, index);
                 stale[heights[index]].push_back(index);
                 ++report.built;
                 total_ += weight(object);
@@ -259,13 +282,14 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     summarize_assemblies(model, order);
     const Shelf shelf(store, settings.rebuild);
     const Hash hash = hash_of(settings);
+    const std::vector<bool> inside = within(settings.scope, model, order);
     double triangles = 0;
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.representations.empty())
             continue;
         ++report.objects;
-        if (shelf.find(build_hash_of(object, hash)) != nullptr)
+        if (!inside[index] || shelf.find(build_hash_of(object, hash)) != nullptr)
             continue;
         ++report.built;
         const uint64_t own = object.representations[0].summary.cost.triangles;

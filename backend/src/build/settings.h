@@ -3,8 +3,10 @@
 #pragma once
 
 #include "base/hash.h"
+#include "model/object.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace lodestone::build {
 
@@ -21,6 +23,9 @@ struct Settings {
     uint64_t seed = 1;
     /// Also build what the store has already.
     bool rebuild = false;
+    /// Build only what is reachable from these; empty: everything. What is stale elsewhere keeps
+    /// its finest level alone, and stays stale.
+    std::vector<ObjectIndex> scope;
 };
 
 /// Of everything that changes a result, and of the version of the algorithms.

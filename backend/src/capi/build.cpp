@@ -11,7 +11,7 @@ using namespace lodestone::capi;
 
 namespace {
 
-build::Settings settings_of(const lds_build_options& options) {
+build::Settings settings_of(const lds_model& model, const lds_build_options& options) {
     build::Settings settings;
     settings.level_ratio = options.level_ratio;
     settings.rays = options.rays;
@@ -24,6 +24,10 @@ build::Settings settings_of(const lds_build_options& options) {
              "; 0.01 to 0.96 expected");
     if (settings.rays < 64 || settings.samples < 64)
         fail(Status::InvalidArgument, "at least 64 rays and samples are needed");
+    if (options.scope_count > 0)
+        require(options.scope, "options.scope");
+    for (size_t i = 0; i < options.scope_count; ++i)
+        settings.scope.push_back(model.index_of(options.scope[i]));
     return settings;
 }
 
@@ -61,10 +65,10 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
         require(store, "store");
         const lds_build_options& given = checked(options, "options");
         const ThreadLimit limit(given.threads);
-        hand_out(
-            out_report,
-            report_of(build::estimate(model->model, segment::Store(store), settings_of(given))),
-            "out_report");
+        hand_out(out_report,
+                 report_of(build::estimate(model->model, segment::Store(store),
+                                           settings_of(*model, given))),
+                 "out_report");
     });
 }
 
@@ -75,7 +79,7 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         require(store, "store");
         checked(out_report, "out_report");
         const lds_build_options& given = checked(options, "options");
-        const build::Settings settings = settings_of(given);
+        const build::Settings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();
         const segment::Store target(store);
