@@ -67,6 +67,7 @@ class _Run:
         )
         self.work = Work()
         self.clock = progress.StageClock(self.scene.frame_current)
+        self._shown = ""
 
     def render(self):
         camera_object = self.engine.camera_override or self.scene.camera
@@ -113,7 +114,7 @@ class _Run:
         """Between two meshes of the extraction."""
         if self.engine.test_break():
             raise Stopped
-        self.engine.update_stats("", self.clock.line("Extract", time.monotonic()))
+        self._show(self.clock.line("Extract", time.monotonic()))
 
     def _poll(self):
         if self.engine.test_break():
@@ -123,7 +124,12 @@ class _Run:
             stage = "Parse"
         start, share = _SHARES.get(stage, (0.0, 0.0))
         self.engine.update_progress(start + share * fraction)
-        self.engine.update_stats("", self.clock.line(stage, time.monotonic(), fraction))
+        self._show(self.clock.line(stage, time.monotonic(), fraction))
+
+    def _show(self, line):
+        if line != self._shown:  # without a window each one is a line on the console
+            self._shown = line
+            self.engine.update_stats("", line)
 
     # ---- Afterwards ----
 

@@ -92,7 +92,7 @@ def prepared(target, request):
     global _request
     render = target.render
     request.without_camera = target.camera is None
-    names = ("engine", "use_compositing", "use_sequencer", "use_lock_interface")
+    names = ("engine", "use_compositing", "use_sequencer")
     before = {name: getattr(render, name) for name in names}
     camera_before, stand_in = target.camera, None
     bpy.utils.register_class(LODESTONE_RE_extract)
@@ -104,7 +104,6 @@ def prepared(target, request):
             target.camera = stand_in
         render.engine = LODESTONE_RE_extract.bl_idname
         render.use_compositing = render.use_sequencer = False
-        render.use_lock_interface = True
         yield
     finally:
         _request = None

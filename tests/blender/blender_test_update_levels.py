@@ -115,6 +115,23 @@ class UpdateLevels(unittest.TestCase):
             item.name = item.name + " renamed"
         self.assertEqual(update_levels(bpy.context, "SCENE").built, 0)
 
+    def test_a_scope_builds_its_own_and_keeps_the_others_levels(self):
+        from lodestone.operators.update_levels import NothingThere, update_levels
+
+        house = bpy.context.view_layer.layer_collection.children["Row"]
+        bpy.context.view_layer.active_layer_collection = house
+        built = update_levels(bpy.context, "COLLECTION").built
+        uids = self.uids()
+        self.assertEqual((uids["Ground"], len(uids["Wall"])), ("", 16))
+        for item in bpy.context.selected_objects:
+            item.select_set(False)
+        with self.assertRaises(NothingThere):
+            update_levels(bpy.context, "SELECTED")
+        bpy.data.objects["Ground"].select_set(True)
+        self.assertEqual(update_levels(bpy.context, "SELECTED").built, 1)
+        everything = update_levels(bpy.context, "SCENE")
+        self.assertEqual(everything.built, everything.objects - built - 1)
+
     def test_a_copy_gets_an_id_of_its_own(self):
         bpy.ops.lodestone.update_levels()
         wall = bpy.data.objects["Wall"]

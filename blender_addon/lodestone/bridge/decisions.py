@@ -32,6 +32,15 @@ def reachable(collections: Iterable[Any], objects: Iterable[Any]) -> list[Thing]
     return sorted(found.values(), key=lambda thing: (thing[0], thing[1].name_full))
 
 
+def scope_keys(context: Any, scope: str) -> list[ids.Key] | None:
+    """The datablocks whose levels are to be built with all they hold; None for everything."""
+    if scope == "SELECTED":
+        return [ids.key_of("object", item) for item in context.selected_objects]
+    if scope == "COLLECTION" and context.collection != context.scene.collection:
+        return [ids.key_of("collection", context.collection)]
+    return None
+
+
 def in_scope(context: Any, scope: str) -> list[Thing]:
     """What Update Levels gives uids to: scope is SCENE, COLLECTION or SELECTED."""
     if scope == "SELECTED":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Groups from collections: membership gives the tree, instancing empties the sharing."""
 
+from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -116,6 +117,7 @@ class Groups:
         self._branches: dict[int, Branch] = {}
         self._emitters: dict[int, list[tuple[list[tuple[Leaf, Rows]], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
+        self.parts: dict[ids.Key, set[Any]] = defaultdict(set)  # what a datablock became
 
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
@@ -155,6 +157,7 @@ class Groups:
                 placements.append((group, place, entry.name))
         if entry.emitted:
             placements.append((self._emitter(entry), IDENTITY, f"{entry.name} instances"))
+        self.parts[ids.key_of("object", entry.object)].update(item for item, _, _ in placements)
         return placements
 
     def _emitter(self, entry: Entry) -> Any:
@@ -178,7 +181,10 @@ class Groups:
             uid = ids.scene_uid(branch.name)
         else:
             uid = ids.uid_of("collection", branch.collection)
-        return self._intern(uid, branch.name, branch.environment, placements)
+        group = self._intern(uid, branch.name, branch.environment, placements)
+        if branch.collection is not None:
+            self.parts[ids.key_of("collection", branch.collection)].add(group)
+        return group
 
     def _intern(self, uid: str, name: str, environment: bool, placements: list[Placement]) -> Any:
         key = (uid, environment, tuple((item.key, place, n) for item, place, n in placements))

@@ -12,6 +12,13 @@ def library_of(datablock: Any) -> str:
     return datablock.library.filepath if datablock.library else ""
 
 
+Key = tuple[str, str, str]  # "object" or "collection", library, name
+
+
+def key_of(kind: str, datablock: Any) -> Key:
+    return (kind, library_of(datablock), datablock.name)
+
+
 def uid_of(kind: str, datablock: Any) -> str:
     """The stored uid of an object or collection, else one made of its library and name."""
     settings = getattr(datablock, "lodestone", None)

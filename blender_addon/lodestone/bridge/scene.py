@@ -4,7 +4,7 @@
 Called inside RenderEngine.render(); keeps no reference to Blender's data afterwards.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +24,14 @@ class Extraction:
     leaves: list[Leaf] = field(default_factory=list)
     shown: int = 0  # instances the depsgraph shows with faces
     lights: int = 0
+    parts: dict[ids.Key, set[Any]] = field(default_factory=dict)
+
+    def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
+        """The model's objects that these datablocks became; [] (everything) for None."""
+        if keys is None:
+            return []
+        found = {item for key in keys for item in self.parts.get(key, ())}
+        return sorted(found, key=lambda item: item.key)
 
 
 def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extraction:
@@ -49,4 +57,5 @@ def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extracti
     except BaseException:
         model.close()
         raise
-    return Extraction(model, problems, list(leaves), found.shown, len(found.lights))
+    lit = len(found.lights)
+    return Extraction(model, problems, list(leaves), found.shown, lit, dict(tree.parts))

@@ -19,19 +19,36 @@ from ..core.native import lodestone_native as native
 
 UNDO_NAME = "Update Levels"
 INTERVAL_S = 0.1
+
+
+class NothingThere(Exception):
+    """The scope holds nothing with faces that renders show."""
+
+
+FAILURES = (native.LodestoneError, NothingThere, OSError, RuntimeError)
 _running = None  # the one session in the window
 
 
+def build_options(extraction, keys):
+    """For the datablocks of a scope (None: everything). Raises NothingThere."""
+    scope = extraction.scope(keys)
+    if keys is not None and not scope:
+        raise NothingThere("Nothing to build: the scope holds nothing that renders show")
+    return native.BuildOptions(scope=scope)
+
+
 def update_levels(context, scope):
-    """Reads, builds and writes uids synchronously. Returns the build report; raises what failed,
-    then nothing in the file has changed."""
+    """Reads, builds and writes uids synchronously; scope is SCENE, COLLECTION or SELECTED. Returns
+    the build report; raises what failed, then nothing in the file has changed."""
     store = store_path.store_folder(bpy.data.filepath)
+    keys = decisions.scope_keys(context, scope)
     changed = decisions.issue_uids(decisions.in_scope(context, scope))
     try:
         extraction = extract_engine.extract_now(context.scene, extract_engine.Request())
         with extraction.model as model:
+            options = build_options(extraction, keys)
             store.mkdir(parents=True, exist_ok=True)
-            return model.build(str(store), native.BuildOptions())
+            return model.build(str(store), options)
     except BaseException:
         decisions.take_back(changed)
         raise
@@ -44,7 +61,9 @@ class _Session:
         self.store = store_path.store_folder(bpy.data.filepath)
         self.extraction = None
         self.estimate = None
+        self.options = None
         self.request = extract_engine.Request()
+        self._keys = decisions.scope_keys(context, scope)
         self.build = work.Work()
         self._outcome = {}
         self._thread = None
@@ -80,7 +99,8 @@ class _Session:
         if self.request.extraction is None:
             raise work.Stopped
         self.extraction = self.request.extraction
-        self.estimate = self.extraction.model.build_estimate(str(self.store))
+        self.options = build_options(self.extraction, self._keys)
+        self.estimate = self.extraction.model.build_estimate(str(self.store), self.options)
         return False
 
     # ---- Building ----
@@ -88,9 +108,8 @@ class _Session:
     def start_building(self):
         self.store.mkdir(parents=True, exist_ok=True)
         model, store, job = self.extraction.model, str(self.store), self.build.new_job("Levels")
-        self._thread = work.start(
-            lambda: model.build(store, native.BuildOptions(), job), self._outcome
-        )
+        options = self.options
+        self._thread = work.start(lambda: model.build(store, options, job), self._outcome)
 
     def building(self):
         return self._thread is not None and self._thread.is_alive()
@@ -144,7 +163,7 @@ class _InWindow:
             return {"PASS_THROUGH"}
         try:
             return self.step(context, session)
-        except (native.LodestoneError, OSError, RuntimeError, work.Stopped) as error:
+        except (*FAILURES, work.Stopped) as error:
             return self.stop(context, session, error)
         except Exception as error:
             traceback.print_exc()
@@ -216,7 +235,7 @@ class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
     def execute(self, context):
         try:
             report = update_levels(context, context.scene.lodestone.scope)
-        except (native.LodestoneError, OSError, RuntimeError) as error:
+        except FAILURES as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         if not bpy.app.background:
@@ -229,7 +248,7 @@ class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
         session = _Session(context, context.scene.lodestone.scope)
         try:
             session.start_reading(context)
-        except (native.LodestoneError, OSError, RuntimeError) as error:
+        except FAILURES as error:
             session.close(keep=False)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
