@@ -7,6 +7,7 @@ import shutil
 import signal
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -303,14 +304,17 @@ class CommandLine(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.blend = self.folder / "plain.blend"
         (self.folder / "make.py").write_text(MAKE)
-        command = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
-        command += ["--python", str(self.folder / "make.py"), "--", "plain", str(self.blend)]
-        subprocess.run(command, check=True, capture_output=True)
 
-    def render(self, **environment):
-        command = ["blender", "-b", "--factory-startup", str(self.blend), "--addons", "lodestone"]
+    def make(self, kind):
+        blend = str(self.folder / f"{kind}.blend")
+        command = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
+        command += ["--python", str(self.folder / "make.py"), "--", kind, blend]
+        subprocess.run(command, check=True, capture_output=True)
+        return blend
+
+    def render(self, kind="plain", **environment):
+        command = ["blender", "-b", "--factory-startup", self.make(kind), "--addons", "lodestone"]
         command += ["-E", "LODESTONE_POVRAY", "-o", str(self.folder / "frame_####"), "-F", "PNG"]
         changed = {**os.environ, "BLENDER_USER_SCRIPTS": str(STAGE), **environment}
         done = subprocess.run([*command, "-f", "1"], capture_output=True, text=True, env=changed)
@@ -325,6 +329,28 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.render(LODESTONE_POVRAY="/nowhere/povray"), 1, self.said)
         self.assertIn("/nowhere/povray", self.said)
         self.assertFalse((self.folder / "frame_0001.png").exists())
+
+    def test_no_camera_and_no_objects_are_failures(self):
+        for kind in ("no_camera", "no_objects"):
+            self.assertEqual(self.render(kind), 1, self.said)
+            self.assertRegex(self.said, "(?i)no camera|nothing to render")
+            self.assertFalse((self.folder / "frame_0001.png").exists())
+
+    def test_the_picture_is_batchs_but_for_dither(self):
+        self.assertEqual(self.render(), 0, self.said)
+        out = self.folder / "batch.png"
+        subprocess.run(
+            ["/usr/bin/python3", str(BATCH), "render", str(self.folder / "plain.blend")]
+            + ["--out", str(out)],
+            check=True,
+            capture_output=True,
+            env={**os.environ, "LODESTONE_STAGE": str(STAGE)},
+        )
+        sys.path.insert(0, str(STAGE / "addons" / "lodestone"))
+        import lodestone_native as native
+
+        found = native.image_compare(str(self.folder / "frame_0001.png"), str(out))
+        self.assertLessEqual(found.max, 2.5 / 255)
 
 
 if __name__ == "__main__":
