@@ -83,6 +83,7 @@ def make_strip(native, panels, legend, mask, columns: int):
         canvas.put(image, left, top, rows)
         canvas.write(caption, left + 4, top + len(rows) + 3)
         if number == 2:
+            canvas.fill(left, top, width, 18, (0.02,) * 3)
             at = left + 6
             for word, color in legend:
                 canvas.fill(at, top + 5, 8, 8, color)
