@@ -79,7 +79,11 @@ void append_matrix(std::string& out, const Affine& transform) {
     }
 }
 
-bool environment(const Model& model, const quality::Cut& cut, uint32_t node) {
+/// Below an Environment group, or a stand-in for a group that holds Environment.
+bool environment(const Model& model, const quality::Cut& cut,
+                 const std::vector<uint8_t>& holds_environment, uint32_t node) {
+    if (holds_environment[cut.nodes[node].object] != 0)
+        return true;
     for (uint32_t at = node; at != quality::kNoParent; at = cut.nodes[at].parent) {
         if (model.objects[cut.nodes[at].object].role == Role::Environment)
             return true;
@@ -172,6 +176,8 @@ private:
 
     void collect() {
         std::unordered_map<Hash, size_t> known;
+        const std::vector<uint8_t> holds_environment =
+            options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
         RepresentationOptions as{!options_.false_color, options_.uvs};
         for (const uint32_t index : cut_.chosen) {
             if ((uses_.size() & 1023u) == 0)
@@ -181,7 +187,7 @@ private:
             const Representation& representation = object.representations.at(node.lod);
             if (representation.summary.kind == Kind::Assembly)
                 continue;
-            if (options_.covered_only && environment(model_, cut_, index))
+            if (options_.covered_only && environment(model_, cut_, holds_environment, index))
                 continue;
             Use use{index, 0, node.world};
             if (!make_invertible(use.world)) {

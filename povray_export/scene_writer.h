@@ -21,8 +21,8 @@ struct ExportOptions {
     std::filesystem::path folder;  // made when missing; its path may hold any characters
     Antialiasing antialiasing = Antialiasing::Final;
     bool false_color = false;  // flat colors by kind and LOD number (color_of), no lights
-    // Without Environment objects (and all below them), lights and world, on a transparent film:
-    // the picture's alpha says which pixels the model covers.
+    // Without Environment objects (and all below them, and stand-ins for groups that hold them),
+    // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
     bool covered_only = false;
     bool uvs = true;  // texture coordinates; nothing uses them as long as materials have no images
 };

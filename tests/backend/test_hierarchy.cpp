@@ -122,6 +122,18 @@ TEST_F(Hierarchy, EnvironmentIsNeverAPrimitiveNorIsAGroupWithOne) {
     }
 }
 
+TEST_F(Hierarchy, GroupOfGroupsWithEnvironmentIsNoPrimitive) {
+    Model model = room();
+    const ObjectIndex inner = model.root;
+    model.root = models::add_group(model, "house", {{inner, Affine{}, "room"}});
+    EXPECT_EQ(with_environment(model)[model.root], 1);
+    build_in(model, scratch("nested"));
+    for (const Representation& representation : model.objects[model.root].representations) {
+        EXPECT_NE(representation.summary.kind, Kind::Box);
+        EXPECT_NE(representation.summary.kind, Kind::Ellipsoid);
+    }
+}
+
 TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
     Model model = room();
     const fs::path folder = scratch("again");

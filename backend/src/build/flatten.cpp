@@ -55,7 +55,6 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         const quality::Node& node = cut.nodes[index];
         const Object& object = model.objects[node.object];
         const Representation& representation = object.representations[node.lod];
-        flat.environment = flat.environment || object.role == Role::Environment;
         flat.child_error =
             std::max(flat.child_error, representation.summary.error * stretch(node.world));
         Mesh part;
@@ -81,8 +80,6 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
             slot = slot < moved.size() ? moved[slot] : uint16_t{0};
         append(flat.mesh, part, node.world);
     }
-    for (const quality::Node& node : cut.nodes)
-        flat.environment = flat.environment || model.objects[node.object].role == Role::Environment;
     if (flat.materials.empty())
         flat.materials.emplace_back();
     return flat;

@@ -9,8 +9,7 @@ namespace lodestone::build {
 struct Flat {
     Mesh mesh;                        // in the group's frame
     std::vector<Material> materials;  // by slot
-    double child_error = 0;    // the largest error of a child drawn, after its stretch; metres
-    bool environment = false;  // something below is marked Environment
+    double child_error = 0;  // the largest error of a child drawn, after its stretch; metres
 };
 
 /// Children are drawn by their cheapest representation within `error` metres (0: the finest);
@@ -21,6 +20,12 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
 /// The finest error (from a rising series) at which flattening gives at most `most` triangles; the
 /// coarsest of the series when none does.
 double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job);
+
+/// What a group must know of the rest of the model; made once for a build.
+struct Surroundings {
+    std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
+    std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
+};
 
 /// How often each object is drawn: the number of paths to it from the root.
 std::vector<uint64_t> uses_of(const Model& model);

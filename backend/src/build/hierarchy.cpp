@@ -156,7 +156,7 @@ public:
         const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
-        uses_ = uses_of(model_);
+        surroundings_ = {uses_of(model_), with_environment(model_)};
         const std::vector<bool> inside = within(settings_.scope, model_, order);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
@@ -240,9 +240,9 @@ private:
             const bool group = object.group();
             job_.stage(group ? Stage::Group : Stage::Simplify);
             try {
-                made[i] =
-                    group ? stand_ins_of_group(model_, objects[i], uses_, settings_, source, job_)
-                          : stand_ins_of_leaf(model_, object, settings_, source, job_);
+                made[i] = group ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
+                                                     source, job_)
+                                : stand_ins_of_leaf(model_, object, settings_, source, job_);
             } catch (const Error& error) {
                 if (error.status == Status::Cancelled || error.status == Status::RaysUnavailable)
                     throw;
@@ -269,7 +269,7 @@ private:
     Problems& problems_;
     const Job& job_;
     Palette palette_;
-    std::vector<uint64_t> uses_;
+    Surroundings surroundings_;
     double total_ = 0;
     std::atomic<double> done_{0};
 };

@@ -162,7 +162,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 9;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 10;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -215,12 +215,13 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
     return out;
 }
 
-StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
-                            const std::vector<uint64_t>& uses, const Settings& settings,
-                            const MeshSource& source, const Job& job) {
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
+                            const Settings& settings, const MeshSource& source, const Job& job) {
     StandIns out;
     const Object& object = model.objects[group];
     const Summary& finest = object.representations.at(0).summary;
+    const std::vector<uint64_t>& uses = surroundings.uses;
+    const bool environment = surroundings.environment[group] != 0;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
     const double fine = error_for_triangles(model, group, budget, job);
@@ -228,7 +229,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
     if (reference.mesh.empty())
         return out;
     const uint64_t seed = seed_of(object, settings);
-    Judge judge(reference.mesh, reference.materials, settings, reference.environment, seed,
+    Judge judge(reference.mesh, reference.materials, settings, environment, seed,
                 reference.child_error, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
@@ -238,7 +239,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
     const size_t count = shell.triangles.size();
     add_levels(out.candidates, shell, reference.materials,
                targets_of(count + 1, count, settings.level_ratio), judge, job);
-    if (object.role != Role::Environment && !reference.environment)
+    if (!environment)
         add_primitives(out.candidates, finest.bound, judge, job);
 
     // A stand-in that costs more than what the children would use at its error is none: parts that

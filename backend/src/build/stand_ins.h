@@ -25,6 +25,8 @@ struct StandIns {
     std::vector<Candidate> candidates;  // errors rise strictly, costs fall
 };
 
+struct Surroundings;  // build/flatten.h
+
 /// Gives the mesh of a representation, resident or not. Called from several threads.
 using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
 
@@ -34,10 +36,9 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
 
 /// Of a group whose children have theirs: flattened at a quarter of its finest stand-in's error,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
-/// below can be drawn. `uses`: how often each object is drawn (flatten.h).
-StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
-                            const std::vector<uint64_t>& uses, const Settings& settings,
-                            const MeshSource& source, const Job& job);
+/// below can be drawn.
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
+                            const Settings& settings, const MeshSource& source, const Job& job);
 
 /// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
 /// bytes and error), and those that cost no less than `finest_bytes`.

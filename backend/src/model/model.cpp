@@ -65,6 +65,19 @@ std::vector<ObjectIndex> bottom_up(const Model& model) {
     return order;
 }
 
+std::vector<uint8_t> with_environment(const Model& model) {
+    std::vector<uint8_t> out(model.objects.size(), 0);
+    for (const ObjectIndex index : bottom_up(model)) {
+        const Object& object = model.objects[index];
+        out[index] = object.role == Role::Environment ? 1 : 0;
+        if (!object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            out[index] |= out[placement.object];
+    }
+    return out;
+}
+
 void summarize(Representation& representation, const Model& model) {
     Summary& summary = representation.summary;
     Hasher hasher;
