@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Session: one run of the command: its job with a progress bar, Ctrl-C, errors, the JSON report.
+// Session: one run of the command: its job with a progress bar, Ctrl-C, errors.
 #pragma once
 
 #include "lodestone/lodestone.h"
-
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <stdexcept>
@@ -34,9 +32,6 @@ using CutHandle = std::unique_ptr<lds_cut, DestroyCut>;
 
 ModelHandle read_model(const std::string& path);
 
-/// The model's problems as the report's list; printed to stderr too.
-nlohmann::ordered_json problems_of(const lds_model* model);
-
 /// Draws a bar on stderr while it lives (only on a terminal) and passes Ctrl-C to the job.
 class Progress {
 public:
@@ -51,11 +46,5 @@ private:
     volatile bool done_ = false;
     std::thread watcher_;
 };
-
-/// A report with the fields every verb has.
-nlohmann::ordered_json report_of(const char* verb, const std::string& input);
-
-/// Writes the report where --json says (atomically), if it says so. Throws Failure.
-void write_report(const std::string* path, const nlohmann::ordered_json& report);
 
 }  // namespace lodestone::tools

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // measure, simplify, build, info.
+#include "report.h"
 #include "session.h"
 #include "verbs.h"
 
@@ -8,8 +9,6 @@
 
 namespace lodestone::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 int32_t threads_of(const Arguments& arguments) {
     return static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
@@ -43,10 +42,14 @@ lds_object_summary summary_of(lds_model* model, lds_object object) {
     return summary;
 }
 
-Json totals_json(lds_model* model) {
+lds_totals totals_of(lds_model* model) {
     lds_totals totals{};
     totals.struct_size = sizeof totals;
     check(lds_model_totals(model, &totals));
+    return totals;
+}
+
+Fields fields_of(const lds_totals& totals) {
     return {{"objects", totals.objects},
             {"placements", totals.occurrences},
             {"triangles_placed", totals.triangles_placed},
@@ -54,11 +57,11 @@ Json totals_json(lds_model* model) {
             {"representations", totals.representations}};
 }
 
-Json vector(const double* values, size_t count) {
-    return Json(std::vector<double>(values, values + count));
+List list_of(const double* values, size_t count) {
+    return List(values, values + count);
 }
 
-void finish(const Arguments& arguments, const Json& report) {
+void finish(const Arguments& arguments, const Fields& report) {
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
 }
@@ -73,8 +76,8 @@ int run_measure(const Arguments& arguments) {
     options.seed = arguments.count("seed", options.seed);
     options.threads = threads_of(arguments);
     const ModelHandle model = read_model(input);
-    Json report = report_of("measure", input);
-    Json& objects = report["objects"] = Json::array();
+    Fields report = report_of("measure", input);
+    List objects;
     std::printf("%-32s %12s %12s  %-26s color\n", "object", "visible m^2", "surface m^2",
                 "centroid");
     for (size_t i = 0; i < lds_model_object_count(model.get()); ++i) {
@@ -87,19 +90,20 @@ int run_measure(const Arguments& arguments) {
         std::printf("%-32.32s %12.6g %12.6g  %8.4g %8.4g %8.4g %5.2f %5.2f %5.2f\n", name.c_str(),
                     a.visible_area, a.surface_area, a.centroid[0], a.centroid[1], a.centroid[2],
                     a.color[0], a.color[1], a.color[2]);
-        objects.push_back({{"name", name},
-                           {"visible_area", a.visible_area},
-                           {"surface_area", a.surface_area},
-                           {"centroid", vector(a.centroid, 3)},
-                           {"inertia", vector(a.inertia, 6)},
-                           {"normal_moment", a.normal_moment},
-                           {"color", vector(a.color, 3)},
-                           {"roughness", a.roughness},
-                           {"metallic", a.metallic},
-                           {"relative_error", a.relative_error},
-                           {"rays", a.rays}});
+        objects.emplace_back(Fields{{"name", name},
+                                    {"visible_area", a.visible_area},
+                                    {"surface_area", a.surface_area},
+                                    {"centroid", list_of(a.centroid, 3)},
+                                    {"inertia", list_of(a.inertia, 6)},
+                                    {"normal_moment", a.normal_moment},
+                                    {"color", list_of(a.color, 3)},
+                                    {"roughness", a.roughness},
+                                    {"metallic", a.metallic},
+                                    {"relative_error", a.relative_error},
+                                    {"rays", a.rays}});
     }
-    report["problems"] = problems_of(model.get());
+    report.push_back({"objects", std::move(objects)});
+    report.push_back({"problems", problems_of(model.get())});
     finish(arguments, report);
     return 0;
 }
@@ -130,17 +134,18 @@ int run_simplify(const Arguments& arguments) {
     if (done.error >= 0)
         std::printf(", error %.6g m (largest %.6g m)", done.error, done.max_error);
     std::printf("\n%s\n", output.c_str());
-    Json report = report_of("simplify", input);
-    report["picture"] = nullptr;
-    report["output"] = output;
-    report["simplify"] = {{"cpu_s", done.cpu_s},
-                          {"triangles_before", done.triangles_before},
-                          {"triangles", done.triangles}};
+    Fields report = report_of("simplify", input);
+    report.push_back({"picture", {}});
+    report.push_back({"output", output});
+    Fields simplified{{"cpu_s", done.cpu_s},
+                      {"triangles_before", done.triangles_before},
+                      {"triangles", done.triangles}};
     if (done.error >= 0) {
-        report["simplify"]["error"] = done.error;
-        report["simplify"]["max_error"] = done.max_error;
+        simplified.push_back({"error", done.error});
+        simplified.push_back({"max_error", done.max_error});
     }
-    report["problems"] = problems_of(model.get());
+    report.push_back({"simplify", std::move(simplified)});
+    report.push_back({"problems", problems_of(model.get())});
     finish(arguments, report);
     return 0;
 }
@@ -168,16 +173,16 @@ int run_build(const Arguments& arguments) {
         static_cast<unsigned long long>(done.objects), static_cast<unsigned long long>(done.built),
         static_cast<unsigned long long>(done.representations),
         static_cast<double>(done.bytes_written) * 1e-6, done.wall_s, done.cpu_s, store.c_str());
-    Json report = report_of("build", input);
-    report["store"] = store;
-    report["model"] = totals_json(model.get());
-    report["build"] = {{"objects", done.objects},
-                       {"built", done.built},
-                       {"representations", done.representations},
-                       {"bytes_written", done.bytes_written},
-                       {"wall_s", done.wall_s},
-                       {"cpu_s", done.cpu_s}};
-    report["problems"] = problems_of(model.get());
+    Fields report = report_of("build", input);
+    report.push_back({"store", store});
+    report.push_back({"model", fields_of(totals_of(model.get()))});
+    report.push_back({"build", Fields{{"objects", done.objects},
+                                      {"built", done.built},
+                                      {"representations", done.representations},
+                                      {"bytes_written", done.bytes_written},
+                                      {"wall_s", done.wall_s},
+                                      {"cpu_s", done.cpu_s}}});
+    report.push_back({"problems", problems_of(model.get())});
     finish(arguments, report);
     return 0;
 }
@@ -186,22 +191,23 @@ int run_info(const Arguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const uint64_t most = arguments.count("objects", 40);
     const ModelHandle model = read_model(input);
-    Json report = report_of("info", input);
-    report["model"] = totals_json(model.get());
-    const Json& totals = report["model"];
+    Fields report = report_of("info", input);
+    const lds_totals totals = totals_of(model.get());
+    report.push_back({"model", fields_of(totals)});
     std::printf(
         "%llu objects and groups, %llu occurrences, %llu triangles placed, %llu unique, "
         "%llu levels\n",
-        totals["objects"].get<unsigned long long>(), totals["placements"].get<unsigned long long>(),
-        totals["triangles_placed"].get<unsigned long long>(),
-        totals["triangles_unique"].get<unsigned long long>(),
-        totals["representations"].get<unsigned long long>());
-    Json& objects = report["objects"] = Json::array();
+        static_cast<unsigned long long>(totals.objects),
+        static_cast<unsigned long long>(totals.occurrences),
+        static_cast<unsigned long long>(totals.triangles_placed),
+        static_cast<unsigned long long>(totals.triangles_unique),
+        static_cast<unsigned long long>(totals.representations));
+    List objects;
     const size_t count = lds_model_object_count(model.get());
     for (size_t i = 0; i < count; ++i) {
         const lds_object object = object_at(model.get(), i);
         const lds_object_summary summary = summary_of(model.get(), object);
-        Json levels = Json::array();
+        List levels;
         if (i < most)
             std::printf("%s%s\n", summary.name,
                         summary.role == LDS_ROLE_ENVIRONMENT ? "  (environment)" : "");
@@ -213,20 +219,21 @@ int run_info(const Arguments& arguments) {
                 std::printf("  LOD %-2u %-9s %10llu triangles  %12.6g mm\n", lod,
                             kind_name(level.kind), static_cast<unsigned long long>(level.triangles),
                             1000 * level.error);
-            levels.push_back({{"lod", lod},
-                              {"kind", kind_name(level.kind)},
-                              {"triangles", level.triangles},
-                              {"error", level.error},
-                              {"max_error", level.max_error}});
+            levels.emplace_back(Fields{{"lod", lod},
+                                       {"kind", kind_name(level.kind)},
+                                       {"triangles", level.triangles},
+                                       {"error", level.error},
+                                       {"max_error", level.max_error}});
         }
-        objects.push_back({{"uid", summary.uid},
-                           {"name", summary.name},
-                           {"group", summary.group != 0},
-                           {"levels", std::move(levels)}});
+        objects.emplace_back(Fields{{"uid", summary.uid},
+                                    {"name", summary.name},
+                                    {"group", summary.group != 0},
+                                    {"levels", std::move(levels)}});
     }
     if (count > most)
         std::printf("... and %zu more (--objects N)\n", static_cast<size_t>(count - most));
-    report["problems"] = problems_of(model.get());
+    report.push_back({"objects", std::move(objects)});
+    report.push_back({"problems", problems_of(model.get())});
     finish(arguments, report);
     return 0;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cut, compare, version.
+#include "report.h"
 #include "session.h"
 #include "verbs.h"
 
@@ -11,7 +12,6 @@
 namespace lodestone::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Vector = std::array<double, 3>;
 
 Vector vector_of(const std::string& option, const std::string& text) {
@@ -111,15 +111,16 @@ int run_cut(const Arguments& arguments) {
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
         summary.largest_error_name);
-    Json report = report_of("cut", input);
-    report["pixel_error"] = view.pixel_error;
-    report["cut"] = {
-        {"kinds", {{"mesh", summary.mesh}, {"box", summary.box}, {"ellipsoid", summary.ellipsoid}}},
-        {"occurrences", summary.occurrences},
-        {"originals", summary.originals},
-        {"triangles", summary.triangles},
-        {"bytes", summary.bytes},
-        {"largest_error_px", summary.largest_error_px}};
+    Fields report = report_of("cut", input);
+    report.push_back({"pixel_error", view.pixel_error});
+    report.push_back({"cut", Fields{{"kinds", Fields{{"mesh", summary.mesh},
+                                                     {"box", summary.box},
+                                                     {"ellipsoid", summary.ellipsoid}}},
+                                    {"occurrences", summary.occurrences},
+                                    {"originals", summary.originals},
+                                    {"triangles", summary.triangles},
+                                    {"bytes", summary.bytes},
+                                    {"largest_error_px", summary.largest_error_px}}});
     if (arguments.has("list")) {
         std::vector<lds_choice> choices(lds_cut_choice_count(cut.get()));
         check(lds_cut_choice_copy(cut.get(), choices.data(), choices.size()));
@@ -127,7 +128,7 @@ int run_cut(const Arguments& arguments) {
             std::printf("LOD %-2u %8.3f px  %s\n", choices[i].lod, choices[i].error_px,
                         lds_cut_choice_path(cut.get(), i));
     }
-    report["problems"] = problems_of(model.get());
+    report.push_back({"problems", problems_of(model.get())});
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
     return 0;
@@ -143,13 +144,13 @@ int run_compare(const Arguments& arguments) {
     std::printf("mean %.6f  99.9 %% %.6f  max %.6f  SSIM %.6f  over %llu pixels\n", difference.mean,
                 difference.p999, difference.max, difference.ssim,
                 static_cast<unsigned long long>(difference.pixels));
-    Json report = report_of("compare", a);
-    report["picture"] = b;
-    report["compare"] = {{"mean", difference.mean},
-                         {"p999", difference.p999},
-                         {"max", difference.max},
-                         {"ssim", difference.ssim},
-                         {"pixels", difference.pixels}};
+    Fields report = report_of("compare", a);
+    report.push_back({"picture", b});
+    report.push_back({"compare", Fields{{"mean", difference.mean},
+                                        {"p999", difference.p999},
+                                        {"max", difference.max},
+                                        {"ssim", difference.ssim},
+                                        {"pixels", difference.pixels}}});
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
     return 0;
@@ -163,11 +164,11 @@ int run_version(const Arguments& arguments) {
     const std::string povray_path = povray ? found : lds_last_error_text();
     std::printf("lodestone %s (interface %u)\nrays: %s\nPOV-Ray: %s\n", lds_version(),
                 lds_abi_version(), rays_reason.c_str(), povray_path.c_str());
-    Json report = report_of("version", "");
-    report["version"] = lds_version();
-    report["abi"] = lds_abi_version();
-    report["rays"] = rays;
-    report["povray_path"] = povray ? Json(povray_path) : Json();
+    Fields report = report_of("version", "");
+    report.push_back({"version", lds_version()});
+    report.push_back({"abi", lds_abi_version()});
+    report.push_back({"rays", rays});
+    report.push_back({"povray_path", povray ? Value(povray_path) : Value()});
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
     return 0;

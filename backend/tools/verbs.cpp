@@ -11,7 +11,7 @@ const OptionHelp kSeed{"seed", "N", "seed of random samples (default 1)"};
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-    static const std::vector<Verb> all{
+    static const std::vector<Verb> kAll{
         {"measure",
          "FILE",
          "visible area, center, inertia and mean color of each object",
@@ -88,7 +88,7 @@ const std::vector<Verb>& verbs() {
          {kJson},
          run_version},
     };
-    return all;
+    return kAll;
 }
 
 }  // namespace lodestone::tools

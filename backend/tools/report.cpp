@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report.h"
+
+#include "session.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <fstream>
+
+namespace lodestone::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Value& value);
+
+template <typename T>
+Json json_of(const T& held) {
+    return held;
+}
+
+Json json_of(const List& values) {
+    Json out = Json::array();
+    for (const Value& value : values)
+        out.push_back(json_of(value));
+    return out;
+}
+
+Json json_of(const Fields& fields) {
+    Json out = Json::object();
+    for (const auto& [name, value] : fields)
+        out[name] = json_of(value);
+    return out;
+}
+
+Json json_of(const Value& value) {
+    return std::visit([](const auto& held) { return json_of(held); }, value.held());
+}
+
+}  // namespace
+
+Fields report_of(const char* verb, const std::string& input) {
+    return {{"schema", 1u}, {"status", "ok"}, {"verb", verb}, {"input", input}};
+}
+
+List problems_of(const lds_model* model) {
+    static const char* const kSeverities[] = {"info", "warning", "error"};
+    List problems;
+    for (size_t i = 0; i < lds_model_problem_count(model); ++i) {
+        lds_problem problem{};
+        problem.struct_size = sizeof problem;
+        check(lds_model_problem(model, i, &problem));
+        const char* severity = kSeverities[problem.severity];
+        problems.emplace_back(Fields{{"object", problem.object},
+                                     {"severity", severity},
+                                     {"code", problem.code},
+                                     {"message", problem.message}});
+        std::fprintf(stderr, "%s: %s: %s\n", severity, problem.object, problem.message);
+    }
+    return problems;
+}
+
+void write_report(const std::string* path, const Fields& report) {
+    if (path == nullptr)
+        return;
+    const std::string temporary = *path + ".tmp";
+    {
+        std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+        file << json_of(report).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+        file.flush();
+        if (!file) {
+            std::remove(temporary.c_str());
+            throw Failure(LDS_ERROR_IO, "cannot write '" + *path + "'");
+        }
+    }
+    if (std::rename(temporary.c_str(), path->c_str()) != 0) {
+        std::remove(temporary.c_str());
+        throw Failure(LDS_ERROR_IO, "cannot write '" + *path + "'");
+    }
+}
+
+}  // namespace lodestone::tools

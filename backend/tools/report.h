@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Report: what a verb found, as values in the order they are to be written; --json saves it.
+#pragma once
+
+#include "lodestone/lodestone.h"
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lodestone::tools {
+
+class Value;
+using List = std::vector<Value>;
+using Fields = std::vector<std::pair<std::string, Value>>;  // an object; its order is kept
+
+/// Anything JSON can hold.
+class Value {
+public:
+    using Held = std::variant<std::nullptr_t, bool, uint64_t, double, std::string, List, Fields>;
+
+    // Not explicit: a report reads as a table of names and plain values.
+    Value() : held_(nullptr) {}
+    Value(bool value) : held_(value) {}
+    Value(std::unsigned_integral auto value) : held_(uint64_t{value}) {}
+    Value(double value) : held_(value) {}
+    Value(const char* text) : held_(std::string(text)) {}
+    Value(std::string text) : held_(std::move(text)) {}
+    Value(List values) : held_(std::move(values)) {}
+    Value(Fields fields) : held_(std::move(fields)) {}
+
+    const Held& held() const { return held_; }
+
+private:
+    Held held_;
+};
+
+/// A report with the fields every verb has.
+Fields report_of(const char* verb, const std::string& input);
+
+/// The model's problems as the report's list; printed to stderr too.
+List problems_of(const lds_model* model);
+
+/// Writes the report as JSON where --json says (atomically), if it says so. Throws Failure.
+void write_report(const std::string* path, const Fields& report);
+
+}  // namespace lodestone::tools
