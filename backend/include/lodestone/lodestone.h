@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lodestone's C interface: everything Blender, the command and other programs may call.
+   Over 500 lines: the one public header is the manual.
 
    Holds for every function unless it says otherwise:
    units       metres, radians, watts, seconds; right-handed, Z up; linear Rec.709 colors
