@@ -108,6 +108,16 @@ inline View above(int width = 64, int height = 64) {
     return view;
 }
 
+/// A sphere with uvs that have a seam in every triangle, and two materials.
+inline Mesh rich_sphere(int subdivisions) {
+    Mesh mesh = shapes::sphere(1, subdivisions);
+    for (const glm::vec3& position : mesh.positions)
+        mesh.uvs.emplace_back(position.x, position.y);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        mesh.slots.push_back(static_cast<uint16_t>(i % 2));
+    return mesh;
+}
+
 inline Light sun(double power, const glm::dvec3& direction = {0, 0, -1}) {
     Light light;
     light.power = power;

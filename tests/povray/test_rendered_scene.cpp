@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards what POV-Ray makes of the exported text: light, finish, camera, primitives, false colors.
+#include "povray/scene.h"
+#include "povray_export/finish.h"
+
+#include <fstream>
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::above;
+using scenes::Builder;
+using scenes::render;
+using scenes::rich_sphere;
+using scenes::scratch;
+
+TEST(PovrayRender, PovrayReadsEverythingWithoutAWarning) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    Material metal;
+    metal.metallic = 1;
+    metal.roughness = 0.1;
+    metal.emission = {0, 1, 0};
+    metal.base_color = {1, 0, 0.2};
+    const uint32_t shiny = builder.material(metal);
+    const uint32_t red = builder.matte({1, 0, 0});
+    Mesh cube = shapes::cube();
+    for (size_t i = 0; i < cube.positions.size(); ++i)
+        cube.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
+    builder.place_at(builder.mesh(rich_sphere(2), {shiny, red}), {0, 0, 0});
+    builder.place_at(builder.mesh(cube, {red}), {0.6, 0, 0});
+    builder.place_at(builder.mesh(shapes::terrain(8)), {-0.6, 0, 0});
+    builder.place_at(builder.primitive(Kind::Ellipsoid, {{}, glm::dmat3(1.0), {.1, .2, .3}}),
+                     {0, 0.6, 0});
+    builder.place_at(builder.primitive(Kind::Box, {}, {shiny}), {0, -0.6, 0});
+    builder.place(1, Affine{glm::dmat3(2, 0, 0, 0, 0, 0, 0, 0, 1), {}}, "\"*/\n}#error");
+    for (const float size : {1e-20f, 1e20f})  // as text, whatever is seen of it
+        builder.place(builder.mesh(shapes::quad(size, size)));
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = {1, 1, 3};
+    lamp.shadow = false;
+    builder.model.lights = {scenes::sun(2), lamp};
+    for (const bool false_color : {false, true}) {
+        ExportOptions options;
+        options.folder = scratch("warnings");
+        options.false_color = false_color;
+        RunReport report;
+        const scenes::Image image = render(builder.finish(), above(), options, &report);
+        EXPECT_EQ(report.messages, "");
+        EXPECT_GT(report.peak_bytes, 4u << 20u);
+        EXPECT_EQ(image.width, 64);
+    }
+}
+
+TEST(PovrayRender, SunAndSkyLightAMatteSurfaceByTheirFormulas) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    ExportOptions options;
+    options.folder = scratch("light");
+    options.antialiasing = Antialiasing::Off;
+    constexpr double kPi = std::numbers::pi;
+    const auto center = [&](const glm::dvec3& albedo, const glm::dvec3& sky, const Light& light) {
+        Builder builder;
+        builder.model.world.color = sky;
+        builder.model.lights.push_back(light);
+        builder.place_at(builder.mesh(shapes::quad(4, 4), {builder.matte(albedo)}), {-2, -2, 0});
+        return render(builder.finish(), above(8, 8), options).at(4, 4);
+    };
+    EXPECT_NEAR(center(glm::dvec3(1.0), {}, scenes::sun(kPi)).x, 1, 0.01);
+    const glm::dvec3 sunny = center({0.9, 0.5, 0.1}, {}, scenes::sun(kPi));
+    EXPECT_NEAR(sunny.x, 0.9, 0.009);
+    EXPECT_NEAR(sunny.y, 0.5, 0.005);
+    EXPECT_NEAR(sunny.z, 0.1, 0.001);
+    const double slant = center(glm::dvec3(0.8), {}, scenes::sun(kPi, {1, 0, -1})).x;
+    EXPECT_NEAR(slant, 0.8 * std::sqrt(0.5), 0.006);
+    const glm::dvec3 sky = center(glm::dvec3(1.0), {0.25, 0.5, 0.75}, scenes::sun(0));
+    EXPECT_NEAR(sky.x, 0.25, 0.0025);
+    EXPECT_NEAR(sky.z, 0.75, 0.0075);
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.power = 100;
+    lamp.position = {0.0625, -0.0625, 4};
+    // Radiant intensity P / (4 pi^2) in Blender's units times albedo over distance squared.
+    EXPECT_NEAR(center(glm::dvec3(0.8), {}, lamp).x, 0.8 * 100 / (4 * kPi * kPi) / 16, 0.0013);
+}
+
+TEST(PovrayRender, AMaterialNeverSendsBackMoreThanTheSkyGives) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    builder.model.world.color = glm::dvec3(0.5);
+    int at = 0;
+    for (const double metallic : {0.0, 1.0}) {
+        for (const double roughness : {0.1, 0.8}) {
+            Material material;
+            material.base_color = {1, 0.5, 0.25};
+            material.metallic = metallic;
+            material.roughness = roughness;
+            const ObjectIndex ball =
+                builder.mesh(shapes::sphere(0.2, 3), {builder.material(material)});
+            builder.place_at(ball, {-0.75 + 0.5 * at++, 0, 0});
+        }
+    }
+    ExportOptions options;
+    options.folder = scratch("furnace");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(64, 16), options);
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 color = image.at(8 + 16 * i, 8);
+        EXPECT_NEAR(color.x, 0.5, 0.01) << i;
+        EXPECT_NEAR(color.y, 0.25, 0.01) << i;
+        EXPECT_NEAR(color.z, 0.125, 0.01) << i;
+    }
+}
+
+TEST(PovrayRender, TheCameraProjectsWhereItShould) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    struct Case {
+        const char* name;
+        bool orthographic;
+        int width, height;
+        glm::dvec3 direction, right, up;
+    };
+    // Axes turned so that no coordinate is special.
+    const glm::dvec3 x = glm::normalize(glm::dvec3(1, 0.3, -0.2));
+    const glm::dvec3 z = glm::normalize(glm::cross(x, glm::dvec3(0.1, 1, 0.2)));
+    const glm::dvec3 y = glm::cross(z, x);
+    const Case cases[] = {
+        {"landscape", false, 96, 54, -z, x, y * 0.5625},
+        {"shifted", false, 96, 54, -z + 0.2 * x - 0.15 * y, x, y * 0.5625},
+        {"portrait", false, 54, 96, -z, x * 0.5625, y},
+        {"orthographic", true, 96, 54, -z, 4.0 * x, 2.25 * y},
+    };
+    for (const Case& test : cases) {
+        View view;
+        view.width = test.width;
+        view.height = test.height;
+        view.camera = {"", test.orthographic, {3, -2, 5}, test.direction, test.right, test.up, 0.1};
+        Builder builder;
+        Material glow;
+        glow.emission = glm::dvec3(1.0);
+        glow.base_color = glm::dvec3(0.0);
+        glow.specular = 0;
+        const ObjectIndex ball = builder.primitive(
+            Kind::Ellipsoid, {{}, glm::dmat3(1.0), glm::dvec3(0.06)}, {builder.material(glow)});
+        std::vector<glm::dvec2> expected;
+        for (const double v : {-0.3, 0.3}) {
+            for (const double u : {-0.35, 0.05, 0.4}) {
+                const double depth = 4 + 0.5 * u;
+                const glm::dvec3 across = u * test.right + v * test.up;
+                builder.place_at(ball, view.camera.position +
+                                           (test.orthographic ? across + 4.0 * test.direction
+                                                              : depth * (test.direction + across)));
+                expected.emplace_back((u + 0.5) * test.width, (0.5 - v) * test.height);
+            }
+        }
+        ExportOptions options;
+        options.folder = scratch("camera");
+        options.antialiasing = Antialiasing::Reference;
+        const scenes::Image image = render(builder.finish(), view, options);
+        for (const glm::dvec2& point : expected) {
+            glm::dvec2 sum(0.0);
+            double weight = 0;
+            for (int py = 0; py < image.height; ++py) {
+                for (int px = 0; px < image.width; ++px) {
+                    const glm::dvec2 pixel(px + 0.5, py + 0.5);
+                    if (glm::length(pixel - point) > 7)
+                        continue;
+                    sum += image.at(px, py).x * pixel;
+                    weight += image.at(px, py).x;
+                }
+            }
+            ASSERT_GT(weight, 1) << test.name;
+            EXPECT_NEAR(sum.x / weight, point.x, 0.05) << test.name;
+            EXPECT_NEAR(sum.y / weight, point.y, 0.05) << test.name;
+        }
+    }
+}
+
+TEST(PovrayRender, ABoxLooksLikeItsMesh) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Primitive box{{0.05, 0.1, 0}, glm::dmat3(1.0), {0.7, 0.4, 0.2}};
+    box.axes = glm::dmat3(0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1);
+    scenes::Image images[2];
+    for (const bool mesh : {false, true}) {
+        Builder builder;
+        builder.model.world.color = {0.1, 0.2, 0.3};
+        builder.model.lights.push_back(scenes::sun(2.5, {0.3, 0.5, -0.8}));
+        const uint32_t plain = builder.material(Material{});
+        builder.place(mesh ? builder.mesh(tessellate_box(box), {plain})
+                           : builder.primitive(Kind::Box, box, {plain}));
+        builder.place_at(builder.mesh(shapes::quad(4, 4), {plain}), {-2, -2, -0.5});
+        View view = above(96, 96);
+        view.camera.direction = {0.3, 0.2, -1};
+        view.camera.position = {-3, -2, 10};
+        ExportOptions options;
+        options.folder = scratch("box");
+        options.antialiasing = Antialiasing::Reference;
+        images[mesh] = render(builder.finish(), view, options);
+    }
+    double worst = 0;
+    for (size_t i = 0; i < images[0].values.size(); ++i)
+        worst = std::max(worst, std::abs(images[0].values[i] - images[1].values[i]));
+    EXPECT_LE(worst, 2.0 / 255);
+    EXPECT_GT(*std::max_element(images[0].values.begin(), images[0].values.end()), 0.3);
+}
+
+TEST(PovrayRender, FalseColorsAreThoseOfTheLegend) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    const uint32_t red = builder.matte({1, 0, 0});
+    const uint32_t blue = builder.matte({0, 0, 1});
+    builder.place_at(builder.mesh(rich_sphere(2), {red, blue}), {0, 0, 0});
+    builder.place_at(builder.primitive(Kind::Box, {}, {red}), {2.5, 0, 0});
+    ExportOptions options;
+    options.folder = scratch("false_color");
+    options.false_color = true;
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(192, 16), options);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(image.at(96, 8)[i], color_of(Kind::Mesh, 0)[i], 0.002);
+        EXPECT_NEAR(image.at(96 + 90, 8)[i], color_of(Kind::Box, 0)[i], 0.002);
+    }
+}
