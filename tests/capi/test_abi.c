@@ -1,68 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Guards the C interface as a C11 program sees it: null pointers, stale ids, outputs untouched on
    failure, sentences that name the thing, one small model through every call. */
-#include "lodestone/lodestone.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static int failures = 0;
-
-#define EXPECT(condition)                                                                      \
-    do {                                                                                       \
-        if (!(condition)) {                                                                    \
-            printf("%s:%d: %s (%s)\n", __FILE__, __LINE__, #condition, lds_last_error_text()); \
-            ++failures;                                                                        \
-        }                                                                                      \
-    } while (0)
-
-static const float kPositions[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                       {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-static const uint32_t kTriangles[12][3] = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7},
-                                           {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5},
-                                           {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
-static const double kIdentity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-static lds_mesh_view cube_view(void) {
-    lds_mesh_view view;
-    memset(&view, 0, sizeof view);
-    view.struct_size = sizeof view;
-    view.positions = &kPositions[0][0];
-    view.vertex_count = 8;
-    view.triangles = &kTriangles[0][0];
-    view.triangle_count = 12;
-    return view;
-}
-
-static lds_object_info info_of(const char* uid, const char* name) {
-    lds_object_info info;
-    memset(&info, 0, sizeof info);
-    info.struct_size = sizeof info;
-    info.uid = uid;
-    info.name = name;
-    return info;
-}
-
-/* A group with two cubes; also returns the cube. */
-static lds_model* two_cubes(lds_object* cube) {
-    lds_model* model = NULL;
-    EXPECT(lds_model_create(&model) == LDS_OK);
-    lds_object_info info = info_of("cube", "Cube");
-    lds_mesh_view view = cube_view();
-    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, cube) == LDS_OK);
-    info = info_of("pair", "Pair");
-    lds_object group;
-    EXPECT(lds_model_add_group(model, &info, &group) == LDS_OK);
-    double moved[12];
-    memcpy(moved, kIdentity, sizeof moved);
-    moved[3] = 5;
-    EXPECT(lds_model_add_placement(model, group, *cube, kIdentity, "left") == LDS_OK);
-    EXPECT(lds_model_add_placement(model, group, *cube, moved, "right") == LDS_OK);
-    EXPECT(lds_model_set_root(model, group) == LDS_OK);
-    return model;
-}
+#include "cube.h"
 
 static void test_versions(void) {
     EXPECT(lds_abi_version() == LDS_ABI_VERSION);
@@ -167,15 +106,7 @@ static void test_surface_inertia(void) {
 static void test_build_and_cut(const char* scratch) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    lds_camera camera;
-    memset(&camera, 0, sizeof camera);
-    camera.struct_size = sizeof camera;
-    camera.name = "eye";
-    camera.position[1] = -400;
-    camera.direction[1] = 1;
-    camera.right[0] = 1;
-    camera.up[2] = 0.5625;
-    camera.near_clip = 0.1;
+    const lds_camera camera = camera_before(400);
     EXPECT(lds_model_add_camera(model, &camera) == LDS_OK);
     lds_world world = {sizeof world, {0.1, 0.1, 0.1}, 0};
     EXPECT(lds_model_set_world(model, &world) == LDS_OK);
@@ -236,6 +167,5 @@ int main(int argc, char** argv) {
     test_surface_inertia();
     if (lds_rays_check() == LDS_OK)
         test_build_and_cut(argc > 1 ? argv[1] : "capi_store");
-    printf(failures == 0 ? "all held\n" : "%d expectations failed\n", failures);
-    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return finish();
 }

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Guards what a C program does with a model: files, problems, cameras, measuring, simplifying,
+   occurrences and the choices of a cut, each against a known answer. */
+#include "cube.h"
+
+enum { CELLS = 16 };
+
+/* A flat square of 2 CELLS^2 triangles, alone in its model. */
+static lds_model* flat_grid(lds_object* grid) {
+    static float positions[(CELLS + 1) * (CELLS + 1)][3];
+    static uint32_t triangles[2 * CELLS * CELLS][3];
+    for (uint32_t j = 0; j <= CELLS; ++j) {
+        for (uint32_t i = 0; i <= CELLS; ++i) {
+            positions[j * (CELLS + 1) + i][0] = (float)i / CELLS;
+            positions[j * (CELLS + 1) + i][1] = (float)j / CELLS;
+        }
+    }
+    for (uint32_t j = 0; j < CELLS; ++j) {
+        for (uint32_t i = 0; i < CELLS; ++i) {
+            const uint32_t at = j * (CELLS + 1) + i;
+            uint32_t(*pair)[3] = &triangles[2 * (j * CELLS + i)];
+            pair[0][0] = pair[1][0] = at;
+            pair[0][1] = at + 1;
+            pair[0][2] = pair[1][1] = at + CELLS + 2;
+            pair[1][2] = at + CELLS + 1;
+        }
+    }
+    lds_mesh_view view = cube_view();
+    view.positions = &positions[0][0];
+    view.vertex_count = (CELLS + 1) * (CELLS + 1);
+    view.triangles = &triangles[0][0];
+    view.triangle_count = 2 * CELLS * CELLS;
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_object_info info = info_of("grid", "Grid");
+    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, grid) == LDS_OK);
+    EXPECT(lds_model_set_root(model, *grid) == LDS_OK);
+    return model;
+}
+
+static void test_files_keep_the_model(const char* path) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    EXPECT(lds_model_write(model, "no_such_folder/cubes.obj") == LDS_ERROR_IO);
+    EXPECT(lds_model_write(model, path) == LDS_OK);
+    lds_model_destroy(model);
+    EXPECT(lds_model_read(path, &model) == LDS_OK);
+    EXPECT(lds_model_problem_count(model) == 0);
+    lds_totals totals = {sizeof totals, 0, 0, 0, 0, 0};
+    EXPECT(lds_model_totals(model, &totals) == LDS_OK);
+    EXPECT(totals.triangles_placed == 24);
+    lds_model_destroy(model);
+    lds_model* none = NULL;
+    EXPECT(lds_model_read("no_such_file.obj", &none) != LDS_OK && none == NULL);
+    EXPECT(strstr(lds_last_error_text(), "no_such_file.obj") != NULL);
+}
+
+static void test_problems_name_the_object(void) {
+    float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, NAN, 0}};
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    lds_mesh_view view = cube_view();
+    view.positions = &positions[0][0];
+    view.vertex_count = 4;
+    view.triangles = &triangles[0][0];
+    view.triangle_count = 2;
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_object_info info = info_of("torn", "Torn");
+    lds_object torn;
+    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, &torn) == LDS_OK);
+    EXPECT(lds_model_problem_count(model) == 1);
+    lds_problem problem;
+    memset(&problem, 0, sizeof problem);
+    problem.struct_size = sizeof problem;
+    EXPECT(lds_model_problem(model, 1, &problem) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(problem.object == NULL);
+    EXPECT(lds_model_problem(model, 0, &problem) == LDS_OK);
+    EXPECT(strcmp(problem.object, "Torn") == 0);
+    EXPECT(problem.severity >= 1 && problem.severity <= 2);
+    EXPECT(strlen(problem.code) > 0 && strlen(problem.message) > 0);
+    lds_representation finest;
+    memset(&finest, 0, sizeof finest);
+    finest.struct_size = sizeof finest;
+    EXPECT(lds_model_representation(model, torn, 0, &finest) == LDS_OK);
+    EXPECT(finest.triangles == 1);
+    lds_model_destroy(model);
+}
+
+static void test_cameras_come_back(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    EXPECT(lds_model_camera_count(model) == 0);
+    const lds_camera given = camera_before(7);
+    EXPECT(lds_model_add_camera(model, &given) == LDS_OK);
+    lds_camera back;
+    memset(&back, 0, sizeof back);
+    back.struct_size = sizeof back;
+    EXPECT(lds_model_camera(model, 1, &back) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_camera(model, 0, &back) == LDS_OK);
+    EXPECT(strcmp(back.name, "eye") == 0 && back.orthographic == 0);
+    EXPECT(back.position[1] == -7 && back.right[0] == 1 && back.up[2] == 0.5625);
+    lds_model_destroy(model);
+}
+
+static void test_representations_and_occurrences(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_object first;
+    EXPECT(lds_model_object_count(model) == 2);
+    EXPECT(lds_model_object_at(model, 2, &first) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_object_at(model, 0, &first) == LDS_OK);
+    EXPECT(first.index == cube.index && first.generation == cube.generation);
+    lds_representation finest;
+    memset(&finest, 0, sizeof finest);
+    finest.struct_size = sizeof finest;
+    EXPECT(lds_model_representation(model, cube, 1, &finest) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "'Cube'") != NULL);
+    EXPECT(lds_model_representation(model, cube, 0, &finest) == LDS_OK);
+    EXPECT(finest.kind == LDS_KIND_MESH && finest.triangles == 12 && finest.error == 0);
+    size_t count = 0;
+    EXPECT(lds_model_occurrence_count(model, &count) == LDS_OK && count == 2);
+    lds_occurrence found[3];
+    memset(found, 0, sizeof found);
+    EXPECT(lds_model_occurrence_copy(model, found, 1) == LDS_OK);
+    EXPECT(found[0].object.index == cube.index && found[1].world[0] == 0);
+    EXPECT(lds_model_occurrence_copy(model, found, 3) == LDS_OK);
+    EXPECT(found[0].world[3] == 0 && found[1].world[3] == 5 && found[2].world[0] == 0);
+    lds_model_destroy(model);
+}
+
+static void test_a_cube_is_seen_all_around(void) {
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_material red = {sizeof red, "red", {0.8, 0.1, 0.1}, 0.25, 0, 0.5, {0, 0, 0}};
+    uint32_t index = 9;
+    EXPECT(lds_model_add_material(model, &red, &index) == LDS_OK && index == 0);
+    lds_material bad = red;
+    bad.roughness = NAN;
+    EXPECT(lds_model_add_material(model, &bad, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "'red'") != NULL && index == 0);
+    const lds_object_info info = info_of("cube", "Cube");
+    const lds_mesh_view view = cube_view();
+    lds_object cube;
+    EXPECT(lds_model_add_mesh(model, &info, &view, &index, 1, &cube) == LDS_OK);
+    EXPECT(lds_model_set_root(model, cube) == LDS_OK);
+    const lds_measure_options options = lds_measure_options_default();
+    EXPECT(options.rays == 4096 && options.relative_error == 0);
+    lds_job job = {sizeof job, 0, 0, 0};
+    lds_attributes a;
+    memset(&a, 0, sizeof a);
+    a.struct_size = sizeof a;
+    EXPECT(lds_model_measure(model, cube, &options, &job, &a) == LDS_OK);
+    EXPECT(job.fraction == 1);
+    EXPECT(fabs(a.visible_area - 6) < 0.06 && fabs(a.surface_area - 6) < 0.06);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT(fabs(a.centroid[i] - 0.5) < 0.02);
+        EXPECT(fabs(a.inertia[i] - 5.0 / 3) < 0.1);
+        EXPECT(fabs(a.color[i] - red.base_color[i]) < 1e-6);
+    }
+    EXPECT(fabs(a.roughness - 0.25) < 1e-6 && a.metallic == 0);
+    job.cancel = 1;
+    a.visible_area = -1;
+    EXPECT(lds_model_measure(model, cube, &options, &job, &a) == LDS_ERROR_CANCELLED);
+    EXPECT(a.visible_area == -1);
+    lds_model_destroy(model);
+}
+
+static void test_simplifying_a_flat_grid_costs_no_shape(void) {
+    lds_object grid;
+    lds_model* model = flat_grid(&grid);
+    lds_simplify_options options = lds_simplify_options_default();
+    lds_simplify_report report;
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    options.ratio = 0.25;
+    options.triangles = 10;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(report.triangles_before == 0);
+    options.triangles = 0;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.triangles_before == 2 * CELLS * CELLS);
+    EXPECT(report.triangles <= CELLS * CELLS / 2 && report.triangles > CELLS * CELLS / 4);
+    EXPECT(report.error < 0 && report.max_error < 0); /* not asked for */
+    options.ratio = 0;
+    options.triangles = 8;
+    options.measure = 1;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.triangles >= 2 && report.triangles <= 8);
+    EXPECT(report.error >= 0 && report.error < 1e-6 && report.max_error < 1e-6);
+    lds_totals totals = {sizeof totals, 0, 0, 0, 0, 0};
+    EXPECT(lds_model_totals(model, &totals) == LDS_OK);
+    EXPECT(totals.triangles_placed == report.triangles);
+    lds_model_destroy(model);
+}
+
+static void test_choices_carry_the_path_of_placements(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_view view = view_before(20, 640, 360); /* Pixel Error 0: originals */
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    EXPECT(lds_cut_choice_count(cut) == 2);
+    lds_choice choices[2];
+    memset(choices, 0, sizeof choices);
+    EXPECT(lds_cut_choice_copy(cut, choices, 2) == LDS_OK);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT(choices[i].object.index == cube.index && choices[i].kind == LDS_KIND_MESH);
+        EXPECT(choices[i].lod == 0 && choices[i].error_px == 0);
+        const char* path = choices[i].world[3] == 0 ? "left" : "right";
+        EXPECT(strcmp(lds_cut_choice_path(cut, i), path) == 0);
+    }
+    EXPECT(choices[0].world[3] != choices[1].world[3]);
+    EXPECT(strcmp(lds_cut_choice_path(cut, 2), "") == 0);
+    lds_cut_destroy(cut);
+    lds_model_destroy(model);
+}
+
+int main(void) {
+    test_files_keep_the_model("capi_cubes.obj");
+    test_files_keep_the_model("capi_cubes.ply");
+    test_files_keep_the_model("capi_cubes.glb");
+    test_problems_name_the_object();
+    test_cameras_come_back();
+    test_representations_and_occurrences();
+    test_choices_carry_the_path_of_placements();
+    if (lds_rays_check() == LDS_OK) {
+        test_a_cube_is_seen_all_around();
+        test_simplifying_a_flat_grid_costs_no_shape();
+    }
+    return finish();
+}
