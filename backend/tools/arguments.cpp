@@ -28,7 +28,9 @@ Arguments::Arguments(const std::vector<std::string>& words,
         } else if (i + 1 < words.size()) {
             values_[name] = words[++i];
         } else {
-            throw UsageError("--" + name + " needs a value: --" + name + " " + option->value);
+            std::string sentence = "--" + name;
+            sentence.append(" needs a value: --").append(name).append(" ").append(option->value);
+            throw UsageError(sentence);
         }
     }
 }

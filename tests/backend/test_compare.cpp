@@ -133,7 +133,7 @@ TEST(Compare, QuantileLeavesOutOneInAThousand) {
         b.pixels[4 * i] = 1;
     EXPECT_EQ(compare(a, b).p999, 0);
     EXPECT_EQ(compare(a, b).max, 1);
-    b.pixels[4 * 5] = 1;
+    b.pixels[size_t{4} * 5] = 1;
     EXPECT_EQ(compare(a, b).p999, 1);
 }
 

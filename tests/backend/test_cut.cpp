@@ -182,6 +182,7 @@ TEST(Cut, ManyOccurrencesOfDeepSharing) {
     double step = 1;
     for (int level = 0; level < 5; ++level) {
         std::vector<Placement> eight;
+        eight.reserve(8);
         for (int i = 0; i < 8; ++i)
             eight.push_back({below, models::moved((i & 1) * step, (i & 2) * step, (i & 4) * step),
                              std::to_string(i)});

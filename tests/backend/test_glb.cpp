@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards GLB: the store's meshes come back bit for bit, foreign files lose nothing we can hold, no
 // file can crash us or lead us elsewhere.
+#include "base/error.h"
 #include "base/files.h"
 #include "format/format.h"
 #include "gltf_text.h"
@@ -17,7 +18,7 @@ namespace {
 using namespace gltf_text;
 
 std::filesystem::path folder() {
-    const std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "glb";
+    std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "glb";
     std::filesystem::create_directories(path / "inner");
     return path;
 }
@@ -91,7 +92,7 @@ TEST(Glb, StrangersSeeYUpAndVDown) {
     uint32_t json = 0;
     std::memcpy(&json, bytes.data() + 12, 4);
     float v = 0;
-    std::memcpy(&v, bytes.data() + 28 + json + 4 * 12 + 4, 4);
+    std::memcpy(&v, bytes.data() + 28 + json + size_t{4} * 12 + 4, 4);
     EXPECT_EQ(v, 0.75f);
 }
 
@@ -285,12 +286,12 @@ TEST(Glb, TexturesCountAsTheirMean) {
     for (const std::string& uri :
          {embedded, std::string("board.png"), std::string("../board.png")}) {
         write_file(folder() / "textured.gltf",
-                   gltf(R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1],
+                   gltf(text(R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1],
                         "baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
-                        "images":[{"uri":")" +
-                        uri + R"("}],
-                        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
-                        kOneNode));
+                        "images":[{"uri":")",
+                             uri, R"("}],
+                        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)",
+                             kOneNode)));
         Problems problems;
         const Model model = read_model(folder() / "textured.gltf", problems);
         const bool outside = uri[0] == '.';
@@ -331,8 +332,8 @@ TEST(Glb, BrokenReferencesAreLeftOutWithAProblem) {
     for (const std::string& primitive : primitives) {
         Problems problems;
         const Model model =
-            read(gltf(R"("meshes":[{"primitives":[)" + primitive +
-                      R"(,{"attributes":{"POSITION":0},"indices":1}]}],)" + kOneNode),
+            read(gltf(text(R"("meshes":[{"primitives":[)", primitive,
+                           R"(,{"attributes":{"POSITION":0},"indices":1}]}],)", kOneNode)),
                  problems);
         EXPECT_TRUE(has(problems, "bad_primitive")) << primitive;
         EXPECT_EQ(totals(model).triangles_placed, 2u) << primitive;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scratch(const std::string& name) {
-    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "hierarchy" / name;
+    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "hierarchy" / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     return folder;
@@ -282,7 +282,7 @@ TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
     add(30, 0.25);  // worse than the cheaper one of 20
     add(40, 0.1);
     add(90, 0.01);  // no cheaper than the finest
-    build::keep_useful(candidates, 2 * 90 * 90 * 245);
+    build::keep_useful(candidates, uint64_t{2} * 90 * 90 * 245);
     ASSERT_EQ(candidates.size(), 3u);
     EXPECT_EQ(candidates[0].error, 0.1);
     EXPECT_EQ(candidates[1].error, 0.2);

@@ -93,8 +93,8 @@ std::string exr(const std::string& letters, const Imath::Box2i& data, const Imat
     {
         Imf::Header header(display, data);
         header.compression() = Imf::ZIP_COMPRESSION;
-        const auto width = static_cast<size_t>(data.max.x - data.min.x + 1);
-        const auto height = static_cast<size_t>(data.max.y - data.min.y + 1);
+        const auto width = static_cast<size_t>(data.max.x - data.min.x) + 1;
+        const auto height = static_cast<size_t>(data.max.y - data.min.y) + 1;
         std::vector<std::vector<float>> planes(letters.size());
         Imf::FrameBuffer buffer;
         for (size_t i = 0; i < letters.size(); ++i) {
@@ -125,7 +125,7 @@ std::string complaint(const std::string& bytes) {
 }
 
 const float* pixel(const Image& image, int x, int y) {
-    return image.pixels.data() + 4 * (y * image.width + x);
+    return image.pixels.data() + ptrdiff_t{4} * (ptrdiff_t{y} * image.width + x);
 }
 
 void expect_pixel(const Image& image, int x, int y, std::array<float, 4> expected) {
@@ -178,7 +178,7 @@ TEST(Image, PngColorPaletteAndInterlace) {
         "palette");
     expect_pixel(palette, 0, 0, {0, 0, 0, 1});
     expect_pixel(palette, 1, 0, {1, 0.2f, 0, 0.4f});
-    std::vector<unsigned char> rows(9 * 9);
+    std::vector<unsigned char> rows(size_t{9} * 9);
     for (size_t i = 0; i < rows.size(); ++i)
         rows[i] = static_cast<unsigned char>(3 * i);
     const Image plain = read(png(9, 9, 8, PNG_COLOR_TYPE_GRAY, rows), "plain");
@@ -300,7 +300,7 @@ TEST(Image, WritingRefusesWhatIsNoImage) {
 
 TEST(Image, DamagedFilesNeverCrash) {
     const auto read_it = [](const std::string& bytes) { read(bytes, "damaged"); };
-    std::vector<unsigned char> rows(24 * 16 * 4);
+    std::vector<unsigned char> rows(size_t{24} * 16 * 4);
     for (size_t i = 0; i < rows.size(); ++i)
         rows[i] = static_cast<unsigned char>(i * 7);
     const int accepted =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards OBJ and MTL: what real exporters write, exact round trips, files that lead elsewhere.
+#include "base/error.h"
 #include "base/files.h"
 #include "format/format.h"
 #include "format/mtl.h"
@@ -16,7 +17,7 @@ namespace {
 const std::string kPoints = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 std::filesystem::path folder() {
-    const std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "obj";
+    std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "obj";
     std::filesystem::create_directories(path / "inner");
     return path;
 }
@@ -118,7 +119,7 @@ TEST(Obj, NothingOutsideTheFolderIsOpened) {
           std::string("..\\secret.mtl"), std::string("./../secret.mtl"), std::string("link.mtl"),
           std::string("."), std::string("nothing.mtl")}) {
         Problems problems;
-        const Model model = read_obj("mtllib " + name + "\n" + kPoints + "usemtl red\nf 1 2 3\n",
+        const Model model = read_obj(text("mtllib ", name, "\n", kPoints, "usemtl red\nf 1 2 3\n"),
                                      folder() / "inner" / "thing.obj", problems);
         EXPECT_TRUE(has(problems, "material_library_missing")) << name;
         const uint32_t material = model.objects[0].representations[0].materials[0];

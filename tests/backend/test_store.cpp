@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scratch(const std::string& name) {
-    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "store" / name;
+    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "store" / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     return folder;

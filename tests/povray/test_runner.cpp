@@ -36,7 +36,7 @@ bool says(const Error& error, const std::string& part) {
 
 std::filesystem::path scene_with(const std::string& name, const std::string& pov,
                                  const std::string& size = "Width=32\nHeight=32\n") {
-    const auto folder = scratch(name);
+    auto folder = scratch(name);
     std::filesystem::create_directories(folder / "r");
     std::ofstream(folder / "scene.pov") << "#version 3.7;\n" << pov;
     std::ofstream(folder / "scene.ini") << "Input_File_Name=scene.pov\n" << size;

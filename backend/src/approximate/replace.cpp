@@ -177,7 +177,7 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     // One octant of the unit sphere u, dA = |u / h| hx hy hz dw. The shortest half axis is c (u's
     // height z), the longest a (angle 0). Where the axes differ much the integrand bends within
     // c / b of the equator and b / a of the long axis: sinh spreads those places out.
-    static const Gauss gauss;
+    static const Gauss kGauss;
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(),
               [&](int i, int j) { return half_size[i] > half_size[j]; });
@@ -192,17 +192,17 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     double area = 0;
     glm::dvec3 seconds(0.0);
     for (int i = 0; i < Gauss::kCount; ++i) {
-        const double s = end_angle * gauss.at[i];
+        const double s = end_angle * kGauss.at[i];
         const double angle = bend_angle * std::sinh(s);
-        const double angle_weight = gauss.weight[i] * end_angle * bend_angle * std::cosh(s);
+        const double angle_weight = kGauss.weight[i] * end_angle * bend_angle * std::cosh(s);
         const double x = std::cos(angle);
         const double y = std::sin(angle);
         const double across = (b / a * x) * (b / a * x) + y * y;  // times b^2
         for (int j = 0; j < Gauss::kCount; ++j) {
-            const double t = end_z * gauss.at[j];
+            const double t = end_z * kGauss.at[j];
             const double z = std::min(1.0, bend_z * std::sinh(t));
             const double square = 1 - z * z;
-            const double weight = angle_weight * gauss.weight[j] * end_z * bend_z * std::cosh(t);
+            const double weight = angle_weight * kGauss.weight[j] * end_z * bend_z * std::cosh(t);
             // hx hy hz |u / h| = a b c sqrt(z^2 / c^2 + ...) = a b sqrt(z^2 + (c / b)^2 ...)
             const double patch =
                 weight * a * b * std::sqrt(z * z + bend_z * bend_z * square * across);

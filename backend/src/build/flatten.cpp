@@ -3,6 +3,7 @@
 
 #include "quality/cut.h"
 
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -88,7 +89,8 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
 double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job) {
     const double size = model.objects[group].bound().radius;
     double error = 0;
-    for (double next = size / 4096; next < 8 * size; next *= 2) {
+    for (int power = -12; power < 3; ++power) {
+        const double next = std::ldexp(size, power);
         const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
         if (triangles_of(model, cut) <= most)
             break;

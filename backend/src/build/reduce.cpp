@@ -33,11 +33,12 @@ Reduced to_count(const Mesh& mesh, size_t count, const Reduction& wanted, double
 /// The coarsest level of a fine chain whose measured error is within the wanted one.
 Reduced to_error(const Mesh& mesh, const Reduction& wanted, double& cpu_s, const Job& job) {
     std::vector<size_t> targets;
-    for (double target = kStep * static_cast<double>(mesh.triangles.size()); target >= 1;
-         target *= kStep) {
+    double target = kStep * static_cast<double>(mesh.triangles.size());
+    while (target >= 1) {
         const auto count = static_cast<size_t>(target);
         if (targets.empty() || count < targets.back())
             targets.push_back(count);
+        target *= kStep;
     }
     const double start = cpu_seconds();
     std::vector<Mesh> levels;

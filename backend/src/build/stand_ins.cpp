@@ -38,10 +38,12 @@ uint64_t bytes_of(const Candidate& candidate) {
 
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
     std::vector<size_t> targets;
-    for (auto target = static_cast<double>(first); target >= kFewestTriangles; target *= ratio) {
+    auto target = static_cast<double>(first);
+    while (target >= kFewestTriangles) {
         const auto count = static_cast<size_t>(target);
         if (count < triangles && (targets.empty() || count < targets.back()))
             targets.push_back(count);
+        target *= ratio;
     }
     return targets;
 }

@@ -140,8 +140,8 @@ int add_floats(tinygltf::Model& model, std::span<const float> values, int compon
 }
 
 const tinygltf::Value& member(const tinygltf::Value& value, const char* key) {
-    static const tinygltf::Value null;
-    return value.Has(key) ? value.Get(key) : null;
+    static const tinygltf::Value kNull;
+    return value.Has(key) ? value.Get(key) : kNull;
 }
 
 std::string view_bytes(const tinygltf::Model& model, int view) {

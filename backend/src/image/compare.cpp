@@ -75,13 +75,13 @@ std::array<double, 2 * kRadius + 1> gaussian() {
 
 /// Weighted mean along one axis; `stride` steps along it, `length` values of it.
 double blurred_at(const double* line, int64_t stride, int64_t length, int64_t at) {
-    static const std::array<double, 2 * kRadius + 1> weights = gaussian();
+    static const std::array<double, 2 * kRadius + 1> kWeights = gaussian();
     double sum = 0;
     double total = 0;
     for (int64_t i = -kRadius; i <= kRadius; ++i) {
         if (at + i < 0 || at + i >= length)
             continue;
-        const double weight = weights[static_cast<size_t>(i + kRadius)];
+        const double weight = kWeights[static_cast<size_t>(i + kRadius)];
         sum += weight * line[(at + i) * stride];
         total += weight;
     }

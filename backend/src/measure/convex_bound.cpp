@@ -59,12 +59,12 @@ void clip(std::vector<glm::dvec3>& polygon, const Plane& plane, std::vector<glm:
 ConvexBound::ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& axes, double lift) {
     if (points.empty() || !(lift > 0))
         return;
-    static const std::array<glm::dvec3, kSlabs> unturned = slab_directions();
+    static const std::array<glm::dvec3, kSlabs> kUnturned = slab_directions();
     std::array<glm::dvec3, kSlabs> directions;
     std::array<double, kSlabs> low;
     std::array<double, kSlabs> high;
     for (size_t i = 0; i < kSlabs; ++i) {
-        directions[i] = axes * unturned[i];
+        directions[i] = axes * kUnturned[i];
         low[i] = std::numeric_limits<double>::infinity();
         high[i] = -low[i];
     }

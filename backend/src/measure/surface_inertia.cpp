@@ -59,13 +59,13 @@ std::array<Node, 16> gauss() {
 /// Nodes on 0...1 in panels that halve towards 0, down to about `finest`: an integrand that bends
 /// within that width of 0 is smooth on every panel.
 std::vector<Node> graded_nodes(double finest) {
-    static const std::array<Node, 16> unit = gauss();
+    static const std::array<Node, 16> kUnit = gauss();
     std::vector<Node> nodes;
     double high = 1;
     for (int panel = 0; panel < 60; ++panel) {
         const bool last = panel == 59 || high <= 0.5 * finest;
         const double low = last ? 0 : 0.5 * high;
-        for (const Node& node : unit)
+        for (const Node& node : kUnit)
             nodes.push_back({low + (high - low) * node.at, (high - low) * node.weight});
         if (last)
             break;

@@ -278,7 +278,7 @@ Embree find() noexcept {
 const Embree& found() {
     // On a thread of its own: Embree waits by working on whatever tasks its thread may take, and a
     // task of the caller's loop could come back here before this is done.
-    static const Embree* const found_once = [] {
+    static const Embree* const kFoundOnce = [] {
         auto* const embree = new Embree;
         try {
             std::thread([embree] { *embree = find(); }).join();
@@ -287,7 +287,7 @@ const Embree& found() {
         }
         return embree;
     }();
-    return *found_once;
+    return *kFoundOnce;
 }
 
 const Embree& embree_or_throw() {

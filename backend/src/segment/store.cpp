@@ -88,6 +88,7 @@ uint64_t Store::write(const Model& model, const Job& job) const {
         }
     }
     std::vector<const Representation*> jobs;
+    jobs.reserve(missing.size());
     for (const auto& [hash, representation] : missing)
         jobs.push_back(representation);
     std::atomic<uint64_t> bytes{0};
