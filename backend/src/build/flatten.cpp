@@ -121,7 +121,7 @@ double bytes_within(const Model& model, ObjectIndex group, double error,
     for (const uint32_t index : cut.chosen) {
         const quality::Node& node = cut.nodes[index];
         const Summary& summary = model.objects[node.object].representations[node.lod].summary;
-        bytes += static_cast<double>(quality::kBytesPerOccurrence) +
+        bytes += static_cast<double>(kBytesPerOccurrence) +
                  static_cast<double>(summary.cost.bytes) /
                      static_cast<double>(std::max<uint64_t>(1, uses[node.object]));
     }

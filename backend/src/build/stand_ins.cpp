@@ -32,8 +32,8 @@ constexpr int kRaysPerTriangle = 24;
 constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 
 uint64_t bytes_of(const Candidate& candidate) {
-    // What POV-Ray keeps (notes in model.cpp): the cost that candidates are compared by.
-    return candidate.kind == Kind::Mesh ? candidate.mesh->triangles.size() * 245 : 1500;
+    return candidate.kind == Kind::Mesh ? candidate.mesh->triangles.size() * kBytesPerTriangle
+                                        : kBytesPerPrimitive;
 }
 
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
@@ -250,7 +250,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     for (const Candidate& candidate : out.candidates) {
         const double own = static_cast<double>(bytes_of(candidate)) /
                                static_cast<double>(std::max<uint64_t>(1, uses[group])) +
-                           static_cast<double>(quality::kBytesPerOccurrence);
+                           static_cast<double>(kBytesPerOccurrence);
         if (own < bytes_within(model, group, candidate.error, uses, job))
             useful.push_back(candidate);
     }

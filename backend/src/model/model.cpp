@@ -6,10 +6,6 @@
 namespace lodestone {
 namespace {
 
-// POV-Ray 3.7 keeps about 245 bytes a mesh triangle and 1.5 KB an occurrence, whatever it draws.
-constexpr uint64_t kBytesPerTriangle = 245;
-constexpr uint64_t kBytesPerPrimitive = 1500;
-
 // Deeper nesting is a mistake of some program; it would exhaust the stacks of tile viewers.
 constexpr size_t kDeepest = 1000;
 

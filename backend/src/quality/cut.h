@@ -13,9 +13,6 @@ namespace lodestone::quality {
 
 inline constexpr uint32_t kNoParent = ~uint32_t{0};
 
-/// POV-Ray 3.7 keeps about this for an object{} that refers to a declared representation.
-inline constexpr uint64_t kBytesPerOccurrence = 1500;
-
 /// An occurrence the choice visited: either opened (its assembly goes on below) or chosen.
 struct Node {
     ObjectIndex object = kNoObject;
