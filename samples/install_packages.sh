@@ -52,5 +52,11 @@ echo "Installing ${#missing[@]} packages: ${missing[*]}"
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get --quiet=2 -o Dpkg::Use-Pty=0
     -o DPkg::Lock::Timeout=300)
 # Without fresh lists a bare machine knows no package; with stale ones a download may be gone.
-"${apt[@]}" update </dev/null
-"${apt[@]}" install --yes --no-install-recommends "${missing[@]}" </dev/null
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! { "${apt[@]}" update && "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"; } \
+    </dev/null >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    echo "apt-get failed; the packages that are missing: ${missing[*]}" >&2
+    exit 1
+fi
