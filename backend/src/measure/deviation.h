@@ -14,7 +14,8 @@ namespace lodestone::measure {
 /// moved, the least of: the distance to the look that is missed; to where the finest shows the look
 /// that is there instead; and, for a look that the finest has nowhere (a mean color), the radius
 /// within which the finest's own colors mix to it. So a road that is gone is as wrong as half its
-/// width, whatever its share of the area: every look has its own quantile (99 %).
+/// width, however large the field around it: every look that at least .2 % of the area shows has its
+/// own quantile (99 %).
 struct Deviation {
     double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
     double max = 0;    // the largest distance that was seen
@@ -39,7 +40,8 @@ struct Surface {
 /// outside its bound hits it; a vertex when one of 16 rays from beside it sees infinity.
 class DeviationReference {
 public:
-    /// Keeps what it needs of the mesh; `looks` is kept by reference (null: all looks alike).
+    /// Keeps what it needs of the mesh and of the looks, and a reference to their palette. Without
+    /// looks everything looks alike.
     /// Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
                        const Surface& surface = {}, const Job& job = {});
@@ -62,9 +64,8 @@ public:
         glm::dvec3 point;
         double weight;
         uint16_t look;         // kAnyLook: only its place counts (vertices lie on borders of looks)
-        glm::dvec3 side{0.0};  // unit normal towards whoever sees it
+        glm::dvec3 side{0.0};  // unit normal towards whoever sees it; 0: not known
         uint16_t slot = 0;     // the material slot it shows
-        glm::dvec3 sight{0.0};  // unit direction towards whoever sees it
     };
     static constexpr uint16_t kAnyLook = 0xffff;
 
