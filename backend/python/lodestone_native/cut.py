@@ -5,6 +5,7 @@ import ctypes
 from typing import Any, NamedTuple
 
 from . import structs
+from .handle import Handle
 from .job import Job
 from .library import check, library
 from .model import Model
@@ -20,8 +21,10 @@ class Choice(NamedTuple):
     world: tuple[float, ...]
 
 
-class Cut:
+class Cut(Handle):
     """Keeps its model alive; close it (or leave the `with` block) to free its memory."""
+
+    _destroy = "lds_cut_destroy"
 
     def __init__(self, model: Model, view: View, job: Job | None = None) -> None:
         self.model = model
@@ -30,26 +33,6 @@ class Cut:
         check(
             library().lds_cut_create(model.handle, view.struct(), job, ctypes.byref(self._handle))
         )
-
-    def __enter__(self) -> "Cut":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def __del__(self) -> None:
-        self.close()
-
-    def close(self) -> None:
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            library().lds_cut_destroy(handle)
-
-    @property
-    def handle(self) -> ctypes.c_void_p:
-        if not self._handle:
-            raise ValueError("the cut is closed")
-        return self._handle
 
     def summary(self) -> Any:
         out = structs.CutSummary()

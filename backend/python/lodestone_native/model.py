@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import structs
+from .handle import Handle
 from .enums import LightKind, Role
 from .job import Job
 from .library import check, library
@@ -82,8 +83,10 @@ class BuildOptions(structs.BuildOptions):
         return options
 
 
-class Model:
+class Model(Handle):
     """One thread at a time; close it (or leave the `with` block) to free its memory."""
+
+    _destroy = "lds_model_destroy"
 
     def __init__(self, handle: ctypes.c_void_p | None = None) -> None:
         self._handle = handle
@@ -97,26 +100,6 @@ class Model:
         handle = ctypes.c_void_p()
         check(library().lds_model_read(text_in(path), ctypes.byref(handle)))
         return cls(handle)
-
-    def __enter__(self) -> "Model":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def __del__(self) -> None:
-        self.close()
-
-    def close(self) -> None:
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            library().lds_model_destroy(handle)
-
-    @property
-    def handle(self) -> ctypes.c_void_p:
-        if not self._handle:
-            raise ValueError("the model is closed")
-        return self._handle
 
     def write(self, path: str) -> None:
         check(library().lds_model_write(self.handle, text_in(path)))
