@@ -22,6 +22,15 @@ inline ObjectIndex add_leaf(Model& model, const std::string& uid, Mesh mesh, Mat
     return static_cast<ObjectIndex>(model.objects.size() - 1);
 }
 
+inline Material colored(const std::string& name, const glm::dvec3& base_color,
+                        double roughness = 0.5) {
+    Material material;
+    material.name = name;
+    material.base_color = base_color;
+    material.roughness = roughness;
+    return material;
+}
+
 inline Affine moved(double x, double y, double z) {
     Affine transform;
     transform.offset = {x, y, z};

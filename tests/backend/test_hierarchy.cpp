@@ -34,8 +34,8 @@ build::Report build_in(Model& model, const fs::path& folder) {
 /// A table and chairs, a lamp on a wall: four leaves, two groups, one of them used twice.
 Model room() {
     Model model;
-    Material wood{"wood", {0.4, 0.2, 0.1}, 0.6, 0, 0.5, {}};
-    Material red{"red", {0.8, 0.1, 0.1}, 0.3, 0, 0.5, {}};
+    const Material wood = models::colored("wood", {0.4, 0.2, 0.1}, 0.6);
+    const Material red = models::colored("red", {0.8, 0.1, 0.1}, 0.3);
     const ObjectIndex top =
         models::add_leaf(model, "top", shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75}), wood);
     const ObjectIndex vase = models::add_leaf(model, "vase", shapes::sphere(0.1, 4), red);

@@ -71,6 +71,20 @@ TEST(Mesh, JoiningFlatAndSmoothPartsKeepsBothLooks) {
     EXPECT_NO_THROW(check(mesh));
 }
 
+TEST(Mesh, JoiningPartsWithAndWithoutColorsLeavesTheOthersWhite) {
+    Mesh plain = shapes::cube();
+    Mesh red = shapes::cube();
+    red.colors.assign(red.positions.size(), {1, 0, 0, 1});
+    Mesh both = plain;
+    append(both, red, Affine{});
+    append(both, plain, Affine{});
+    ASSERT_NO_THROW(check(both));
+    ASSERT_EQ(both.colors.size(), both.positions.size());
+    EXPECT_EQ(both.colors.front(), glm::vec4(1));
+    EXPECT_EQ(both.colors[plain.positions.size()], glm::vec4(1, 0, 0, 1));
+    EXPECT_EQ(both.colors.back(), glm::vec4(1));
+}
+
 TEST(Mesh, WeldJoinsNegativeZero) {
     Mesh mesh;
     mesh.positions = {{0.0f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}};
@@ -86,5 +100,8 @@ TEST(Mesh, HashChangesWithEveryArray) {
     slotted.slots.assign(mesh.triangles.size(), 0);
     EXPECT_EQ(hash_of(mesh), hash_of(shapes::cube()));
     EXPECT_NE(hash_of(mesh), hash_of(moved));
+    Mesh colored = mesh;
+    colored.colors.assign(mesh.positions.size(), glm::vec4(1));
     EXPECT_NE(hash_of(mesh), hash_of(slotted));
+    EXPECT_NE(hash_of(mesh), hash_of(colored));
 }

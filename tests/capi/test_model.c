@@ -128,10 +128,64 @@ static void test_representations_and_occurrences(void) {
     lds_model_destroy(model);
 }
 
+static void test_pictures_and_textures_are_checked(void) {
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const float pixels[] = {1, 0, 0, 1, 0, 0, 1, 1}; /* red, blue */
+    lds_picture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.struct_size = sizeof picture;
+    picture.name = "two";
+    uint32_t index = 9;
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    picture.pixels = pixels;
+    picture.width = 2;
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    picture.height = 1;
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_OK && index == 0);
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_OK && index == 0);
+    picture.pixels = NULL;
+    picture.bytes = "no picture";
+    picture.byte_count = 10;
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_ERROR_BAD_FILE);
+    EXPECT(strstr(lds_last_error_text(), "two") != NULL);
+    picture.bytes = NULL;
+    picture.path = "nowhere.png";
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_ERROR_IO);
+
+    lds_material material = lds_material_default();
+    material.name = "brick";
+    material.base_color_texture.picture = 1;
+    material.base_color_texture.to_picture[0] = material.base_color_texture.to_picture[4] = 1;
+    for (int i = 0; i < 3; ++i)
+        material.base_color_texture.scale[i] = 0.5;
+    double mean[3] = {-1, -1, -1};
+    EXPECT(lds_model_texture_mean(model, &material.base_color_texture, mean) == LDS_OK);
+    EXPECT(mean[0] == 0.25 && mean[1] == 0 && mean[2] == 0.25);
+    EXPECT(lds_model_texture_mean(model, &material.mix_texture, mean) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_add_material(model, &material, &index) == LDS_OK && index == 0);
+    material.other = 2;
+    EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    material.other = 1;
+    EXPECT(lds_model_add_material(model, &material, &index) == LDS_OK && index == 1);
+    material.base_color_texture.picture = 2;
+    EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "'brick'") != NULL);
+    material.base_color_texture.picture = 1;
+    material.base_color_texture.channel = 17;
+    EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
 static void test_a_cube_is_seen_all_around(void) {
     lds_model* model = NULL;
     EXPECT(lds_model_create(&model) == LDS_OK);
-    const lds_material red = {sizeof red, "red", {0.8, 0.1, 0.1}, 0.25, 0, 0.5, {0, 0, 0}};
+    lds_material red = lds_material_default();
+    red.name = "red";
+    red.base_color[0] = 0.8;
+    red.base_color[1] = red.base_color[2] = 0.1;
+    red.roughness = 0.25;
     uint32_t index = 9;
     EXPECT(lds_model_add_material(model, &red, &index) == LDS_OK && index == 0);
     lds_material bad = red;
@@ -225,6 +279,7 @@ int main(void) {
     test_representations_and_occurrences();
     test_choices_carry_the_path_of_placements();
     if (lds_rays_check() == LDS_OK) {
+        test_pictures_and_textures_are_checked();
         test_a_cube_is_seen_all_around();
         test_simplifying_a_flat_grid_costs_no_shape();
     }

@@ -100,6 +100,9 @@ class Functions(unittest.TestCase):
             (enums.Stage, "LDS_STAGE_"),
             (enums.Role, "LDS_ROLE_"),
             (enums.Kind, "LDS_KIND_"),
+            (enums.Channel, "LDS_CHANNEL_"),
+            (enums.Extension, "LDS_EXTENSION_"),
+            (enums.AlphaMode, "LDS_ALPHA_MODE_"),
             (enums.Antialias, "LDS_ANTIALIAS_"),
             (enums.Status, "LDS_ERROR_"),
         ):

@@ -113,6 +113,57 @@ typedef struct lds_object_info {
     int32_t role;     /* lds_role */
 } lds_object_info;
 
+/* An image. Exactly one of path, bytes and pixels is given. */
+typedef struct lds_picture {
+    uint32_t struct_size;
+    const char* name;  /* the user's */
+    const char* path;  /* a PNG, JPEG or OpenEXR file */
+    const void* bytes; /* such a file's content */
+    size_t byte_count;
+    const float* pixels; /* float32[height][width][4], straight alpha, lowest row first (Blender's
+                            order), numbers as the color space says; kept as an 8-bit PNG */
+    int32_t width;
+    int32_t height;
+    int32_t linear; /* 0: display-encoded (sRGB) color; 1: linear color, or data */
+} lds_picture;
+
+typedef enum lds_channel {
+    LDS_CHANNEL_COLOR = 0,
+    LDS_CHANNEL_RED = 1,
+    LDS_CHANNEL_GREEN = 2,
+    LDS_CHANNEL_BLUE = 3,
+    LDS_CHANNEL_ALPHA = 4,
+    LDS_CHANNEL_LUMA = 5
+} lds_channel;
+
+typedef enum lds_extension {
+    LDS_EXTENSION_REPEAT = 0,
+    LDS_EXTENSION_EXTEND = 1,
+    LDS_EXTENSION_CLIP = 2, /* outside 0...1: black, alpha 0 */
+    LDS_EXTENSION_MIRROR = 3
+} lds_extension;
+
+/* A picture laid on a surface by its texture coordinates: the value there is
+   offset + scale * texel(to_picture (u, v, 1)); v = 0 is the picture's lowest row. */
+typedef struct lds_texture {
+    uint32_t picture;     /* 1 + the index of an added picture; 0: no texture */
+    int32_t channel;      /* lds_channel; for a single number COLOR means luma */
+    int32_t extension;    /* lds_extension */
+    int32_t closest;      /* 1: no interpolation between texels */
+    double to_picture[6]; /* row-major 2x3 */
+    double scale[3];      /* a single number takes the first */
+    double offset[3];
+} lds_texture;
+
+typedef enum lds_alpha_mode {
+    LDS_ALPHA_MODE_OPAQUE = 0,
+    LDS_ALPHA_MODE_BLEND = 1,
+    LDS_ALPHA_MODE_CLIP = 2 /* there where alpha >= alpha_cutoff */
+} lds_alpha_mode;
+
+/* A value with a texture is the texture's; the field beside it holds the mean, used wherever
+   textures are not looked at (lds_model_texture_mean gives it). Get one from
+   lds_material_default. */
 typedef struct lds_material {
     uint32_t struct_size;
     const char* name;
@@ -121,7 +172,28 @@ typedef struct lds_material {
     double metallic;      /* 0...1 */
     double specular;      /* 0...1; 0.5 = index of refraction 1.45 */
     double emission[3];   /* linear, W/(sr m^2) */
+    lds_texture base_color_texture;
+    lds_texture roughness_texture;
+    lds_texture metallic_texture;
+    lds_texture emission_texture;
+    int32_t vertex_colors; /* 1: base color and alpha times the mesh's colors */
+    double alpha;          /* 0...1 */
+    lds_texture alpha_texture;
+    int32_t alpha_mode; /* lds_alpha_mode */
+    double alpha_cutoff;
+    double transmission; /* 0...1: share of light that is refracted instead of scattered */
+    double ior;          /* > 0; usual 1...3 */
+    double clearcoat;    /* 0...1 */
+    double clearcoat_roughness;
+    lds_texture normal_texture; /* tangent space, 0...1 for -1...1, green up */
+    double normal_strength;
+    lds_texture bump_texture; /* height in parts of bump_distance */
+    double bump_distance;     /* metres from 0 to 1; below 0 inward */
+    uint32_t other; /* 1 + the index of an added material this one is mixed with; 0: none */
+    double mix;     /* 0...1: share of the other */
+    lds_texture mix_texture;
 } lds_material;
+LDS_API lds_material lds_material_default(void);
 
 /* A triangle mesh as the caller has it. Normals and uvs belong to corners: entry corners[3 t + c]
    of corner_normals is that of corner c of triangle t. */
@@ -136,6 +208,7 @@ typedef struct lds_mesh_view {
     size_t corner_count;
     const float* corner_normals; /* float32[corner_count][3]; null: flat shaded */
     const float* corner_uvs;     /* float32[corner_count][2]; null: none */
+    const float* corner_colors;  /* float32[corner_count][4] linear RGBA, straight; null: white */
     const int32_t* slots;        /* int32[triangle_count]; null: all 0. Outside 0...material_count-1
                                     counts as the nearest slot (Blender's rule) */
 } lds_mesh_view;
@@ -180,6 +253,13 @@ LDS_API lds_status lds_model_read(const char* path, lds_model** out_model);
 /* Writes .obj, .ply or .glb by the name's ending: finest representations. */
 LDS_API lds_status lds_model_write(lds_model* model, const char* path);
 
+/* out_index: of the new picture, rising from 0; an equal one's when there is one. BAD_FILE, IO. */
+LDS_API lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
+                                         uint32_t* out_index);
+/* The mean of a texture's value over its whole picture, colors weighted by alpha. A single number
+   is the first of out_color with a channel other than COLOR. */
+LDS_API lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
+                                          double out_color[3]);
 /* out_index: of the new material, rising from 0. */
 LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* material,
                                           uint32_t* out_index);

@@ -6,13 +6,31 @@ call does, and says in one sentence when it cannot.
 """
 
 from .cut import Cut
-from .enums import Antialias, Kind, LightKind, Role, Severity, Stage, Status
+from .enums import (
+    AlphaMode,
+    Antialias,
+    Channel,
+    Extension,
+    Kind,
+    LightKind,
+    Role,
+    Severity,
+    Stage,
+    Status,
+)
 from .errors import LodestoneError
 from .image import Image, image_compare, image_read, image_size, image_write_png
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
 from .measure import surface_inertia
-from .model import BuildOptions, MeasureOptions, MeshBuffers, Model, SimplifyOptions
+from .model import (
+    BuildOptions,
+    MeasureOptions,
+    MeshBuffers,
+    Model,
+    SimplifyOptions,
+    texture,
+)
 from .povray import (
     PovrayOptions,
     povray_empty_bytes,
@@ -25,10 +43,13 @@ from .structs import Object
 from .view import Camera, View
 
 __all__ = [
+    "AlphaMode",
     "Antialias",
     "BuildOptions",
     "Camera",
+    "Channel",
     "Cut",
+    "Extension",
     "Image",
     "Job",
     "Kind",
@@ -58,5 +79,6 @@ __all__ = [
     "povray_run",
     "rays_check",
     "surface_inertia",
+    "texture",
     "version",
 ]

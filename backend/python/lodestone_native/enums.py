@@ -45,6 +45,32 @@ class Kind(IntEnum):
     ASSEMBLY = 8
 
 
+class Channel(IntEnum):
+    """Which of a texel's numbers counts."""
+
+    COLOR = 0
+    RED = 1
+    GREEN = 2
+    BLUE = 3
+    ALPHA = 4
+    LUMA = 5
+
+
+class Extension(IntEnum):
+    """What lies outside 0...1 of a picture."""
+
+    REPEAT = 0
+    EXTEND = 1
+    CLIP = 2
+    MIRROR = 3
+
+
+class AlphaMode(IntEnum):
+    OPAQUE = 0
+    BLEND = 1
+    CLIP = 2
+
+
 class Antialias(IntEnum):
     OFF = 0
     FINAL = 1

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import structs
 from .handle import Handle
-from .enums import LightKind, Role
+from .enums import Channel, Extension, LightKind, Role
 from .job import Job
 from .library import check, library
 from .structs import Object, record, text_in
@@ -29,6 +29,7 @@ class MeshBuffers:
     corners: array | None = None
     corner_normals: array | None = None  # [corner][3]; None: flat shaded
     corner_uvs: array | None = None  # [corner][2]
+    corner_colors: array | None = None  # [corner][4] linear RGBA, straight
     slots: array | None = None  # [triangle]
 
     def struct(self) -> structs.MeshView:
@@ -43,10 +44,12 @@ class MeshBuffers:
             counts.add(_count("corner_normals", self.corner_normals, 3))
         if self.corner_uvs is not None:
             counts.add(_count("corner_uvs", self.corner_uvs, 2))
+        if self.corner_colors is not None:
+            counts.add(_count("corner_colors", self.corner_colors, 4))
         if self.corners is None:
             counts.add(vertices)
         if len(counts) > 1:
-            raise ValueError("corner_normals and corner_uvs differ in their number of corners")
+            raise ValueError("normals, uvs and colors differ in their number of corners")
         if self.slots is not None and _count("slots", self.slots, 1) != triangles:
             raise ValueError("slots and triangles differ in length")
         return structs.MeshView(
@@ -58,8 +61,34 @@ class MeshBuffers:
             corner_count=counts.pop() if counts else 0,
             corner_normals=_address(self.corner_normals),
             corner_uvs=_address(self.corner_uvs),
+            corner_colors=_address(self.corner_colors),
             slots=_address(self.slots),
         )
+
+
+IDENTITY_MAPPING = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+def texture(
+    picture: int,
+    channel: int = Channel.COLOR,
+    extension: int = Extension.REPEAT,
+    closest: bool = False,
+    to_picture: Sequence[float] = IDENTITY_MAPPING,
+    scale: Vector = (1.0, 1.0, 1.0),
+    offset: Vector = (0.0, 0.0, 0.0),
+) -> structs.Texture:
+    """A picture (its index in the model) on a surface: the value at texture coordinates (u, v) is
+    offset + scale * texel(to_picture (u, v, 1))."""
+    return structs.Texture(
+        picture=picture + 1,
+        channel=channel,
+        extension=extension,
+        closest=int(closest),
+        to_picture=tuple(to_picture),
+        scale=tuple(scale),
+        offset=tuple(offset),
+    )
 
 
 class MeasureOptions(structs.MeasureOptions):
@@ -106,25 +135,45 @@ class Model(Handle):
 
     # ---- Filling ----
 
-    def add_material(
+    def add_picture(
         self,
         name: str,
-        base_color: Vector,
-        roughness: float = 0.5,
-        metallic: float = 0.0,
-        specular: float = 0.5,
-        emission: Vector = (0.0, 0.0, 0.0),
+        path: str | None = None,
+        data: bytes | None = None,
+        pixels: array | None = None,
+        size: tuple[int, int] = (0, 0),
+        linear: bool = False,
     ) -> int:
-        material = structs.Material(
+        """A PNG, JPEG or EXR by path or content, or pixels [height][width][4] (array 'f', lowest
+        row first, straight alpha). linear: linear color or data, else sRGB. Its index."""
+        if pixels is not None and _count("pixels", pixels, 4) != size[0] * size[1]:
+            raise ValueError("the pixels do not fit the size of the picture")
+        picture = structs.Picture(
             name=text_in(name),
-            base_color=base_color,
-            roughness=roughness,
-            metallic=metallic,
-            specular=specular,
-            emission=emission,
+            path=text_in(path),
+            bytes=data,
+            byte_count=len(data) if data is not None else 0,
+            pixels=_address(pixels),
+            width=size[0],
+            height=size[1],
+            linear=int(linear),
         )
         index = ctypes.c_uint32()
-        check(library().lds_model_add_material(self.handle, material, ctypes.byref(index)))
+        check(library().lds_model_add_picture(self.handle, picture, ctypes.byref(index)))
+        return index.value
+
+    def texture_mean(self, given: structs.Texture) -> tuple[float, float, float]:
+        """Over its whole picture; of a single number the first counts."""
+        out = (ctypes.c_double * 3)()
+        check(library().lds_model_texture_mean(self.handle, given, out))
+        return tuple(out)
+
+    def add_material(self, name: str, **fields: Any) -> int:
+        """`fields`: those of lodestone.h's lds_material, textures as texture() makes them; the
+        rest keeps its default. Its index."""
+        made = _changed(library().lds_material_default(), {"name": text_in(name), **fields})
+        index = ctypes.c_uint32()
+        check(library().lds_model_add_material(self.handle, made, ctypes.byref(index)))
         return index.value
 
     def add_mesh(

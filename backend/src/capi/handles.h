@@ -15,6 +15,7 @@
 struct lds_model {
     lodestone::Model model;
     uint32_t generation = 0;  // of its ids; no two models of a process share one
+    std::vector<lodestone::PicturePtr> pictures;  // added, by index
     lodestone::Problems problems;
     std::optional<lodestone::segment::Store> store;  // where meshes that are not resident lie
     std::unordered_map<std::string, uint32_t> by_uid;

@@ -40,7 +40,7 @@ bool same(const float* a, const float* b, int count) {
     return std::equal(a, a + count, b);
 }
 
-/// One vertex for every distinct (position, normal, uv) that a corner uses.
+/// One vertex for every distinct (position, normal, uv, color) that a corner uses.
 Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
     if (view.triangle_count > 0) {
         require(view.positions, "mesh.positions");
@@ -61,7 +61,8 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
                  corner_count);
     }
     Mesh mesh;
-    const bool split = view.corner_normals != nullptr || view.corner_uvs != nullptr;
+    const bool split = view.corner_normals != nullptr || view.corner_uvs != nullptr ||
+                       view.corner_colors != nullptr;
     if (!split) {
         mesh.positions.resize(view.vertex_count);
         for (size_t i = 0; i < view.vertex_count; ++i)
@@ -80,7 +81,9 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
                  same(view.corner_normals + 3 * size_t{corner},
                       view.corner_normals + 3 * size_t{other}, 3)) &&
                 (view.corner_uvs == nullptr || same(view.corner_uvs + 2 * size_t{corner},
-                                                    view.corner_uvs + 2 * size_t{other}, 2)))
+                                                    view.corner_uvs + 2 * size_t{other}, 2)) &&
+                (view.corner_colors == nullptr || same(view.corner_colors + 4 * size_t{corner},
+                                                       view.corner_colors + 4 * size_t{other}, 4)))
                 return at;
         }
         const auto vertex = static_cast<uint32_t>(mesh.positions.size());
@@ -93,6 +96,10 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
         if (view.corner_uvs != nullptr) {
             const float* uv = view.corner_uvs + 2 * size_t{corner};
             mesh.uvs.emplace_back(uv[0], uv[1]);
+        }
+        if (view.corner_colors != nullptr) {
+            const float* color = view.corner_colors + 4 * size_t{corner};
+            mesh.colors.emplace_back(color[0], color[1], color[2], color[3]);
         }
         made_from.push_back(corner);
         next.push_back(first[position]);
@@ -156,29 +163,6 @@ lds_status lds_model_write(lds_model* model, const char* path) {
         require(path, "path");
         model->load_finest();
         format::write_model(path, model->model);
-    });
-}
-
-lds_status lds_model_add_material(lds_model* model, const lds_material* material,
-                                  uint32_t* out_index) {
-    return guard([&] {
-        require(model, "model");
-        require(out_index, "out_index");
-        const lds_material& given = checked(material, "material");
-        Material made;
-        made.name = name_of(given.name);
-        made.base_color = vector(given.base_color, "material.base_color");
-        made.emission = vector(given.emission, "material.emission");
-        const auto share = [&](double value, const char* what) {
-            if (!std::isfinite(value))
-                fail(Status::InvalidArgument, what, " of material '", made.name, "' is not finite");
-            return std::clamp(value, 0.0, 1.0);
-        };
-        made.roughness = share(given.roughness, "roughness");
-        made.metallic = share(given.metallic, "metallic");
-        made.specular = share(given.specular, "specular");
-        model->model.materials.push_back(std::move(made));
-        *out_index = static_cast<uint32_t>(model->model.materials.size() - 1);
     });
 }
 

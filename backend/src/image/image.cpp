@@ -74,11 +74,11 @@ Image encoded(const Image& image) {
     return out;
 }
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string png_bytes(const Image& image) {
     if (image.width < 1 || image.height < 1 || image.size() > kMostPixels ||
         image.pixels.size() != 4 * image.size())
         fail(Status::InvalidArgument, "an image of ", image.width, " x ", image.height, " with ",
-             image.pixels.size(), " values cannot be written to '", path.string(), "'");
+             image.pixels.size(), " values cannot be a PNG");
     const Image display = encoded(image);
     bool opaque = true;
     for (size_t i = 3; i < display.pixels.size(); i += 4)
@@ -90,7 +90,11 @@ void write_png(const std::filesystem::path& path, const Image& image) {
         for (int channel = 0; channel < channels; ++channel)
             rows.push_back(byte_of(display.pixels[i + static_cast<size_t>(channel)]));
     }
-    write_file(path, encode_png(rows, image.width, image.height, channels));
+    return encode_png(rows, image.width, image.height, channels);
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+    write_file(path, png_bytes(image));
 }
 
 }  // namespace lodestone::image

@@ -31,6 +31,8 @@ Image read(std::string_view bytes, const std::string& name);
 
 /// 8 bit, RGB when every alpha is 1, else RGBA; a linear image is encoded first. All or nothing.
 void write_png(const std::filesystem::path& path, const Image& image);
+/// The same, as the file's bytes. Throws Error(InvalidArgument).
+std::string png_bytes(const Image& image);
 
 /// Linear, associated -> sRGB, straight, clamped to 0...1 (not a number: 0); else the same image.
 Image encoded(const Image& image);

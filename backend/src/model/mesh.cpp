@@ -8,6 +8,8 @@
 namespace lodestone {
 namespace {
 
+constexpr glm::vec4 kWhite(1);
+
 bool finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -29,6 +31,8 @@ void compact(Mesh& mesh) {
             mesh.normals[count] = mesh.normals[i];
         if (!mesh.uvs.empty())
             mesh.uvs[count] = mesh.uvs[i];
+        if (!mesh.colors.empty())
+            mesh.colors[count] = mesh.colors[i];
         moved[i] = count++;
     }
     mesh.positions.resize(count);
@@ -36,6 +40,8 @@ void compact(Mesh& mesh) {
         mesh.normals.resize(count);
     if (!mesh.uvs.empty())
         mesh.uvs.resize(count);
+    if (!mesh.colors.empty())
+        mesh.colors.resize(count);
     for (Triangle& t : mesh.triangles)
         t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
 }
@@ -56,6 +62,8 @@ void make_flat_normals(Mesh& mesh) {
             flat.normals.push_back(normal);
             if (!mesh.uvs.empty())
                 flat.uvs.push_back(mesh.uvs[vertex]);
+            if (!mesh.colors.empty())
+                flat.colors.push_back(mesh.colors[vertex]);
         }
         flat.triangles.emplace_back(first, first + 1, first + 2);
     }
@@ -84,6 +92,7 @@ Hash hash_of(const Mesh& mesh) {
         .array(std::span<const glm::vec2>(mesh.uvs))
         .array(std::span<const Triangle>(mesh.triangles))
         .array(std::span<const uint16_t>(mesh.slots))
+        .array(std::span<const glm::vec4>(mesh.colors))
         .result();
 }
 
@@ -98,6 +107,8 @@ void check(const Mesh& mesh) {
     if (!mesh.uvs.empty() && mesh.uvs.size() != vertices)
         fail(Status::InvalidArgument, mesh.uvs.size(), " texture coordinates for ", vertices,
              " vertices");
+    if (!mesh.colors.empty() && mesh.colors.size() != vertices)
+        fail(Status::InvalidArgument, mesh.colors.size(), " colors for ", vertices, " vertices");
     if (!mesh.slots.empty() && mesh.slots.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, mesh.slots.size(), " material slots for ",
              mesh.triangles.size(), " triangles");
@@ -156,6 +167,10 @@ void repair(Mesh& mesh, const std::string& object, Problems& problems) {
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
             uv = glm::vec2(0);
     }
+    for (glm::vec4& color : mesh.colors) {
+        if (!std::isfinite(color.x + color.y + color.z + color.w))
+            color = kWhite;
+    }
 }
 
 void append(Mesh& mesh, const Mesh& part, const Affine& transform, uint16_t first_slot) {
@@ -177,11 +192,17 @@ void append(Mesh& mesh, const Mesh& part, const Affine& transform, uint16_t firs
         mesh.uvs.resize(mesh.positions.size(), glm::vec2(0));
         mesh.uvs.insert(mesh.uvs.end(), source->uvs.begin(), source->uvs.end());
     }
+    if (!source->colors.empty() || !mesh.colors.empty()) {
+        mesh.colors.resize(mesh.positions.size(), kWhite);
+        mesh.colors.insert(mesh.colors.end(), source->colors.begin(), source->colors.end());
+    }
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     for (const glm::vec3& position : source->positions)
         mesh.positions.emplace_back(transform(glm::dvec3(position)));
     if (!mesh.uvs.empty())
         mesh.uvs.resize(mesh.positions.size(), glm::vec2(0));
+    if (!mesh.colors.empty())
+        mesh.colors.resize(mesh.positions.size(), kWhite);
     const double determinant = glm::determinant(transform.linear);
     if (!source->normals.empty()) {
         // The cofactor matrix turns normals right even where the transform is singular.
@@ -211,6 +232,7 @@ Mesh subset(const Mesh& mesh, const std::vector<uint8_t>& keep) {
     out.positions = mesh.positions;
     out.normals = mesh.normals;
     out.uvs = mesh.uvs;
+    out.colors = mesh.colors;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (!keep[i])
             continue;

@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -16,11 +17,12 @@ namespace lodestone {
 
 using Triangle = glm::uvec3;
 
-/// A vertex is one (position, normal, uv); a seam or sharp edge splits it. Metres, object's frame.
+/// A vertex is one (position, normal, uv, color); a seam or sharp edge splits it. Metres, object's frame.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  // empty (flat shaded), or unit, one a vertex
     std::vector<glm::vec2> uvs;      // empty, or one a vertex
+    std::vector<glm::vec4> colors;   // empty (white), or one a vertex: linear RGBA, straight
     std::vector<Triangle> triangles;
     std::vector<uint16_t> slots;  // empty (all in slot 0), or one a triangle
 
@@ -38,13 +40,13 @@ Hash hash_of(const Mesh& mesh);
 void check(const Mesh& mesh);
 
 /// Mends the user's side: drops triangles that use a non-finite vertex, replaces non-finite or zero
-/// normals by the face's, non-finite uvs by 0, drops vertices nothing uses. Zero-area triangles stay
+/// normals by the face's, non-finite uvs by 0 and colors by white, drops vertices nothing uses. Zero-area triangles stay
 /// (they draw nothing). Adds one problem per cause, naming `object`.
 void repair(Mesh& mesh, const std::string& object, Problems& problems);
 
 /// Appends `part`, transformed, with its slots raised by `first_slot`. Mirrored parts are turned so
 /// that their outside stays outside. A side that lacks normals while the other has them gets flat
-/// ones (vertices split); missing uvs become 0.
+/// ones (vertices split); missing uvs become 0, missing colors white.
 void append(Mesh& mesh, const Mesh& part, const Affine& transform, uint16_t first_slot = 0);
 
 /// Only the triangles with keep[i] != 0, and the vertices they use.

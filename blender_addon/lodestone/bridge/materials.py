@@ -5,7 +5,7 @@ What cannot be said exactly gets the nearest thing that can, and a problem namin
 nothing turns grey silently.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from . import compat
@@ -58,12 +58,7 @@ class Materials:
         if key not in self._indices:
             surface = DEFAULT if material is None else self.translate(material)
             self._indices[key] = self._model.add_material(
-                "" if material is None else material.name,
-                surface.base_color,
-                surface.roughness,
-                surface.metallic,
-                surface.specular,
-                surface.emission,
+                "" if material is None else material.name, **asdict(surface)
             )
         return self._indices[key]
 

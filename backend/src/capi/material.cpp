@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The materials' part of the C interface: pictures, textures, materials.
+#include "base/files.h"
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "image/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace lodestone;
+using namespace lodestone::capi;
+
+namespace {
+
+constexpr uint64_t kMostPictureBytes = uint64_t{1} << 30u;
+
+std::string bytes_of(const lds_picture& given, const std::string& name) {
+    const int sources = (given.path != nullptr ? 1 : 0) + (given.bytes != nullptr ? 1 : 0) +
+                        (given.pixels != nullptr ? 1 : 0);
+    if (sources != 1)
+        fail(Status::InvalidArgument, "picture '", name,
+             "': exactly one of path, bytes and pixels is to be given");
+    if (given.path != nullptr)
+        return read_file(given.path, kMostPictureBytes);
+    if (given.bytes != nullptr)
+        return {static_cast<const char*>(given.bytes), given.byte_count};
+    if (given.width < 1 || given.height < 1 ||
+        static_cast<uint64_t>(given.width) * static_cast<uint64_t>(given.height) >
+            image::kMostPixels)
+        fail(Status::InvalidArgument, "picture '", name, "': ", given.width, " x ", given.height,
+             " pixels");
+    image::Image image;
+    image.width = given.width;
+    image.height = given.height;
+    const size_t row = static_cast<size_t>(given.width) * 4;
+    image.pixels.resize(row * static_cast<size_t>(given.height));
+    for (int y = 0; y < given.height; ++y)
+        std::copy_n(given.pixels + row * static_cast<size_t>(given.height - 1 - y), row,
+                    image.pixels.begin() + static_cast<std::ptrdiff_t>(row) * y);
+    return image::png_bytes(image);
+}
+
+Texture texture_of(const lds_model& model, const lds_texture& given, const std::string& owner) {
+    Texture texture;
+    if (given.picture == 0)
+        return texture;
+    if (given.picture > model.pictures.size())
+        fail(Status::InvalidArgument, "a texture of ", owner, " uses picture ", given.picture - 1,
+             " of ", model.pictures.size());
+    if (given.channel < LDS_CHANNEL_COLOR || given.channel > LDS_CHANNEL_LUMA)
+        fail(Status::InvalidArgument, "a texture of ", owner, " has channel ", given.channel);
+    if (given.extension < LDS_EXTENSION_REPEAT || given.extension > LDS_EXTENSION_MIRROR)
+        fail(Status::InvalidArgument, "a texture of ", owner, " has extension ", given.extension);
+    texture.picture = model.pictures[given.picture - 1];
+    texture.channel = static_cast<Channel>(given.channel);
+    texture.extension = static_cast<Extension>(given.extension);
+    texture.interpolation = given.closest != 0 ? Interpolation::Closest : Interpolation::Linear;
+    for (size_t i = 0; i < 6; ++i) {
+        if (!std::isfinite(given.to_picture[i]))
+            fail(Status::InvalidArgument, "a texture of ", owner, " has a mapping not finite");
+        texture.to_picture[i] = given.to_picture[i];
+    }
+    texture.scale = vector(given.scale, "texture.scale");
+    texture.offset = vector(given.offset, "texture.offset");
+    return texture;
+}
+
+class Reader {
+public:
+    Reader(const lds_model& model, const lds_material& given)
+        : model_(model), given_(given), owner_("material '" + name_of(given.name) + "'") {}
+
+    Material material() const {
+        Material made;
+        made.name = name_of(given_.name);
+        made.base_color = vector(given_.base_color, "material.base_color");
+        made.emission = vector(given_.emission, "material.emission");
+        made.roughness = share(given_.roughness, "roughness");
+        made.metallic = share(given_.metallic, "metallic");
+        made.specular = share(given_.specular, "specular");
+        made.base_color_texture = texture(given_.base_color_texture);
+        made.roughness_texture = texture(given_.roughness_texture);
+        made.metallic_texture = texture(given_.metallic_texture);
+        made.emission_texture = texture(given_.emission_texture);
+        made.vertex_colors = given_.vertex_colors != 0;
+        made.alpha = share(given_.alpha, "alpha");
+        made.alpha_texture = texture(given_.alpha_texture);
+        if (given_.alpha_mode < LDS_ALPHA_MODE_OPAQUE || given_.alpha_mode > LDS_ALPHA_MODE_CLIP)
+            fail(Status::InvalidArgument, owner_, " has alpha mode ", given_.alpha_mode);
+        made.alpha_mode = static_cast<AlphaMode>(given_.alpha_mode);
+        made.alpha_cutoff = share(given_.alpha_cutoff, "alpha_cutoff");
+        made.transmission = share(given_.transmission, "transmission");
+        made.ior = std::clamp(finite(given_.ior, "ior"), 0.1, 10.0);
+        made.clearcoat = share(given_.clearcoat, "clearcoat");
+        made.clearcoat_roughness = share(given_.clearcoat_roughness, "clearcoat_roughness");
+        made.normal_texture = texture(given_.normal_texture);
+        made.normal_strength =
+            std::clamp(finite(given_.normal_strength, "normal_strength"), 0.0, 10.0);
+        made.bump_texture = texture(given_.bump_texture);
+        made.bump_distance = finite(given_.bump_distance, "bump_distance");
+        if (given_.other != 0) {
+            if (given_.other > model_.model.materials.size())
+                fail(Status::InvalidArgument, owner_, " is mixed with material ", given_.other - 1,
+                     " of ", model_.model.materials.size());
+            made.other = std::make_shared<Material>(model_.model.materials[given_.other - 1]);
+            made.mix = share(given_.mix, "mix");
+            made.mix_texture = texture(given_.mix_texture);
+        }
+        return made;
+    }
+
+private:
+    double finite(double value, const char* what) const {
+        if (!std::isfinite(value))
+            fail(Status::InvalidArgument, what, " of ", owner_, " is not finite");
+        return value;
+    }
+    double share(double value, const char* what) const {
+        return std::clamp(finite(value, what), 0.0, 1.0);
+    }
+    Texture texture(const lds_texture& given) const { return texture_of(model_, given, owner_); }
+
+    const lds_model& model_;
+    const lds_material& given_;
+    std::string owner_;
+};
+
+}  // namespace
+
+lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
+                                 uint32_t* out_index) {
+    return guard([&] {
+        require(model, "model");
+        require(out_index, "out_index");
+        const lds_picture& given = checked(picture, "picture");
+        const std::string name = name_of(given.name);
+        const PicturePtr made = image::make_picture(
+            bytes_of(given, name), given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb, name);
+        auto& pictures = model->pictures;
+        const auto same = std::find_if(pictures.begin(), pictures.end(),
+                                       [&](const PicturePtr& p) { return p->hash == made->hash; });
+        *out_index = static_cast<uint32_t>(same - pictures.begin());
+        if (same == pictures.end())
+            pictures.push_back(made);
+    });
+}
+
+lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
+                                  double out_color[3]) {
+    return guard([&] {
+        require(model, "model");
+        require(texture, "texture");
+        require(out_color, "out_color");
+        const Texture made = texture_of(*model, *texture, "the caller");
+        if (!made)
+            fail(Status::InvalidArgument, "the texture has no picture");
+        copy(image::color_of(made, made.picture->mean), out_color);
+    });
+}
+
+lds_material lds_material_default(void) {
+    const Material standard;
+    lds_material out{};
+    out.struct_size = sizeof out;
+    for (int i = 0; i < 3; ++i) {
+        out.base_color[i] = standard.base_color[i];
+        out.emission[i] = standard.emission[i];
+    }
+    out.roughness = standard.roughness;
+    out.metallic = standard.metallic;
+    out.specular = standard.specular;
+    out.alpha = standard.alpha;
+    out.alpha_cutoff = standard.alpha_cutoff;
+    out.ior = standard.ior;
+    out.clearcoat_roughness = standard.clearcoat_roughness;
+    out.normal_strength = standard.normal_strength;
+    return out;
+}
+
+lds_status lds_model_add_material(lds_model* model, const lds_material* material,
+                                  uint32_t* out_index) {
+    return guard([&] {
+        require(model, "model");
+        require(out_index, "out_index");
+        model->model.materials.push_back(Reader(*model, checked(material, "material")).material());
+        *out_index = static_cast<uint32_t>(model->model.materials.size() - 1);
+    });
+}

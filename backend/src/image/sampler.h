@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sampler: a texture's values at texture coordinates.
+#pragma once
+
+#include "image/image.h"
+#include "model/texture.h"
+
+#include <glm/vec4.hpp>
+
+namespace lodestone::image {
+
+/// A picture, decoded: linear color when its space is Srgb, else its numbers; straight alpha.
+/// `name` of errors is the picture's. Throws Error(BadFile).
+Image decoded(const Picture& picture);
+
+/// A picture of a file's bytes, proved to decode. What decoding told is remembered by hash for the
+/// life of the process, so a second time costs the hash only. Throws Error(BadFile) calling it
+/// `name` when it is no PNG, JPEG or OpenEXR. Any thread.
+PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name);
+
+/// A texture's value for a texel: color, and where one number is wanted.
+glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel);
+double number_of(const Texture& texture, const glm::dvec4& texel);
+
+/// Holds the texels of one texture, reduced to at most kMostSide a side by averaging: for measuring,
+/// not for pictures. Threads may share it.
+class Sampler {
+public:
+    static constexpr int kMostSide = 1024;
+
+    /// Without a picture every value is `otherwise`.
+    Sampler(const Texture& texture, const glm::dvec3& otherwise);
+
+    glm::dvec3 color(glm::dvec2 uv) const;
+    double number(glm::dvec2 uv) const;
+
+private:
+    glm::dvec4 texel(glm::dvec2 uv) const;
+
+    Texture texture_;
+    glm::dvec3 otherwise_;
+    int width_ = 0;
+    int height_ = 0;
+    std::vector<float> texels_;  // RGBA, top row first
+};
+
+}  // namespace lodestone::image

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/picture.h"
+
+namespace lodestone {
+
+const char* suffix_of(PictureFormat format) {
+    switch (format) {
+        case PictureFormat::Jpeg:
+            return "jpg";
+        case PictureFormat::Exr:
+            return "exr";
+        case PictureFormat::Png:
+            break;
+    }
+    return "png";
+}
+
+}  // namespace lodestone

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picture: the bytes of an image file, as materials and worlds use it. Decoding is image/'s.
+#pragma once
+
+#include "base/hash.h"
+
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace lodestone {
+
+enum class PictureFormat : uint8_t { Png = 0, Jpeg = 1, Exr = 2 };
+
+/// What the stored numbers mean. An EXR's are linear whatever is said here.
+enum class ColorSpace : uint8_t {
+    Srgb = 0,    // display-encoded color
+    Linear = 1,  // linear color, or data such as roughness and normals
+};
+
+/// Never changed once made; shared by all that show it.
+struct Picture {
+    std::string name;  // the user's; any bytes
+    PictureFormat format = PictureFormat::Png;
+    ColorSpace space = ColorSpace::Srgb;
+    int width = 0;
+    int height = 0;
+    std::string bytes;     // of the file; empty while it is not resident
+    Hash hash = 0;         // of bytes and space
+    glm::dvec4 mean{1.0};  // texel: linear color weighted by alpha, and alpha
+};
+
+using PicturePtr = std::shared_ptr<const Picture>;
+
+/// "png", "jpg" or "exr": how the names of its files end.
+const char* suffix_of(PictureFormat format);
+
+}  // namespace lodestone

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards texture look-ups: which texel, which channel, in which light, outside the picture too.
+#include "base/error.h"
+#include "image/sampler.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace lodestone {
+namespace {
+
+/// 2 x 2: red, green / blue, half covered white (sRGB numbers), top row first.
+PicturePtr four_texels(ColorSpace space = ColorSpace::Srgb) {
+    image::Image image;
+    image.width = image.height = 2;
+    image.pixels = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0.4f};
+    return image::make_picture(image::png_bytes(image), space, "four");
+}
+
+Texture closest(PicturePtr picture) {
+    Texture texture;
+    texture.picture = std::move(picture);
+    texture.interpolation = Interpolation::Closest;
+    return texture;
+}
+
+void expect_color(const glm::dvec3& found, const glm::dvec3& wanted) {
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(found[i], wanted[i], 1e-6) << i;
+}
+
+TEST(Sampler, WithoutAPictureGivesTheOtherValue) {
+    const image::Sampler sampler(Texture{}, {0.1, 0.2, 0.3});
+    expect_color(sampler.color({0.5, 0.5}), {0.1, 0.2, 0.3});
+    EXPECT_EQ(sampler.number({7, -3}), 0.1);
+}
+
+TEST(Sampler, VZeroIsTheLowestRow) {
+    const image::Sampler sampler(closest(four_texels()), {});
+    expect_color(sampler.color({0.25, 0.75}), {1, 0, 0});
+    expect_color(sampler.color({0.75, 0.75}), {0, 1, 0});
+    expect_color(sampler.color({0.25, 0.25}), {0, 0, 1});
+}
+
+TEST(Sampler, BetweenTexelsIsTheirMeanInLinearLight) {
+    Texture texture;
+    texture.picture = four_texels();
+    texture.extension = Extension::Extend;
+    const image::Sampler sampler(texture, {});
+    expect_color(sampler.color({0.5, 0.75}), {0.5, 0.5, 0});
+    expect_color(sampler.color({0.5, 1.0}), {0.5, 0.5, 0});
+}
+
+TEST(Sampler, OutsideGoesByTheExtension) {
+    Texture texture = closest(four_texels());
+    const glm::dvec2 right(1.25, 0.75);
+    expect_color(image::Sampler(texture, {}).color(right), {1, 0, 0});
+    texture.extension = Extension::Extend;
+    expect_color(image::Sampler(texture, {}).color(right), {0, 1, 0});
+    texture.extension = Extension::Mirror;
+    expect_color(image::Sampler(texture, {}).color(right), {0, 1, 0});
+    expect_color(image::Sampler(texture, {}).color({-0.25, 0.75}), {1, 0, 0});
+    texture.extension = Extension::Clip;
+    expect_color(image::Sampler(texture, {}).color(right), {0, 0, 0});
+}
+
+TEST(Sampler, MappingScaleAndOffsetAreApplied) {
+    Texture texture = closest(four_texels());
+    texture.to_picture = {0, 1, 0, 1, 0, 0};  // u and v exchanged
+    texture.scale = {0.5, 0.5, 0.5};
+    texture.offset = {0.1, 0.2, 0.3};
+    expect_color(image::Sampler(texture, {}).color({0.75, 0.25}), {0.6, 0.2, 0.3});
+}
+
+TEST(Sampler, NumbersTakeTheirChannel) {
+    Texture texture = closest(four_texels(ColorSpace::Linear));
+    texture.channel = Channel::Alpha;
+    EXPECT_NEAR(image::Sampler(texture, {}).number({0.75, 0.25}), 0.4, 1e-6);
+    EXPECT_EQ(image::Sampler(texture, {}).number({0.25, 0.25}), 1);
+    texture.channel = Channel::Green;
+    EXPECT_EQ(image::Sampler(texture, {}).number({0.75, 0.75}), 1);
+    texture.channel = Channel::Color;
+    EXPECT_NEAR(image::Sampler(texture, {}).number({0.75, 0.75}), 0.7152, 1e-6);
+}
+
+TEST(Sampler, TheMeanTexelIsWeightedByAlpha) {
+    const PicturePtr picture = four_texels();
+    EXPECT_NEAR(picture->mean.x, 1.4 / 3.4, 1e-6);
+    EXPECT_NEAR(picture->mean.w, 0.85, 1e-6);
+}
+
+TEST(Sampler, LargePicturesKeepTheirMean) {
+    image::Image image;
+    image.width = 3000;
+    image.height = 2;
+    for (int i = 0; i < 6000; ++i)
+        image.pixels.insert(image.pixels.end(), {i % 3000 < 1500 ? 1.0f : 0.0f, 0, 0, 1});
+    const PicturePtr picture =
+        image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "long");
+    EXPECT_NEAR(picture->mean.x, 0.5, 1e-6);
+    const image::Sampler sampler(closest(picture), {});
+    expect_color(sampler.color({0.2, 0.5}), {1, 0, 0});
+    expect_color(sampler.color({0.8, 0.5}), {0, 0, 0});
+}
+
+TEST(Sampler, CoordinatesThatAreNoNumbersAreHarmless) {
+    const image::Sampler sampler(closest(four_texels()), {});
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double far : {nan, 1e300, -1e300, 1e9}) {
+        EXPECT_GE(sampler.number({far, 0.5}), 0);
+        EXPECT_LE(sampler.number({0.5, far}), 1);
+    }
+}
+
+TEST(Picture, AnUnknownKindIsRefusedByName) {
+    try {
+        image::make_picture("GIF89a, or so", ColorSpace::Srgb, "Bark");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("Bark"), std::string::npos);
+    }
+}
+
+TEST(Picture, EqualBytesHaveEqualHashesAndSpacesDiffer) {
+    EXPECT_EQ(four_texels()->hash, four_texels()->hash);
+    EXPECT_NE(four_texels()->hash, four_texels(ColorSpace::Linear)->hash);
+}
+
+}  // namespace
+}  // namespace lodestone
