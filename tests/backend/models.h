@@ -3,6 +3,7 @@
 #pragma once
 
 #include "backend/shapes.h"
+#include "image/sampler.h"
 #include "model/model.h"
 
 namespace lodestone::models {
@@ -29,6 +30,14 @@ inline Material colored(const std::string& name, const glm::dvec3& base_color,
     material.base_color = base_color;
     material.roughness = roughness;
     return material;
+}
+
+/// 2 x 2 texels: black and white, one of them half covered.
+inline PicturePtr checker() {
+    image::Image image;
+    image.width = image.height = 2;
+    image.pixels = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0.5f, 0, 0, 0, 1};
+    return image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "checker");
 }
 
 inline Affine moved(double x, double y, double z) {

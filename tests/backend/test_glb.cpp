@@ -80,6 +80,8 @@ TEST(Glb, MeshesComeBackBitForBit) {
     upper.uvs = {{0, 0}, {1, 0.5f}, {1, 1}, {0, 0.75f}};  // 1 - v is exact
     EXPECT_EQ(write_glb_mesh(upper, {}, "").find("_LODESTONE_V"), std::string::npos);
     expect_round_trip(upper);
+    upper.colors = {{1, 0.1f, 0, 1}, {0, 1, 0, 0.5f}, {2, 3, 4, 1}, {0, 0, 0, 0}};
+    expect_round_trip(upper);
 }
 
 TEST(Glb, StrangersSeeYUpAndVDown) {

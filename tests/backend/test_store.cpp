@@ -57,6 +57,17 @@ Model rich_model() {
     sun.power = 3;
     model.lights.push_back(sun);
     model.world.color = {0.1, 0.2, 0.3};
+    Material brick = models::colored("brick", {0.5, 0.25, 0.125});
+    brick.base_color_texture.picture = models::checker();
+    brick.base_color_texture.extension = Extension::Mirror;
+    brick.base_color_texture.to_picture = {2, 0, 1.0 / 3, 0, 3, -0.25};
+    brick.alpha_texture.picture = models::checker();
+    brick.alpha_texture.channel = Channel::Alpha;
+    brick.alpha_mode = AlphaMode::Clip;
+    brick.ior = 1.33;
+    brick.other = std::make_shared<Material>(model.materials[0]);
+    brick.mix = 1.0 / 3;
+    model.materials.push_back(brick);
     summarize_assemblies(model, bottom_up(model));
     return model;
 }
@@ -152,6 +163,29 @@ TEST(Store, ModelComesBackIdentical) {
             store.load(representation);
     }
     expect_same(model, back);
+    ASSERT_EQ(model.materials.size(), back.materials.size());
+    for (size_t i = 0; i < model.materials.size(); ++i)
+        EXPECT_EQ(hash_of(model.materials[i]), hash_of(back.materials[i])) << i;
+    EXPECT_TRUE(back.materials.back().base_color_texture.picture->bytes.empty());
+    store.load_pictures(back);
+    const Texture& texture = back.materials.back().base_color_texture;
+    EXPECT_EQ(texture.picture->bytes, models::checker()->bytes);
+    EXPECT_EQ(texture.picture->mean, models::checker()->mean);
+    EXPECT_EQ(texture.picture, back.materials.back().alpha_texture.picture);
+}
+
+TEST(Store, AChangedPictureFileIsNamed) {
+    const segment::Store store(scratch("picture"));
+    store.write(rich_model(), {});
+    const std::string name = segment::file_of(*models::checker());
+    write_file(store.folder() / name, "not it");
+    Model back = store.read();
+    try {
+        store.load_pictures(back);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
 }
 
 TEST(Store, SecondWriteOfTheSameModelWritesOnlyTheTileset) {
@@ -237,6 +271,18 @@ TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
     };
     EXPECT_FALSE(refused([](nlohmann::json&) {}));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["format"] = 99; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["hash"] = "../../passwd"; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["format"] = "sh"; }));
+    EXPECT_TRUE(refused(
+        [](nlohmann::json& j) { j["materials"].back()["base_color_texture"]["picture"] = 1; }));
+    EXPECT_TRUE(refused(
+        [](nlohmann::json& j) { j["materials"].back()["base_color_texture"]["channel"] = 6; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) {
+        nlohmann::json one = j["materials"].back();
+        for (int i = 0; i < 100; ++i)
+            one["other"] = nlohmann::json(one);
+        j["materials"].back() = one;
+    }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = 99; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = -1; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j.erase("objects"); }));

@@ -39,6 +39,12 @@ void lds_model::load_finest() {
         if (!model.objects[index].representations.empty())
             load(model.objects[index].representations[0]);
     }
+    load_pictures();
+}
+
+void lds_model::load_pictures() {
+    if (store)
+        store->load_pictures(model);
 }
 
 namespace lodestone::capi {

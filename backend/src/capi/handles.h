@@ -29,8 +29,10 @@ struct lds_model {
     void summarize();
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
-    /// Makes every finest mesh resident (a model read from a store).
+    /// Makes every finest mesh and every picture resident (a model read from a store).
     void load_finest();
+    /// Makes every picture resident.
+    void load_pictures();
 };
 
 struct lds_cut {

@@ -64,6 +64,7 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
         const lds_measure_options& given = checked(options, "options");
         const ThreadLimit limit(given.threads);
         model->summarize();
+        model->load_pictures();
         const build::MeshSource source = [&](const Representation& representation) {
             if (const auto* held =
                     std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))

@@ -78,6 +78,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         const Job progress = job_of(job);
         progress.stage(Stage::Export);
         load_chosen(*model, cut->cut, progress);
+        if (given.false_color == 0)
+            model->load_pictures();
         povray::ExportOptions wanted;
         wanted.folder = folder;
         wanted.antialiasing = antialiasing_of(given);

@@ -48,10 +48,11 @@ Mesh read_glb_mesh(std::string_view bytes) {
         fail(Status::BadFile, "the GLB does not hold one mesh as Lodestone writes it");
     check(*mesh);
     for (size_t i = 0; i < mesh->positions.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            if (!std::isfinite(mesh->positions[i][c]) ||
-                (!mesh->normals.empty() && !std::isfinite(mesh->normals[i][c])) ||
-                (!mesh->uvs.empty() && !std::isfinite(mesh->uvs[i][c % 2])))
+        for (int c = 0; c < 4; ++c) {
+            if (!std::isfinite(mesh->positions[i][c % 3]) ||
+                (!mesh->normals.empty() && !std::isfinite(mesh->normals[i][c % 3])) ||
+                (!mesh->uvs.empty() && !std::isfinite(mesh->uvs[i][c % 2])) ||
+                (!mesh->colors.empty() && !std::isfinite(mesh->colors[i][c])))
                 fail(Status::BadFile, "the GLB's vertex ", i, " has a value that is not a number");
         }
     }

@@ -118,7 +118,8 @@ int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target)
 }
 
 int add_floats(tinygltf::Model& model, std::span<const float> values, int components, bool bounds) {
-    constexpr int kTypes[4] = {0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3};
+    constexpr int kTypes[5] = {0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
+                               TINYGLTF_TYPE_VEC4};
     tinygltf::Accessor accessor;
     accessor.bufferView =
         add_view(model, values.data(), values.size_bytes(), TINYGLTF_TARGET_ARRAY_BUFFER);

@@ -37,6 +37,10 @@ void check_finite(const Mesh& mesh, const std::string& name) {
             finite = finite && std::isfinite(mesh.positions[i][c]) &&
                      (mesh.normals.empty() || std::isfinite(mesh.normals[i][c])) &&
                      (mesh.uvs.empty() || std::isfinite(mesh.uvs[i][c % 2]));
+        if (!mesh.colors.empty()) {
+            for (int c = 0; c < 4; ++c)
+                finite = finite && std::isfinite(mesh.colors[i][c]);
+        }
         if (!finite)
             fail(Status::InvalidArgument, "mesh '", name, "': vertex ", i,
                  " has a value that is not a number");
@@ -67,6 +71,8 @@ Attributes add_attributes(tinygltf::Model& model, const Mesh& mesh) {
         if (!lossless)
             attributes["_LODESTONE_V"] = add_floats(model, true_v, 1, false);
     }
+    if (!mesh.colors.empty())
+        attributes["COLOR_0"] = add_floats(model, floats<4>(mesh.colors), 4, false);
     return attributes;
 }
 
@@ -128,7 +134,7 @@ std::vector<glm::vec3> read_vectors(const Elements& from) {
     return out;
 }
 
-/// Positions, normals, uvs of one set of attributes.
+/// Positions, normals, uvs, colors of one set of attributes.
 Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes) {
     const auto accessor = [&](const char* name) {
         const auto found = attributes.find(name);
@@ -154,6 +160,14 @@ Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes)
         mesh.uvs.resize(count);
         for (size_t i = 0; i < count; ++i)
             mesh.uvs[i] = {uvs.number(i, 0), 1 - uvs.number(i, 1)};
+    }
+    if (accessor("COLOR_0") >= 0) {
+        const Elements colors(model, accessor("COLOR_0"), 4);
+        check_count(colors.count(), "colors");
+        mesh.colors.resize(count);
+        for (size_t i = 0; i < count; ++i)
+            mesh.colors[i] = {colors.number(i, 0), colors.number(i, 1), colors.number(i, 2),
+                              colors.number(i, 3)};
     }
     if (accessor("_LODESTONE_V") >= 0 && !mesh.uvs.empty()) {
         const Elements true_v(model, accessor("_LODESTONE_V"), 1);

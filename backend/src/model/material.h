@@ -58,9 +58,10 @@ Hash hash_of(const Material& material);
 /// Whether anything of it (or of what it is mixed with) is looked up by texture coordinates.
 bool textured(const Material& material);
 
-/// Calls visit(Texture&) for every texture it has, those of the other included.
+/// Calls visit(texture) for every texture it has, not those of the other. Material_ is Material or
+/// const Material.
 template <typename Material_, typename Visit>
-void for_each_texture(Material_& material, const Visit& visit) {
+void for_own_textures(Material_& material, const Visit& visit) {
     for (auto* texture :
          {&material.base_color_texture, &material.roughness_texture, &material.metallic_texture,
           &material.emission_texture, &material.alpha_texture, &material.normal_texture,
@@ -68,6 +69,12 @@ void for_each_texture(Material_& material, const Visit& visit) {
         if (*texture)
             visit(*texture);
     }
+}
+
+/// The same, those of the other included.
+template <typename Visit>
+void for_each_texture(const Material& material, const Visit& visit) {
+    for_own_textures(material, visit);
     if (material.other)
         for_each_texture(*material.other, visit);
 }

@@ -5,137 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lodestone::segment {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr int kFormat = 1;
-
-// ---- Out -----------------------------------------------------------------------------------
-
-Json out(const glm::dvec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-Json out(const glm::dmat3& m) {
-    Json rows = Json::array();
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            rows.push_back(m[column][row]);
-    }
-    return rows;
-}
-
-Json out(const Affine& transform) {
-    double rows[12];
-    transform.to_rows(rows);
-    return Json(std::vector<double>(rows, rows + 12));
-}
-
-Json out(const Material& m) {
-    return {{"name", m.name},           {"base_color", out(m.base_color)},
-            {"roughness", m.roughness}, {"metallic", m.metallic},
-            {"specular", m.specular},   {"emission", out(m.emission)}};
-}
-
-Json out(const Attributes& a) {
-    return {{"visible_area", a.visible_area},
-            {"surface_area", a.surface_area},
-            {"centroid", out(a.centroid)},
-            {"moments", out(a.moments)},
-            {"axes", out(a.axes)},
-            {"normal_moment", a.normal_moment},
-            {"color", out(a.color)},
-            {"roughness", a.roughness},
-            {"metallic", a.metallic},
-            {"specular", a.specular},
-            {"emission", out(a.emission)},
-            {"relative_error", a.relative_error},
-            {"rays", a.rays}};
-}
-
-Json out(const Representation& r) {
-    const Summary& s = r.summary;
-    Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
-                 {"max_error", s.max_error},      {"hash", hex16(s.hash)},
-                 {"center", out(s.bound.center)}, {"radius", s.bound.radius},
-                 {"triangles", s.cost.triangles}, {"bytes", s.cost.bytes},
-                 {"materials", r.materials}};
-    if (!s.bound.empty()) {
-        json["low"] = out(s.bound.box.low);
-        json["high"] = out(s.bound.box.high);
-    }
-    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
-        const Primitive& p = r.primitive();
-        json["primitive"] = {
-            {"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
-    } else if (s.kind == Kind::Assembly) {
-        Json placements = Json::array();
-        for (const Placement& placement : r.assembly().placements)
-            placements.push_back({{"object", placement.object},
-                                  {"transform", out(placement.transform)},
-                                  {"name", placement.name}});
-        json["placements"] = std::move(placements);
-    }
-    return json;
-}
-
-Json out(const Light& l) {
-    return {{"name", l.name},
-            {"kind", l.kind == LightKind::Sun ? "sun" : "point"},
-            {"color", out(l.color)},
-            {"power", l.power},
-            {"position", out(l.position)},
-            {"direction", out(l.direction)},
-            {"shadow", l.shadow}};
-}
-
-Json out(const Camera& c) {
-    return {{"name", c.name},
-            {"orthographic", c.orthographic},
-            {"position", out(c.position)},
-            {"direction", out(c.direction)},
-            {"right", out(c.right)},
-            {"up", out(c.up)},
-            {"near_clip", c.near_clip}};
-}
-
-/// Our own description of a model. Object indices are positions in `order`.
-Json describe(const Model& model) {
-    Json json = {{"format", kFormat},
-                 {"version", LODESTONE_VERSION},
-                 {"root", model.root == kNoObject ? Json() : Json(model.root)}};
-    Json& materials = json["materials"] = Json::array();
-    for (const Material& material : model.materials)
-        materials.push_back(out(material));
-    Json& objects = json["objects"] = Json::array();
-    for (const Object& object : model.objects) {
-        Json one = {{"uid", object.uid},
-                    {"name", object.name},
-                    {"role", object.role == Role::Environment ? "environment" : "ordinary"},
-                    {"source_hash", hex16(object.source_hash)},
-                    {"build_hash", hex16(object.build_hash)}};
-        if (object.attributes)
-            one["attributes"] = out(*object.attributes);
-        Json& representations = one["representations"] = Json::array();
-        for (const Representation& representation : object.representations)
-            representations.push_back(out(representation));
-        objects.push_back(std::move(one));
-    }
-    json["lights"] = Json::array();
-    for (const Light& light : model.lights)
-        json["lights"].push_back(out(light));
-    json["cameras"] = Json::array();
-    for (const Camera& camera : model.cameras)
-        json["cameras"].push_back(out(camera));
-    json["world"] = {{"color", out(model.world.color)}, {"transparent", model.world.transparent}};
-    return json;
-}
-
-// ---- In ------------------------------------------------------------------------------------
 
 double number(const Json& json, const char* key) {
     const double value = json.at(key).get<double>();
@@ -172,7 +48,67 @@ Hash hash(const Json& json, const char* key) {
     return std::stoull(word, nullptr, 16);
 }
 
-Material material(const Json& json) {
+double number_or(const Json& json, const char* key, double usual) {
+    return json.contains(key) ? number(json, key) : usual;
+}
+
+PicturePtr picture(const Json& json) {
+    auto p = std::make_shared<Picture>();
+    p->name = json.at("name").get<std::string>();
+    p->hash = hash(json, "hash");
+    const auto format = json.at("format").get<std::string>();
+    for (const PictureFormat known :
+         {PictureFormat::Png, PictureFormat::Jpeg, PictureFormat::Exr}) {
+        if (format == suffix_of(known))
+            p->format = known;
+    }
+    if (format != suffix_of(p->format))
+        fail(Status::BadFile, "a picture has the unknown format '", format, "'");
+    p->space = json.at("linear").get<bool>() ? ColorSpace::Linear : ColorSpace::Srgb;
+    p->width = json.at("width").get<int>();
+    p->height = json.at("height").get<int>();
+    if (p->width < 1 || p->height < 1)
+        fail(Status::BadFile, "a picture has no pixels");
+    const std::vector<double> mean = numbers(json, "mean", 4);
+    p->mean = {mean[0], mean[1], mean[2], mean[3]};
+    return p;
+}
+
+template <typename Enum>
+Enum choice(const Json& json, const char* key, Enum last) {
+    const int value = json.at(key).get<int>();
+    if (value < 0 || value > static_cast<int>(last))
+        fail(Status::BadFile, "'", key, "' is ", value);
+    return static_cast<Enum>(value);
+}
+
+using Pictures = std::vector<PicturePtr>;
+
+Texture texture(const Json& material, const char* key, const Pictures& pictures) {
+    Texture t;
+    if (!material.contains(key))
+        return t;
+    const Json& json = material.at(key);
+    const auto index = json.at("picture").get<size_t>();
+    if (index >= pictures.size())
+        fail(Status::BadFile, "a texture names picture ", index, " of ", pictures.size());
+    t.picture = pictures[index];
+    t.channel = choice(json, "channel", Channel::Luma);
+    t.extension = choice(json, "extension", Extension::Mirror);
+    t.interpolation =
+        json.at("closest").get<bool>() ? Interpolation::Closest : Interpolation::Linear;
+    const std::vector<double> mapping = numbers(json, "to_picture", 6);
+    std::copy(mapping.begin(), mapping.end(), t.to_picture.begin());
+    t.scale = vector(json, "scale");
+    t.offset = vector(json, "offset");
+    return t;
+}
+
+constexpr int kMostMixtures = 64;  // deeper ones are no file of ours
+
+Material material(const Json& json, const Pictures& pictures, int depth = 0) {
+    if (depth > kMostMixtures)
+        fail(Status::BadFile, "a material is mixed more than ", kMostMixtures, " times");
     Material m;
     m.name = json.at("name").get<std::string>();
     m.base_color = vector(json, "base_color");
@@ -180,6 +116,30 @@ Material material(const Json& json) {
     m.metallic = number(json, "metallic");
     m.specular = number(json, "specular");
     m.emission = vector(json, "emission");
+    m.base_color_texture = texture(json, "base_color_texture", pictures);
+    m.roughness_texture = texture(json, "roughness_texture", pictures);
+    m.metallic_texture = texture(json, "metallic_texture", pictures);
+    m.emission_texture = texture(json, "emission_texture", pictures);
+    m.vertex_colors = json.value("vertex_colors", false);
+    m.alpha = number_or(json, "alpha", m.alpha);
+    m.alpha_texture = texture(json, "alpha_texture", pictures);
+    if (json.contains("alpha_mode")) {
+        m.alpha_mode = choice(json, "alpha_mode", AlphaMode::Clip);
+        m.alpha_cutoff = number(json, "alpha_cutoff");
+    }
+    m.transmission = number_or(json, "transmission", m.transmission);
+    m.ior = number_or(json, "ior", m.ior);
+    m.clearcoat = number_or(json, "clearcoat", m.clearcoat);
+    m.clearcoat_roughness = number_or(json, "clearcoat_roughness", m.clearcoat_roughness);
+    m.normal_texture = texture(json, "normal_texture", pictures);
+    m.normal_strength = number_or(json, "normal_strength", m.normal_strength);
+    m.bump_texture = texture(json, "bump_texture", pictures);
+    m.bump_distance = number_or(json, "bump_distance", m.bump_distance);
+    if (json.contains("other")) {
+        m.other = std::make_shared<Material>(material(json.at("other"), pictures, depth + 1));
+        m.mix = number(json, "mix");
+        m.mix_texture = texture(json, "mix_texture", pictures);
+    }
     return m;
 }
 
@@ -275,12 +235,15 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
 }
 
 Model model_of(const Json& json) {
-    if (json.at("format").get<int>() != kFormat)
+    if (json.at("format").get<int>() != kStoreFormat)
         fail(Status::BadFile, "the store has format ", json.at("format").get<int>(),
-             ", this Lodestone reads ", kFormat, ": update the levels");
+             ", this Lodestone reads ", kStoreFormat, ": update the levels");
     Model model;
+    Pictures pictures;
+    for (const Json& one : json.at("pictures"))
+        pictures.push_back(picture(one));
     for (const Json& one : json.at("materials"))
-        model.materials.push_back(material(one));
+        model.materials.push_back(material(one, pictures));
     const Json& objects = json.at("objects");
     for (const Json& one : objects)
         model.objects.push_back(object(one, objects.size(), model.materials.size()));
@@ -324,7 +287,7 @@ std::string file_of(Hash hash) {
 }
 
 std::string tileset_text(const Model& model) {
-    const std::string ours = describe(model).dump();
+    const std::string ours = description_text(model);
     return text("{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":", ours, "}},",
                 tiles_text(model), "}\n");
 }
@@ -343,15 +306,28 @@ Model model_of_tileset(const std::string& text) {
     }
 }
 
-std::set<Hash> files_of_tileset(const std::string& text) {
-    std::set<Hash> files;
-    try {
-        for (const Object& object : model_of_tileset(text).objects) {
-            for (const Representation& representation : object.representations) {
-                if (representation.summary.kind != Kind::Assembly)
-                    files.insert(representation.summary.hash);
-            }
+std::string file_of(const Picture& picture) {
+    return "i/" + hex16(picture.hash) + "." + suffix_of(picture.format);
+}
+
+std::set<std::string> files_of(const Model& model) {
+    std::set<std::string> files;
+    for (const Object& object : model.objects) {
+        for (const Representation& representation : object.representations) {
+            if (representation.summary.kind != Kind::Assembly)
+                files.insert(file_of(representation.summary.hash));
         }
+    }
+    for (const Material& material : model.materials)
+        for_each_texture(material,
+                         [&](const Texture& texture) { files.insert(file_of(*texture.picture)); });
+    return files;
+}
+
+std::set<std::string> files_of_tileset(const std::string& text) {
+    std::set<std::string> files;
+    try {
+        files = files_of(model_of_tileset(text));
     } catch (const Error&) {
         files.clear();
     }

@@ -9,17 +9,26 @@
 
 namespace lodestone::segment {
 
+inline constexpr int kStoreFormat = 2;
+
 /// "r/<16 hex>.glb"
 std::string file_of(Hash hash);
+/// "i/<16 hex>.png", ".jpg" or ".exr"
+std::string file_of(const Picture& picture);
+/// Of every representation and picture of a model.
+std::set<std::string> files_of(const Model& model);
+
+/// Our own description, the value of asset.extras.lodestone. Doubles keep their bits.
+std::string description_text(const Model& model);
 
 /// The whole tileset.json. Doubles are written so that reading gives the same bits.
 std::string tileset_text(const Model& model);
 
-/// The model described in a tileset.json; meshes not resident. Throws Error(BadFile) saying what is
+/// The model described in a tileset.json; meshes and pictures not resident. Throws Error(BadFile) saying what is
 /// wrong; nothing in the text is trusted.
 Model model_of_tileset(const std::string& text);
 
-/// Hashes of all representation files a tileset.json names; empty when it cannot be read.
-std::set<Hash> files_of_tileset(const std::string& text);
+/// All files a tileset.json's model needs; empty when it cannot be read.
+std::set<std::string> files_of_tileset(const std::string& text);
 
 }  // namespace lodestone::segment

@@ -35,17 +35,40 @@ void make_folder(const fs::path& folder) {
         fail(Status::Io, "cannot make the folder '", folder.string(), "': ", error.message());
 }
 
-void remove_unused(const fs::path& folder, const std::set<Hash>& wanted) {
-    std::set<std::string> names;
-    for (const Hash hash : wanted)
-        names.insert(fs::path(file_of(hash)).filename().string());
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder / "r", error)) {
-        const std::string name = entry.path().filename().string();
-        if ((entry.path().extension() == ".glb" || entry.path().extension() == ".tmp") &&
-            names.count(name) == 0)
-            fs::remove(entry.path(), error);
+/// Of r/ and i/; `wanted` are relative names.
+void remove_unused(const fs::path& folder, const std::set<std::string>& wanted) {
+    for (const char* part : {"r", "i"}) {
+        std::error_code error;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder / part, error)) {
+            const fs::path& path = entry.path();
+            static const std::set<std::string> kOurs{".glb", ".png", ".jpg", ".exr", ".tmp"};
+            if (kOurs.contains(path.extension().string()) &&
+                !wanted.contains(text(part, "/", path.filename().string())))
+                fs::remove(path, error);
+        }
     }
+}
+
+/// Each distinct picture of a model's materials.
+std::map<Hash, PicturePtr> pictures_of(const Model& model) {
+    std::map<Hash, PicturePtr> found;
+    for (const Material& material : model.materials)
+        for_each_texture(material, [&](const Texture& texture) {
+            PicturePtr& kept = found[texture.picture->hash];
+            if (kept == nullptr || kept->bytes.empty())
+                kept = texture.picture;
+        });
+    return found;
+}
+
+void use_pictures(Material& material, const std::map<Hash, PicturePtr>& pictures) {
+    if (material.other) {
+        auto other = std::make_shared<Material>(*material.other);
+        use_pictures(*other, pictures);
+        material.other = std::move(other);
+    }
+    for_own_textures(
+        material, [&](Texture& texture) { texture.picture = pictures.at(texture.picture->hash); });
 }
 
 }  // namespace
@@ -71,6 +94,24 @@ std::shared_ptr<const Mesh> Store::load_mesh(Hash hash) const {
 void Store::load(Representation& representation) const {
     if (!representation.resident())
         representation.payload = load_mesh(representation.summary.hash);
+}
+
+void Store::load_pictures(Model& model) const {
+    std::map<Hash, PicturePtr> resident;
+    for (const auto& [hash, picture] : pictures_of(model)) {
+        if (!picture->bytes.empty()) {
+            resident[hash] = picture;
+            continue;
+        }
+        auto loaded = std::make_shared<Picture>(*picture);
+        loaded->bytes = read_file(folder_ / file_of(*picture));
+        if (Hasher().text(loaded->bytes).value(loaded->space).result() != hash)
+            fail(Status::BadFile, "'", (folder_ / file_of(*picture)).string(),
+                 "' is not the picture it was");
+        resident[hash] = std::move(loaded);
+    }
+    for (Material& material : model.materials)
+        use_pictures(material, resident);
 }
 
 uint64_t Store::write(const Model& model, const Job& job) const {
@@ -105,9 +146,10 @@ uint64_t Store::write(const Model& model, const Job& job) const {
         bytes += glb.size();
         job.progress(0.95 * static_cast<double>(++done) / static_cast<double>(jobs.size()));
     });
+    bytes += write_pictures(model, job);
     job.check();
 
-    std::set<Hash> wanted;
+    std::set<std::string> wanted;
     const fs::path tileset = folder_ / "tileset.json";
     if (exists())
         wanted = files_of_tileset(read_file(tileset, kMostTilesetBytes));
@@ -117,6 +159,23 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     remove_unused(folder_, wanted);
     job.progress(1);
     return bytes + text.size();
+}
+
+uint64_t Store::write_pictures(const Model& model, const Job& job) const {
+    uint64_t bytes = 0;
+    for (const auto& [hash, picture] : pictures_of(model)) {
+        job.check();
+        const fs::path path = folder_ / file_of(*picture);
+        std::error_code error;
+        if (fs::exists(path, error))
+            continue;
+        if (picture->bytes.empty())
+            fail(Status::Io, "the picture '", picture->name, "' is gone from the store");
+        make_folder(folder_ / "i");
+        write_file(path, picture->bytes);
+        bytes += picture->bytes.size();
+    }
+    return bytes;
 }
 
 }  // namespace lodestone::segment

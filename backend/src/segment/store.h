@@ -2,6 +2,7 @@
 // Store: a model on disk, a 3D Tiles 1.1 tileset folder (DESIGN 6).
 //   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
 //   r/<16 hex>.glb    one representation each, named by content hash
+//   i/<16 hex>.png    one picture each (or .jpg, .exr), likewise
 //   lock              held by the one writer
 #pragma once
 
@@ -33,13 +34,18 @@ public:
     /// Makes the mesh of a representation resident.
     void load(Representation& representation) const;
 
-    /// Writes what is missing, then replaces tileset.json, then removes representation files that
+    /// Makes the pictures of all materials resident. Throws Error(Io or BadFile).
+    void load_pictures(Model& model) const;
+
+    /// Writes what is missing, then replaces tileset.json, then removes files that
     /// neither the new nor the previous tileset.json names. A killed write leaves the old store.
-    /// Representations that are not resident must be in the store already.
+    /// Representations and pictures that are not resident must be in the store already.
     /// Returns the bytes written. Throws Error(Io), also when another writer is at work.
     uint64_t write(const Model& model, const Job& job) const;
 
 private:
+    uint64_t write_pictures(const Model& model, const Job& job) const;
+
     std::filesystem::path folder_;
 };
 

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace lodestone::segment {
+namespace {
+
+using Json = nlohmann::json;
+
+Json out(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json out(const glm::dmat3& m) {
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            rows.push_back(m[column][row]);
+    }
+    return rows;
+}
+
+Json out(const Affine& transform) {
+    double rows[12];
+    transform.to_rows(rows);
+    return Json(std::vector<double>(rows, rows + 12));
+}
+
+/// Pictures in order of first use, each once.
+class Pictures {
+public:
+    size_t index_of(const PicturePtr& picture) {
+        const auto [at, fresh] = index_.try_emplace(picture->hash, index_.size());
+        if (fresh)
+            json_.push_back(
+                {{"name", picture->name},
+                 {"hash", hex16(picture->hash)},
+                 {"format", suffix_of(picture->format)},
+                 {"linear", picture->space == ColorSpace::Linear},
+                 {"width", picture->width},
+                 {"height", picture->height},
+                 {"mean", {picture->mean.x, picture->mean.y, picture->mean.z, picture->mean.w}}});
+        return at->second;
+    }
+    Json take() { return std::move(json_); }
+
+private:
+    std::map<Hash, size_t> index_;
+    Json json_ = Json::array();
+};
+
+Json out(const Texture& t, Pictures& pictures) {
+    return {{"picture", pictures.index_of(t.picture)},
+            {"channel", static_cast<int>(t.channel)},
+            {"extension", static_cast<int>(t.extension)},
+            {"closest", t.interpolation == Interpolation::Closest},
+            {"to_picture", t.to_picture},
+            {"scale", out(t.scale)},
+            {"offset", out(t.offset)}};
+}
+
+Json out(const Material& m, Pictures& pictures) {
+    Json json = {{"name", m.name},           {"base_color", out(m.base_color)},
+                 {"roughness", m.roughness}, {"metallic", m.metallic},
+                 {"specular", m.specular},   {"emission", out(m.emission)}};
+    // The rest is written where it says something: most materials have none of it.
+    const Material standard;
+    if (m.vertex_colors)
+        json["vertex_colors"] = true;
+    if (m.alpha_mode != AlphaMode::Opaque) {
+        json["alpha_mode"] = static_cast<int>(m.alpha_mode);
+        json["alpha_cutoff"] = m.alpha_cutoff;
+    }
+    const auto number = [&](const char* key, double value, double usual) {
+        if (value != usual)
+            json[key] = value;
+    };
+    number("alpha", m.alpha, standard.alpha);
+    number("transmission", m.transmission, standard.transmission);
+    number("ior", m.ior, standard.ior);
+    number("clearcoat", m.clearcoat, standard.clearcoat);
+    number("clearcoat_roughness", m.clearcoat_roughness, standard.clearcoat_roughness);
+    number("normal_strength", m.normal_strength, standard.normal_strength);
+    number("bump_distance", m.bump_distance, standard.bump_distance);
+    const std::pair<const char*, const Texture&> textures[] = {
+        {"base_color_texture", m.base_color_texture},
+        {"roughness_texture", m.roughness_texture},
+        {"metallic_texture", m.metallic_texture},
+        {"emission_texture", m.emission_texture},
+        {"alpha_texture", m.alpha_texture},
+        {"normal_texture", m.normal_texture},
+        {"bump_texture", m.bump_texture},
+        {"mix_texture", m.mix_texture}};
+    for (const auto& [key, texture] : textures) {
+        if (texture)
+            json[key] = out(texture, pictures);
+    }
+    if (m.other) {
+        json["other"] = out(*m.other, pictures);
+        json["mix"] = m.mix;
+    }
+    return json;
+}
+
+Json out(const Attributes& a) {
+    return {{"visible_area", a.visible_area},
+            {"surface_area", a.surface_area},
+            {"centroid", out(a.centroid)},
+            {"moments", out(a.moments)},
+            {"axes", out(a.axes)},
+            {"normal_moment", a.normal_moment},
+            {"color", out(a.color)},
+            {"roughness", a.roughness},
+            {"metallic", a.metallic},
+            {"specular", a.specular},
+            {"emission", out(a.emission)},
+            {"relative_error", a.relative_error},
+            {"rays", a.rays}};
+}
+
+Json out(const Representation& r) {
+    const Summary& s = r.summary;
+    Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
+                 {"max_error", s.max_error},      {"hash", hex16(s.hash)},
+                 {"center", out(s.bound.center)}, {"radius", s.bound.radius},
+                 {"triangles", s.cost.triangles}, {"bytes", s.cost.bytes},
+                 {"materials", r.materials}};
+    if (!s.bound.empty()) {
+        json["low"] = out(s.bound.box.low);
+        json["high"] = out(s.bound.box.high);
+    }
+    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
+        const Primitive& p = r.primitive();
+        json["primitive"] = {
+            {"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
+    } else if (s.kind == Kind::Assembly) {
+        Json placements = Json::array();
+        for (const Placement& placement : r.assembly().placements)
+            placements.push_back({{"object", placement.object},
+                                  {"transform", out(placement.transform)},
+                                  {"name", placement.name}});
+        json["placements"] = std::move(placements);
+    }
+    return json;
+}
+
+Json out(const Light& l) {
+    return {{"name", l.name},
+            {"kind", l.kind == LightKind::Sun ? "sun" : "point"},
+            {"color", out(l.color)},
+            {"power", l.power},
+            {"position", out(l.position)},
+            {"direction", out(l.direction)},
+            {"shadow", l.shadow}};
+}
+
+Json out(const Camera& c) {
+    return {{"name", c.name},
+            {"orthographic", c.orthographic},
+            {"position", out(c.position)},
+            {"direction", out(c.direction)},
+            {"right", out(c.right)},
+            {"up", out(c.up)},
+            {"near_clip", c.near_clip}};
+}
+
+/// Our own description of a model. Object indices are positions in `order`.
+Json describe(const Model& model) {
+    Json json = {{"format", kStoreFormat},
+                 {"version", LODESTONE_VERSION},
+                 {"root", model.root == kNoObject ? Json() : Json(model.root)}};
+    Json& materials = json["materials"] = Json::array();
+    Pictures pictures;
+    for (const Material& material : model.materials)
+        materials.push_back(out(material, pictures));
+    json["pictures"] = pictures.take();
+    Json& objects = json["objects"] = Json::array();
+    for (const Object& object : model.objects) {
+        Json one = {{"uid", object.uid},
+                    {"name", object.name},
+                    {"role", object.role == Role::Environment ? "environment" : "ordinary"},
+                    {"source_hash", hex16(object.source_hash)},
+                    {"build_hash", hex16(object.build_hash)}};
+        if (object.attributes)
+            one["attributes"] = out(*object.attributes);
+        Json& representations = one["representations"] = Json::array();
+        for (const Representation& representation : object.representations)
+            representations.push_back(out(representation));
+        objects.push_back(std::move(one));
+    }
+    json["lights"] = Json::array();
+    for (const Light& light : model.lights)
+        json["lights"].push_back(out(light));
+    json["cameras"] = Json::array();
+    for (const Camera& camera : model.cameras)
+        json["cameras"].push_back(out(camera));
+    json["world"] = {{"color", out(model.world.color)}, {"transparent", model.world.transparent}};
+    return json;
+}
+
+}  // namespace
+
+std::string description_text(const Model& model) {
+    return describe(model).dump();
+}
+
+}  // namespace lodestone::segment
