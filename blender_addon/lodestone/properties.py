@@ -69,7 +69,8 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
 class _Identified:
     uid: StringProperty(
         name="ID",
-        description="16 hexadecimal digits that keep the levels through renaming",
+        description="16 hexadecimal digits that know this thing through renaming; empty while its "
+        "name is enough",
         maxlen=16,
         options={"HIDDEN"},
     )

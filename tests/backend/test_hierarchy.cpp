@@ -153,6 +153,38 @@ TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
     }
 }
 
+TEST_F(Hierarchy, RenamedObjectsAreFoundByTheirSourceAndCostNothing) {
+    const fs::path folder = scratch("renamed");
+    Model before = room();
+    build_in(before, folder);
+    Model renamed = room();
+    for (Object& object : renamed.objects) {
+        object.uid = "new " + object.uid;
+        object.name = "new " + object.name;
+    }
+    // Two that swap their ids must not swap their levels.
+    std::swap(renamed.objects[0].uid, renamed.objects[1].uid);
+    for (Material& material : renamed.materials)
+        material.name = "new " + material.name;
+    const segment::Store store(folder);
+    EXPECT_EQ(build::estimate(renamed, store, {}).built, 0u);
+    const build::Report report = build_in(renamed, folder);
+    EXPECT_EQ(report.built, 0u);
+    const Model stored = store.read();
+    ASSERT_EQ(stored.objects.size(), before.objects.size());
+    for (const Object& object : stored.objects)
+        EXPECT_EQ(object.uid.substr(0, 4), "new ");
+    for (size_t i = 0; i < before.objects.size(); ++i) {
+        const auto& old = before.objects[i].representations;
+        const auto& now = renamed.objects[i].representations;
+        ASSERT_EQ(now.size(), old.size());
+        for (size_t lod = 0; lod < old.size(); ++lod) {
+            EXPECT_EQ(now[lod].summary.hash, old[lod].summary.hash);
+            EXPECT_EQ(now[lod].summary.error, old[lod].summary.error);
+        }
+    }
+}
+
 TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
     Model model = room();
     const fs::path folder = scratch("stale");

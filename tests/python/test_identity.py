@@ -24,46 +24,67 @@ class StableId(unittest.TestCase):
             self.assertTrue(identity.is_uid(identity.stable_id(name)), name)
 
 
+def oak(stored="", decided=False, name="Oak"):
+    return ("object", "", name, stored, decided)
+
+
+OAK = identity.named_id("object", "", "Oak")
+
+
 class AssignUids(unittest.TestCase):
     def test_of_nothing_is_nothing(self):
         self.assertEqual(identity.assign_uids([]), [])
 
-    def test_a_new_thing_gets_the_id_it_had_without_one(self):
-        uids = identity.assign_uids([("object", "", "Oak", "")])
-        self.assertEqual(uids, [identity.named_id("object", "", "Oak")])
+    def test_a_name_is_enough_where_nothing_is_decided(self):
+        self.assertEqual(identity.assign_uids([oak(), oak(name="Elm")]), ["", ""])
+
+    def test_a_decision_stores_the_id_it_had_without_one(self):
+        self.assertEqual(identity.assign_uids([oak(decided=True)]), [OAK])
 
     def test_a_renamed_thing_keeps_its_own(self):
-        stored = identity.named_id("object", "", "Oak")
-        self.assertEqual(identity.assign_uids([("object", "", "Elm", stored)]), [stored])
+        for decided in (False, True):
+            self.assertEqual(identity.assign_uids([oak(OAK, decided, "Elm")]), [OAK])
 
-    def test_a_copy_gets_a_new_one_and_the_first_keeps_it(self):
-        stored = identity.named_id("object", "", "Oak")
-        things = [("object", "", "Oak", stored), ("object", "", "Oak.001", stored)]
+    def test_a_copy_is_known_by_its_name_and_the_first_keeps_the_id(self):
+        things = [oak(OAK), oak(OAK, name="Oak.001")]
+        self.assertEqual(identity.assign_uids(things), [OAK, ""])
+
+    def test_a_copy_with_its_decision_gets_a_new_one(self):
+        things = [oak(OAK, True), oak(OAK, True, "Oak.001")]
         uids = identity.assign_uids(things)
-        self.assertEqual(uids[0], stored)
-        self.assertEqual(uids[1], identity.named_id("object", "", "Oak.001"))
+        self.assertEqual(uids, [OAK, identity.named_id("object", "", "Oak.001")])
 
     def test_a_thing_that_took_the_name_of_a_renamed_one_gets_another(self):
-        stored = identity.named_id("object", "", "Oak")
-        things = [("object", "", "Elm", stored), ("object", "", "Oak", "")]
-        uids = identity.assign_uids(things)
-        self.assertEqual(uids[0], stored)
-        self.assertNotEqual(uids[1], stored)
-        self.assertTrue(identity.is_uid(uids[1]))
+        for decided in (False, True):
+            uids = identity.assign_uids([oak(OAK, name="Elm"), oak(decided=decided)])
+            self.assertEqual(uids[0], OAK)
+            self.assertNotEqual(uids[1], OAK)
+            self.assertTrue(identity.is_uid(uids[1]))
 
     def test_none_is_one_that_others_have(self):
-        stored = identity.named_id("object", "", "Oak")
-        uids = identity.assign_uids([("object", "", "Oak", stored)], taken=[stored])
-        self.assertNotEqual(uids[0], stored)
+        for stored in (OAK, ""):
+            (uid,) = identity.assign_uids([oak(stored)], taken=[OAK])
+            self.assertNotEqual(uid, OAK)
+            self.assertTrue(identity.is_uid(uid))
 
     def test_what_is_no_uid_is_replaced(self):
         for wrong in ("xyz", "A" * 16, "g" * 16, "0" * 17):
-            uids = identity.assign_uids([("object", "", "Oak", wrong)])
-            self.assertTrue(identity.is_uid(uids[0]), wrong)
+            self.assertEqual(identity.assign_uids([oak(wrong)]), [""], wrong)
+            self.assertEqual(identity.assign_uids([oak(wrong, True)]), [OAK], wrong)
+
+    def test_once_assigned_they_stay(self):
+        things = [oak(OAK, name="Elm"), oak(), oak(decided=True, name="Ash"), oak(name="Fir")]
+        first = identity.assign_uids(things)
+        again = [(*thing[:3], uid, thing[4]) for thing, uid in zip(things, first)]
+        self.assertEqual(identity.assign_uids(again), first)
 
     def test_ten_thousand_copies_all_differ(self):
-        things = [("object", "", f"Oak.{i}", "0" * 16) for i in range(10000)]
-        self.assertEqual(len(set(identity.assign_uids(things))), 10000)
+        for decided, stored in ((True, 10000), (False, 1)):
+            things = [oak("0" * 16, decided, f"Oak.{i}") for i in range(10000)]
+            uids = identity.assign_uids(things)
+            self.assertEqual(sum(map(bool, uids)), stored)
+            known = {u or identity.named_id(*thing[:3]) for u, thing in zip(uids, things)}
+            self.assertEqual(len(known), 10000)
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ def scope_keys(context: Any, scope: str) -> list[ids.Key] | None:
 
 
 def in_scope(context: Any, scope: str) -> list[Thing]:
-    """What Update Levels gives uids to: scope is SCENE, COLLECTION or SELECTED."""
+    """What Update Levels may give uids to: scope is SCENE, COLLECTION or SELECTED."""
     if scope == "SELECTED":
         things = reachable([], context.selected_objects)
     elif scope == "COLLECTION":
@@ -54,36 +54,59 @@ def in_scope(context: Any, scope: str) -> list[Thing]:
 
 
 def issue_uids(things: Iterable[Thing]) -> list[tuple[Any, str]]:
-    """Gives every local thing its uid, copies a new one. Returns (datablock, uid before) of those
-    that changed, for take_back()."""
+    """Stores a uid on the local things that hold a decision or that their name does not tell from
+    others; copies lose the one they were copied with. Returns (datablock, uid before) of those that
+    changed, for take_back()."""
     local = [(kind, item) for kind, item in things if item.library is None]
     pointers = {item.as_pointer() for _, item in local}
     others = [
-        item.lodestone.uid
+        ids.stored_uid(item)
         for item in (*bpy.data.collections, *bpy.data.objects)
-        if item.as_pointer() not in pointers and item.lodestone.uid
+        if item.as_pointer() not in pointers
     ]
-    described = [(kind, "", item.name, item.lodestone.uid) for kind, item in local]
+    before = [ids.stored_uid(item) for _, item in local]
+    described = [
+        (kind, "", item.name, stored, decided(item)) for (kind, item), stored in zip(local, before)
+    ]
+    uids = identity.assign_uids(described, filter(None, others))
     changed = []
-    for (_, item), uid in zip(local, identity.assign_uids(described, others)):
-        if item.lodestone.uid != uid:
-            changed.append((item, item.lodestone.uid))
-            item.lodestone.uid = uid
+    for (_, item), old, uid in zip(local, before, uids):
+        if old != uid:
+            changed.append((item, old))
+            _store(item, uid)
     return changed
 
 
 def take_back(changed: Iterable[tuple[Any, str]]) -> None:
     """Undoes issue_uids()."""
     for item, uid in changed:
-        if uid:
-            item.lodestone.uid = uid
-        else:
-            forget(item, False)
+        _store(item, uid)
+
+
+def _store(item: Any, uid: str) -> None:
+    if uid:
+        item.lodestone.uid = uid
+    else:
+        forget(item, False)
+
+
+def _set_names(settings: Any) -> list[str]:
+    """Which of our properties the file holds a value of."""
+    own = (p.identifier for p in settings.bl_rna.properties if p.identifier not in _INHERITED)
+    return [name for name in own if settings.is_property_set(name)]
+
+
+def decided(item: Any) -> bool:
+    """Whether it holds anything that the designer decided."""
+    settings = ids.settings_of(item)
+    return settings is not None and any(name != "uid" for name in _set_names(settings))
 
 
 def forget(item: Any, decisions: bool) -> bool:
     """Removes the uid, with `decisions` the role too. True when something was there."""
-    settings = item.lodestone
+    settings = ids.settings_of(item)
+    if settings is None:
+        return False
     names = ("uid", "role") if decisions else ("uid",)
     found = [name for name in names if settings.is_property_set(name)]
     for name in found:
@@ -93,14 +116,13 @@ def forget(item: Any, decisions: bool) -> bool:
 
 
 def drop_empty(item: Any) -> None:
-    """Leaves a datablock without any decision as if we had never been there: reading `.lodestone`
-    is enough for Blender to store an empty group."""
-    settings = item.lodestone
-    own = (p.identifier for p in settings.bl_rna.properties if p.identifier not in _INHERITED)
-    if not any(settings.is_property_set(name) for name in own):
+    """Leaves a datablock without any decision as if we had never been there: a panel that shows
+    `.lodestone` is enough for Blender to store an empty group."""
+    settings = ids.settings_of(item)
+    if settings is not None and not _set_names(settings):
         try:
             del item["lodestone"]
-        except KeyError:  # nothing stored, or a Blender that keeps it elsewhere
+        except KeyError:  # a Blender that keeps it elsewhere
             pass
 
 

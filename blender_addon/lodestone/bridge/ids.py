@@ -19,10 +19,24 @@ def key_of(kind: str, datablock: Any) -> Key:
     return (kind, library_of(datablock), datablock.name)
 
 
+def settings_of(datablock: Any) -> Any | None:
+    """Its `.lodestone`, or None when the file holds none: merely reading the attribute would make
+    Blender store an empty group."""
+    try:
+        return datablock.lodestone if datablock.is_property_set("lodestone") else None
+    except TypeError:  # a kind of datablock that has no such settings
+        return None
+
+
+def stored_uid(datablock: Any) -> str:
+    """What is stored, valid or not; "" when nothing is."""
+    settings = settings_of(datablock)
+    return settings.uid if settings is not None else ""
+
+
 def uid_of(kind: str, datablock: Any) -> str:
     """The stored uid of an object or collection, else one made of its library and name."""
-    settings = getattr(datablock, "lodestone", None)
-    stored = settings.uid if settings is not None else ""
+    stored = stored_uid(datablock)
     if identity.is_uid(stored):
         return stored
     return identity.named_id(kind, library_of(datablock), datablock.name)
@@ -40,7 +54,7 @@ def named_id_of(material: Any | None) -> str:
 
 
 def is_environment(datablock: Any) -> bool:
-    settings = getattr(datablock, "lodestone", None)
+    settings = settings_of(datablock)
     return settings is not None and settings.role == "ENVIRONMENT"
 
 

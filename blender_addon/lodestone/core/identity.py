@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ids that stay the same from one run to the next: 16 hexadecimal digits.
 
-Without a stored uid a thing is known by its library and name; a stored uid starts as the hash of
-just these, so levels built before it was written stay valid, and those built after survive renames.
+A thing is known by its library and name: nothing has to be written into the file for that. A uid
+is stored only where it says more: with a decision, which has to survive renames, and where a name
+is not enough. It starts as the hash of library and name, so what was known before stays known.
 """
 
 import hashlib
@@ -31,27 +32,31 @@ def is_uid(text: str) -> bool:
 
 
 def assign_uids(
-    things: Iterable[tuple[str, str, str, str]], taken: Iterable[str] = ()
+    things: Iterable[tuple[str, str, str, str, bool]], taken: Iterable[str] = ()
 ) -> list[str]:
-    """A uid for each (kind, library, name, stored uid), in order, all different and none of taken.
+    """The uid each (kind, library, name, stored uid, decided) has to store, in order; "" where its
+    name is enough. What they are then known by is all different and none of taken.
 
-    A stored one is kept by the first thing that has it; copies get a new one.
+    A stored one is kept by the first thing that has it. A copy, and a thing that has none, is known
+    by its name, unless it holds a decision or another thing has that id.
     """
     items = list(things)
     used = set(taken)
     result: list[str] = []
-    for _, _, _, stored in items:
+    for *_, stored, _ in items:
         keep = is_uid(stored) and stored not in used
         if keep:
             used.add(stored)
         result.append(stored if keep else "")
-    for position, (kind, library, name, _) in enumerate(items):
+    for position, (kind, library, name, _, decided) in enumerate(items):
         if result[position]:
             continue
-        uid, attempt = named_id(kind, library, name), 0
+        named = named_id(kind, library, name)
+        uid, attempt = named, 0
         while uid in used:
             attempt += 1
             uid = stable_id(kind, library, name, attempt)
         used.add(uid)
-        result[position] = uid
+        if decided or uid != named:
+            result[position] = uid
     return result

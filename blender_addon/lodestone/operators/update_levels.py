@@ -38,8 +38,9 @@ def build_options(extraction, keys):
 
 
 def update_levels(context, scope):
-    """Reads, builds and writes uids synchronously; scope is SCENE, COLLECTION or SELECTED. Returns
-    the build report; raises what failed, then nothing in the file has changed."""
+    """Reads, builds and writes the uids that are needed, synchronously; scope is SCENE, COLLECTION
+    or SELECTED. Returns the build report; raises what failed, then nothing in the file has
+    changed."""
     store = store_path.store_folder(bpy.data.filepath)
     keys = decisions.scope_keys(context, scope)
     changed = decisions.issue_uids(decisions.in_scope(context, scope))
