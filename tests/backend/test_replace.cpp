@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards replacement: boxes and ellipsoids keep area, centroid and variances, or are refused.
+// Guards replacement: boxes and ellipsoids keep area, centroid and variances, or are refused; by
+// closed forms, and measured again by rays as what they stand for was.
 #include "approximate/replace.h"
 #include "approximate/stand_in_material.h"
 #include "backend/shapes.h"
 #include "base/random.h"
+#include "measure/visible.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +91,76 @@ void expect_matched(const Primitive& p, const Shell& shell, const Attributes& wa
     for (int i = 0; i < 3; ++i)
         EXPECT_LT(worst(got[i] / trace_got - wanted.moments[i] / trace), tolerance);
     EXPECT_NEAR(glm::determinant(p.axes), 1, 1e-9);
+}
+
+Attributes by_rays(const Mesh& mesh, uint64_t rays, uint64_t seed) {
+    measure::VisibleOptions options;
+    options.rays = rays;
+    options.seed = seed;
+    return measure::measure_visible(mesh, {}, options).attributes;
+}
+
+/// Measures what was fitted as its original was, with other rays: what a viewer would find.
+void expect_remeasured(const Primitive& p, const Mesh& mesh, const Attributes& wanted) {
+    const double radius = wanted.radius_of_gyration();
+    const double trace = wanted.moments[0][0] + wanted.moments[1][1] + wanted.moments[2][2];
+    for (const uint64_t seed : {101u, 102u, 103u}) {
+        const Attributes got = by_rays(mesh, 16384, seed);
+        EXPECT_NEAR(got.visible_area / wanted.visible_area, 1, 0.01);
+        EXPECT_LT(glm::length(got.centroid - wanted.centroid), 0.01 * radius);
+        const double trace_got = got.moments[0][0] + got.moments[1][1] + got.moments[2][2];
+        double square = 0;
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 miss = got.moments[i] / trace_got - wanted.moments[i] / trace;
+            square += glm::dot(miss, miss);
+        }
+        EXPECT_LT(std::sqrt(square), 0.05)
+            << "half sizes " << p.half_size.x << " " << p.half_size.y << " " << p.half_size.z;
+    }
+}
+
+struct Original {
+    const char* name;
+    Mesh mesh;
+};
+
+/// Things of a designer's scene, turned and far from their origin.
+std::vector<Original> originals() {
+    std::vector<Original> out;
+    const auto add = [&](const char* name, const Mesh& mesh) {
+        Affine place;
+        place.linear = turn(0.3 + static_cast<double>(out.size()), {1, 2, -0.5});
+        place.offset = {40, -7, 3};
+        Mesh placed;
+        append(placed, mesh, place);
+        out.push_back({name, placed});
+    };
+    add("cube", shapes::cube());
+    add("brick", shapes::box({-1.5, -1, -0.5}, {1.5, 1, 0.5}));
+    add("beam", shapes::box({-2, -0.25, -0.2}, {2, 0.25, 0.2}));
+    add("ball", shapes::sphere(2, 4));
+    add("egg", shapes::ellipsoid({3, 2, 1}, 4));
+    add("sheet", shapes::quad(2, 1));
+    add("hill", shapes::terrain(24));
+    add("book", shapes::book(50));
+
+    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
+    for (const double x : {-0.9, 0.9})
+        for (const double y : {-0.4, 0.4})
+            append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
+    add("table", table);
+
+    Mesh tree = shapes::box({-0.2, -0.2, 0}, {0.2, 0.2, 3});
+    append(tree, shapes::sphere(2, 3), {glm::dmat3(1.0), {0, 0, 4.5}});
+    add("tree", tree);
+
+    Mesh car = shapes::box({-2.2, -0.9, 0.3}, {2.2, 0.9, 0.9});
+    append(car, shapes::box({-1.2, -0.8, 0.9}, {0.9, 0.8, 1.5}), {});
+    for (const double x : {-1.4, 1.4})
+        for (const double y : {-0.9, 0.9})
+            append(car, shapes::sphere(0.33, 2), {glm::dmat3(1.0), {x, y, 0.33}});
+    add("car", car);
+    return out;
 }
 
 }  // namespace
@@ -183,6 +255,20 @@ TEST(Replace, SphereAsABoxAndCubeAsAnEllipsoidKeepAreaAndShape) {
     const auto ellipsoid = fit_ellipsoid(cube, bound_of(shapes::cube().positions));
     ASSERT_TRUE(ellipsoid);
     expect_matched(*ellipsoid, ellipsoid_shell(ellipsoid->half_size), cube, 1e-6);
+}
+
+TEST(Replace, WhatWasFittedToMeasuredThingsMeasuresTheSameAgain) {
+    for (const Original& original : originals()) {
+        SCOPED_TRACE(original.name);
+        const Attributes wanted = by_rays(original.mesh, 4096, 1);
+        const Bound bound = bound_of(original.mesh.positions);
+        const auto box = fit_box(wanted, bound);
+        ASSERT_TRUE(box);
+        expect_remeasured(*box, tessellate_box(*box), wanted);
+        const auto ellipsoid = fit_ellipsoid(wanted, bound);
+        ASSERT_TRUE(ellipsoid);
+        expect_remeasured(*ellipsoid, tessellate_ellipsoid(*ellipsoid, 5), wanted);
+    }
 }
 
 TEST(Replace, FlatQuadGetsAThinBoxOfItsSize) {
