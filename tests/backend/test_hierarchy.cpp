@@ -50,6 +50,14 @@ Model room() {
     return model;
 }
 
+ObjectIndex index_of(const Model& model, const std::string& uid) {
+    for (ObjectIndex i = 0; i < model.objects.size(); ++i) {
+        if (model.objects[i].uid == uid)
+            return i;
+    }
+    return kNoObject;
+}
+
 void expect_valid(const Model& model) {
     for (const ObjectIndex index : bottom_up(model)) {
         const Object& object = model.objects[index];
@@ -120,6 +128,24 @@ TEST_F(Hierarchy, EnvironmentIsNeverAPrimitiveNorIsAGroupWithOne) {
             }
         }
     }
+}
+
+TEST_F(Hierarchy, NothingStandsInForWhatDeformsNorForItsGroups) {
+    Model model = room();
+    model.objects[index_of(model, "vase")].deforms = true;
+    const fs::path folder = scratch("deforms");
+    const build::Report report = build_in(model, folder);
+    const std::vector<uint8_t> deforming = with_deforming(model);
+    for (const char* still : {"top", "wall"})
+        EXPECT_EQ(deforming[index_of(model, still)], 0) << still;
+    for (const char* changing : {"vase", "table", "room"}) {
+        const ObjectIndex index = index_of(model, changing);
+        EXPECT_EQ(deforming[index], 1) << changing;
+        EXPECT_EQ(model.objects[index].representations.size(), 1u) << changing;
+    }
+    EXPECT_GT(model.objects[index_of(model, "top")].representations.size(), 1u);
+    EXPECT_EQ(report.built, 2u);
+    EXPECT_TRUE(segment::Store(folder).read().objects[1].deforms);
 }
 
 TEST_F(Hierarchy, GroupOfGroupsWithEnvironmentIsNoPrimitive) {

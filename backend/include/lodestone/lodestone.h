@@ -111,6 +111,8 @@ typedef struct lds_object_info {
     const char* uid;  /* stable and unique in the model; not empty */
     const char* name; /* the user's */
     int32_t role;     /* lds_role */
+    int32_t deforms; /* 1: its shape is another one in every frame; it and every group that holds it
+                         are drawn as they are */
 } lds_object_info;
 
 /* An image. Exactly one of path, bytes and pixels is given. */

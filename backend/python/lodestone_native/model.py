@@ -183,9 +183,12 @@ class Model(Handle):
         mesh: MeshBuffers,
         materials: Sequence[int] = (),
         role: int = Role.ORDINARY,
+        deforms: bool = False,
     ) -> Object:
         out = Object()
-        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        info = structs.ObjectInfo(
+            uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms)
+        )
         slots = (ctypes.c_uint32 * len(materials))(*materials)
         check(
             library().lds_model_add_mesh(

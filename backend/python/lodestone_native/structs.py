@@ -53,6 +53,7 @@ class ObjectInfo(Sized):
         ("uid", c_char_p),
         ("name", c_char_p),
         ("role", c_int32),
+        ("deforms", c_int32),
     ]
 
 

@@ -158,6 +158,7 @@ public:
         const std::vector<size_t> heights = heights_of(model_, order);
         surroundings_ = {uses_of(model_), with_environment(model_)};
         const std::vector<bool> inside = within(settings_.scope, model_, order);
+        const std::vector<uint8_t> deforming = with_deforming(model_);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
         std::map<Hash, ObjectIndex> first_of;              // content-equal objects are built once
@@ -167,6 +168,8 @@ public:
             if (object.representations.empty())
                 continue;
             ++report.objects;
+            if (deforming[index] != 0)
+                continue;
             const Hash wanted = build_hash_of(object, settings);
             const auto first = first_of.find(wanted);
             if (first != first_of.end()) {
@@ -283,13 +286,15 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const Shelf shelf(store, settings.rebuild);
     const Hash hash = hash_of(settings);
     const std::vector<bool> inside = within(settings.scope, model, order);
+    const std::vector<uint8_t> deforming = with_deforming(model);
     double triangles = 0;
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.representations.empty())
             continue;
         ++report.objects;
-        if (!inside[index] || shelf.find(build_hash_of(object, hash)) != nullptr)
+        if (!inside[index] || deforming[index] != 0 ||
+            shelf.find(build_hash_of(object, hash)) != nullptr)
             continue;
         ++report.built;
         const uint64_t own = object.representations[0].summary.cost.triangles;

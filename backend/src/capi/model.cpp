@@ -27,6 +27,7 @@ ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representa
     if (given.role != LDS_ROLE_ORDINARY && given.role != LDS_ROLE_ENVIRONMENT)
         fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
              "' is unknown");
+    object.deforms = given.deforms != 0;
     object.role = given.role == LDS_ROLE_ENVIRONMENT ? Role::Environment : Role::Ordinary;
     object.representations.push_back(std::move(finest));
     const auto index = static_cast<ObjectIndex>(model.model.objects.size());

@@ -47,6 +47,21 @@ void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
     }
 }
 
+/// 1 for every object that `is` true of, or that places such an object at any depth.
+template <typename Is>
+std::vector<uint8_t> that_hold(const Model& model, const Is& is) {
+    std::vector<uint8_t> out(model.objects.size(), 0);
+    for (const ObjectIndex index : bottom_up(model)) {
+        const Object& object = model.objects[index];
+        out[index] = is(object) ? 1 : 0;
+        if (!object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            out[index] |= out[placement.object];
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<ObjectIndex> bottom_up(const Model& model) {
@@ -62,16 +77,11 @@ std::vector<ObjectIndex> bottom_up(const Model& model) {
 }
 
 std::vector<uint8_t> with_environment(const Model& model) {
-    std::vector<uint8_t> out(model.objects.size(), 0);
-    for (const ObjectIndex index : bottom_up(model)) {
-        const Object& object = model.objects[index];
-        out[index] = object.role == Role::Environment ? 1 : 0;
-        if (!object.group())
-            continue;
-        for (const Placement& placement : object.representations[0].assembly().placements)
-            out[index] |= out[placement.object];
-    }
-    return out;
+    return that_hold(model, [](const Object& object) { return object.role == Role::Environment; });
+}
+
+std::vector<uint8_t> with_deforming(const Model& model) {
+    return that_hold(model, [](const Object& object) { return object.deforms; });
 }
 
 void summarize(Representation& representation, const Model& model) {

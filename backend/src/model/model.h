@@ -27,6 +27,9 @@ std::vector<ObjectIndex> bottom_up(const Model& model);
 /// For every object 1 when it is marked Environment or places such an object at any depth.
 std::vector<uint8_t> with_environment(const Model& model);
 
+/// For every object 1 when it deforms or places such an object at any depth.
+std::vector<uint8_t> with_deforming(const Model& model);
+
 /// Fills summaries of every assembly (bound, cost, hash) and source hashes from its children.
 /// `order` is bottom_up's.
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);

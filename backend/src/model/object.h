@@ -20,6 +20,9 @@ struct Object {
     std::string uid;   // stable, unique in its model
     std::string name;  // the user's
     Role role = Role::Ordinary;
+    // Its shape is another one in every frame: nothing stands in for it, nor for a group that holds
+    // it, so that no picture ever shows a level of another frame.
+    bool deforms = false;
     Hash source_hash = 0;  // of the finest representation and of all below it
     Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none
     std::optional<Attributes> attributes;

@@ -181,6 +181,7 @@ Json describe(const Model& model) {
     for (const Object& object : model.objects) {
         Json one = {{"uid", object.uid},
                     {"name", object.name},
+                    {"deforms", object.deforms},
                     {"role", object.role == Role::Environment ? "environment" : "ordinary"},
                     {"source_hash", hex16(object.source_hash)},
                     {"build_hash", hex16(object.build_hash)}};
