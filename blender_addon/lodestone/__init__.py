@@ -25,6 +25,8 @@ _MODULES = (
     "operators.update_levels",
     "operators.clear_levels",
     "operators.select_object",
+    "operators.check_scene",
+    "operators.problems",
     "panels",
     "compat_panels",
 )

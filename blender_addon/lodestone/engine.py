@@ -12,12 +12,13 @@ import traceback
 import bpy
 
 from . import preferences
-from .bridge import camera, picture, scene
-from .core import last_render, progress, store_path
+from .bridge import camera, ignored, picture, requirements, scene
+from .bridge.settings import SceneSettings
+from .core import last_check, last_render, progress, store_path
 from .core.native import lodestone_native as native
 from .core.picture import SceneFolder, Settings, make_picture
+from .core.problems import ERROR, Problems
 from .core.work import Stopped, Work
-from .extract_engine import NO_CAMERA
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
@@ -25,6 +26,10 @@ _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Tra
 
 class Refused(Exception):
     """The picture cannot be made; the text tells the user why and what to do."""
+
+    def __init__(self, code, text):
+        super().__init__(text)
+        self.code = code
 
 
 class LODESTONE_RE_povray(bpy.types.RenderEngine):
@@ -36,13 +41,21 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
 
     def update(self, data, depsgraph):
         self.lodestone_blend = data.filepath  # bpy.data is out of bounds inside render()
+        self.lodestone_libraries = Problems()
+        requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
     def render(self, depsgraph):
         try:
-            _Run(self, depsgraph).render()
+            run = _Run(self, depsgraph)
+            try:
+                run.render()
+            except Refused as error:
+                run.fail(error.code, str(error))
+            except native.LodestoneError as error:
+                run.fail("picture_failed", str(error))
         except Stopped:
             pass
-        except (Refused, native.LodestoneError) as error:
+        except native.LodestoneError as error:  # the library itself is missing
             self.report({"ERROR"}, str(error))
         except Exception as error:
             traceback.print_exc()
@@ -56,7 +69,7 @@ class _Run:
         self.engine = engine
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
-        settings = depsgraph.scene.lodestone  # of the original: writing them tags nothing
+        settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
         self.settings = Settings(
@@ -65,31 +78,45 @@ class _Run:
             threads=self.scene.render.threads if self.scene.render.threads_mode == "FIXED" else 0,
             program=preferences.povray_program(),
         )
+        self.problems = Problems()
+        self.problems.extend(getattr(engine, "lodestone_libraries", ()))
+        self.ignored = ignored.keys(depsgraph.scene)
+        self.users = {}
         self.work = Work()
         self.clock = progress.StageClock(self.scene.frame_current)
         self._shown = ""
 
     def render(self):
-        camera_object = self.engine.camera_override or self.scene.camera
-        if camera_object is None or camera_object.type != "CAMERA":
-            raise Refused(NO_CAMERA.format(self.scene.name))
+        camera_object = self._required()
         frame = camera.Frame.of(self.scene.render)
         extraction = scene.extract(self.depsgraph, self._tick)
-        problems = extraction.problems
+        self.problems.extend(extraction.problems)
+        self.users = extraction.users
         with extraction.model as model:
             totals = model.totals()
             if totals.occurrences == 0:
-                raise Refused("Nothing to render: no object with faces is visible in renders")
+                raise Refused("nothing_to_render", requirements.NOTHING)
             triangles = progress.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
-            view = camera.extract(camera_object, frame, problems)
+            view = camera.extract(camera_object, frame, self.problems)
             size = (frame.width, frame.height)
             made, image = self.work.run(lambda: self._make(model, view, size), self._poll)
-            problems.extend_native(model.problems())
-        self._remember(totals, made, problems)
+            self.problems.extend_native(model.problems())
+        self._remember(totals, made)
         part = picture.cropped(image, *picture.border(self.scene.render, *size))
         picture.hand_over(self.engine, self.depsgraph.view_layer_eval.name, part)
-        self._report(problems)
+        self._report()
+
+    def _required(self):
+        """The camera. What a picture cannot do without is looked for before hours of work."""
+        lacking = Problems()
+        found = self.engine.camera_override or requirements.camera(self.scene, lacking)
+        requirements.povray(self.settings.program, lacking)
+        if len(lacking):
+            self.problems.extend(lacking)
+            first = lacking.wrong[0]
+            raise Refused(first.code, first.message)
+        return found
 
     def _make(self, model, view, size):
         """On the worker's thread: no bpy in here."""
@@ -97,7 +124,8 @@ class _Run:
             try:
                 self.store.mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise Refused(f"Cannot make the folder for the levels: {error}") from None
+                text = f"Cannot make the folder for the levels: {error}"
+                raise Refused("folder_unwritable", text) from None
             model.build(str(self.store), native.BuildOptions(), self.work.new_job("Levels"))
         try:
             with SceneFolder(store_path.scene_folder(self.store), self.keep) as folder:
@@ -106,7 +134,8 @@ class _Run:
                 )
                 return made, picture.read(str(made.path))
         except OSError as error:
-            raise Refused(f"Cannot write the scene for POV-Ray: {error}") from None
+            text = f"Cannot write the scene for POV-Ray: {error}"
+            raise Refused("folder_unwritable", text) from None
 
     # ---- Progress ----
 
@@ -133,7 +162,7 @@ class _Run:
 
     # ---- Afterwards ----
 
-    def _remember(self, totals, made, problems):
+    def _remember(self, totals, made):
         cut = made.parts["cut"]
         last_render.put(
             self.scene.name,
@@ -144,14 +173,36 @@ class _Run:
                 cut["largest_error_px"],
                 cut["largest_error_name"],
                 made.in_use,
-                tuple(problems),
             ),
         )
 
-    def _report(self, problems):
-        for problem in problems:
+    def _remember_check(self):
+        """What was found, with what this frame's other view layers had."""
+        frame = (self.scene.name, self.scene.frame_current)
+        before, problems, users = getattr(self.engine, "lodestone_found", (None, (), {}))
+        every = Problems()
+        if before == frame:
+            every.extend(problems)
+            joined = {material: dict.fromkeys(shown) for material, shown in users.items()}
+            for material, shown in self.users.items():
+                joined.setdefault(material, {}).update(dict.fromkeys(shown))
+            self.users = {material: tuple(shown) for material, shown in joined.items()}
+        every.extend(self.problems)
+        found = tuple(every)
+        self.engine.lodestone_found = (frame, found, self.users)
+        last_check.put(self.scene.name, last_check.Check(found, self.users))
+
+    def fail(self, code, text):
+        """No picture: the reason is reported and stays in the panel."""
+        self.problems.add("", ERROR, code, text)
+        self._remember_check()
+        self.engine.report({"ERROR"}, text)
+
+    def _report(self):
+        self._remember_check()
+        for problem in self.problems:
             print(f"Lodestone: {problem.severity}: {problem.sentence}")
-        wrong = problems.wrong
+        wrong = [problem for problem in self.problems.wrong if problem.key not in self.ignored]
         if wrong:
             more = f" (and {len(wrong) - 1} more, see the console)" if len(wrong) > 1 else ""
             self.engine.report({"WARNING"}, f"The picture is incomplete: {wrong[0].sentence}{more}")
@@ -166,4 +217,5 @@ def register():
 
 def unregister():
     last_render.clear()
+    last_check.clear()
     _unregister()

@@ -9,9 +9,9 @@ import traceback
 import bpy
 
 from .bridge import camera, check, scene
+from .bridge.requirements import NO_CAMERA
 from .core.work import Stopped
 
-NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 _request = None
 
 

@@ -2,7 +2,13 @@
 """What the designer decides, kept in the file: `.lodestone` on scenes, collections and objects."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.props import (
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 ROLES = (
     ("ORDINARY", "Ordinary", "May be drawn as a simpler mesh, a box or an ellipsoid"),
@@ -31,6 +37,13 @@ KEEP = (
 
 def _role_changed(self, context):
     self.id_data.update_tag()  # writing to a property group does not tag the depsgraph
+
+
+class LODESTONE_PG_ignored(bpy.types.PropertyGroup):
+    """A problem that is not to be shown: its key, and its text for who reads the file."""
+
+    key: StringProperty(maxlen=16, options={"HIDDEN"})
+    text: StringProperty(options={"HIDDEN"})
 
 
 class LODESTONE_PG_scene(bpy.types.PropertyGroup):
@@ -64,6 +77,7 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         items=KEEP,
         default="FAILED",
     )
+    ignored: CollectionProperty(type=LODESTONE_PG_ignored, options={"HIDDEN"})
 
 
 class _Identified:
@@ -92,15 +106,16 @@ class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
     pass
 
 
-_CLASSES = (LODESTONE_PG_scene, LODESTONE_PG_collection, LODESTONE_PG_object)
+_GROUPS = (LODESTONE_PG_scene, LODESTONE_PG_collection, LODESTONE_PG_object)
 _OWNERS = (bpy.types.Scene, bpy.types.Collection, bpy.types.Object)
+_CLASSES = (LODESTONE_PG_ignored, *_GROUPS)
 _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
 
 def register():
     _register()
     try:
-        for owner, group in zip(_OWNERS, _CLASSES):
+        for owner, group in zip(_OWNERS, _GROUPS):
             owner.lodestone = PointerProperty(
                 type=group, override={"LIBRARY_OVERRIDABLE"}, options={"HIDDEN"}
             )

@@ -8,7 +8,7 @@ nothing turns grey silently.
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from . import compat
+from . import compat, ids
 from ..core.problems import WARNING, Problems
 from .images import ImageMeans
 from .node_values import NodeValues
@@ -45,10 +45,10 @@ DEFAULT = Surface(roughness=0.4)  # Blender's own for an empty slot
 class Materials:
     """Adds each material once to a model; remembers what it could not say exactly."""
 
-    def __init__(self, model: Any, problems: Problems) -> None:
+    def __init__(self, model: Any, problems: Problems, images: ImageMeans | None = None) -> None:
         self._model = model
         self._problems = problems
-        self._images = ImageMeans()
+        self._images = images or ImageMeans()
         self._indices: dict[int, int] = {}
         self._textured: set[int] = set()
 
@@ -84,7 +84,8 @@ class _Translator:
 
     def note(self, code: str, text: str) -> None:
         name = self.material.name
-        self.problems.add(name, WARNING, code, f'Material "{name}": {text}')
+        text = f'Material "{name}": {text}'
+        self.problems.add(name, WARNING, code, text, library=ids.library_of(self.material))
 
     def surface(self) -> Surface:
         material = self.material

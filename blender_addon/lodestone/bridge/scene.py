@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.native import lodestone_native as native
-from ..core.problems import Problems
+from ..core.problems import Problems, Subject
 from . import groups, ids, lights, world
+from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves
+from .users import Users
 
 
 @dataclass
@@ -25,6 +27,7 @@ class Extraction:
     shown: int = 0  # instances the depsgraph shows with faces
     lights: int = 0
     parts: dict[ids.Key, set[Any]] = field(default_factory=dict)
+    users: dict[Subject, tuple[Subject, ...]] = field(default_factory=dict)  # by material
 
     def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
         """The model's objects that these datablocks became; [] (everything) for None."""
@@ -37,25 +40,57 @@ class Extraction:
 def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extraction:
     """`tick()` is called between meshes; what it raises stops the extraction. A scene that shows
     nothing gives a model whose root group is empty."""
-    scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+    scene = depsgraph.scene_eval
     model, problems, uids = native.Model(), Problems(), ids.Uids()
     try:
         leaves = Leaves(model, depsgraph.scene, uids, problems)
-        branch = groups.scene_branch(scene, view_layer)
-        found = Instances(leaves, problems, tick)
-        found.walk(depsgraph, groups.environment_objects(branch))
+        walk = walked(depsgraph, leaves, problems, tick)
         tree = groups.Groups(model, uids)
-        root = tree.build(found.scene, branch)
+        root = tree.build(walk.found.scene, walk.branch)
         if root is None:
             root = model.add_group(uids.claim(ids.scene_uid(scene.name)), scene.name)
         model.set_root(root)
         for name in tree.unplaced:
             report_outside(problems, name)
-        for light, matrix, name in found.lights:
-            lights.add(model, light, matrix, name, problems)
-        model.set_world(world.color(scene.world, problems), scene.render.film_transparent)
+        surroundings(model, scene, walk.found.lights, problems)
+        problems.keep(walk.users.concerns)
     except BaseException:
         model.close()
         raise
-    lit = len(found.lights)
-    return Extraction(model, problems, list(leaves), found.shown, lit, dict(tree.parts))
+    return Extraction(
+        model,
+        problems,
+        list(leaves),
+        walk.found.shown,
+        len(walk.found.lights),
+        dict(tree.parts),
+        walk.users.found(),
+    )
+
+
+@dataclass
+class Walk:
+    """What a depsgraph shows: by where it comes from, by collection, and who shows what."""
+
+    found: Instances
+    branch: groups.Branch
+    users: Users
+
+
+def walked(depsgraph: Any, leaves: Any, problems: Problems, tick: Callable[[], None]) -> Walk:
+    """`leaves` are Leaves, or what takes their place where nothing is to be extracted."""
+    branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval)
+    users = Users(leaves)
+    found = Instances(users, problems, tick)
+    found.walk(depsgraph, groups.environment_objects(branch))
+    return Walk(found, branch, users)
+
+
+def surroundings(
+    model: Any, scene: Any, found: Iterable[tuple], problems: Problems, images: Any | None = None
+) -> None:
+    """Adds the lights that were found, (light, matrix, name) each, and the world."""
+    for light, matrix, name in found:
+        lights.add(model, light, matrix, name, problems)
+    tint = world.color(scene.world, problems, images or ImageMeans())
+    model.set_world(tint, scene.render.film_transparent)

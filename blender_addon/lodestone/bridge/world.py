@@ -17,7 +17,9 @@ _SKIES = {
 }
 
 
-def color(world: Any | None, problems: Problems) -> tuple[float, float, float]:
+def color(
+    world: Any | None, problems: Problems, images: ImageMeans | None = None
+) -> tuple[float, float, float]:
     """Linear radiance of an evaluated world; no world is black."""
     if world is None:
         return (0.0, 0.0, 0.0)
@@ -36,9 +38,10 @@ def color(world: Any | None, problems: Problems) -> tuple[float, float, float]:
             note("shader", "its shader is not known")
             return tuple(world.color)
         return (0.0, 0.0, 0.0)
-    values = NodeValues(ImageMeans(), note)
+    images = images or ImageMeans()
+    values = NodeValues(images, note)
     source = node.inputs["Color"]
-    tint = _environment(source, values, note)
+    tint = _environment(source, images, note)
     if tint is None:
         tint = values.color(source)
     strength = values.number(node.inputs["Strength"])
@@ -61,13 +64,13 @@ def _background(socket: Any, seen: set) -> Any | None:
     return None
 
 
-def _environment(socket: Any, values: NodeValues, note: Any) -> Any | None:
+def _environment(socket: Any, images: ImageMeans, note: Any) -> Any | None:
     """The mean of an environment or sky texture right behind the socket."""
     if not socket.is_linked:
         return None
     node = socket.links[0].from_node
     if node.type == "TEX_ENVIRONMENT" and node.image is not None:
-        mean = ImageMeans().mean(node.image)
+        mean = images.mean(node.image)
         if mean is not None:
             note("texture_mean", "the mean of its environment texture")
         return mean

@@ -2,7 +2,6 @@
 """What the last picture of each scene used, for the panels. Never part of the file."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 
 @dataclass(frozen=True)
@@ -15,7 +14,6 @@ class LastRender:
     largest_error_px: float
     largest_error_name: str
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)
-    problems: tuple[Any, ...] = ()
 
 
 _renders: dict[str, LastRender] = {}

@@ -1,22 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Problems of the user's data: one per thing and cause, with its severity."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any
+
+from . import identity
 
 INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)
+KINDS = ("material", "object", "light", "camera", "world", "collection", "image", "library")
+TEXTS_PER_CODE = 16  # of one thing: a bound for hostile data
+
+Subject = tuple[str, str, str]  # kind, library, name
 
 
 @dataclass(frozen=True)
 class Problem:
-    """`object` is the user's name of the thing; `code` is snake_case and stable."""
+    """`object` is the user's name of the thing, "" for the setup; `code` is snake_case and stable.
+
+    `kind` is one of KINDS or "", `library` the path the thing is linked from, "" for a local one.
+    """
 
     object: str
     severity: str
     code: str
     message: str
+    kind: str = ""
+    library: str = ""
+
+    @property
+    def subject(self) -> Subject:
+        return (self.kind, self.library, self.object)
 
     @property
     def sentence(self) -> str:
@@ -25,22 +41,49 @@ class Problem:
             return self.message
         return f"{self.object}: {self.message}"
 
+    @property
+    def cause(self) -> tuple[str, str, str]:
+        """Equal for problems that differ in nothing but the thing that has them."""
+        return (self.severity, self.code, self.message.replace(f'"{self.object}"', '""'))
+
+    @cached_property
+    def key(self) -> str:
+        """16 hex digits by which a decision about it is kept: a changed text is a new problem."""
+        return identity.stable_id(self.code, *self.subject, self.message)
+
     def as_dict(self) -> dict[str, str]:
         return asdict(self)
 
 
 class Problems:
-    """Collects problems, each (object, code) once, in the order they were found."""
+    """Collects problems in the order they were found; the same one of the same thing once."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[str, str], Problem] = {}
+        self._found: dict[tuple[Subject, str], list[Problem]] = {}
+        self._order: list[Problem] = []
 
-    def add(self, name: str, severity: str, code: str, message: str) -> None:
-        self._found.setdefault((name, code), Problem(name, severity, code, message))
+    def add(
+        self,
+        name: str,
+        severity: str,
+        code: str,
+        message: str,
+        kind: str = "",
+        library: str = "",
+    ) -> None:
+        """Where `kind` is not given, the word before the quoted name in the message tells it:
+        'Material "Bark": ...', 'Shadows of light "Lamp" ...'."""
+        self._take(Problem(name, severity, code, message, kind or _kind(name, message), library))
+
+    def _take(self, problem: Problem) -> None:
+        same = self._found.setdefault((problem.subject, problem.code), [])
+        if len(same) < TEXTS_PER_CODE and all(p.message != problem.message for p in same):
+            same.append(problem)
+            self._order.append(problem)
 
     def extend(self, problems: Iterable[Problem]) -> None:
         for problem in problems:
-            self._found.setdefault((problem.object, problem.code), problem)
+            self._take(problem)
 
     def extend_native(self, records: Iterable[Any]) -> None:
         """Takes what lodestone_native's Model.problems() returns."""
@@ -48,13 +91,25 @@ class Problems:
             severity = SEVERITIES[item.severity] if 0 <= item.severity < 3 else ERROR
             self.add(item.object, severity, item.code, item.message)
 
-    def __iter__(self) -> Any:
-        return iter(self._found.values())
+    def keep(self, wanted: Callable[[Problem], bool]) -> None:
+        """Forgets the others."""
+        kept = [problem for problem in self._order if wanted(problem)]
+        self._found, self._order = {}, []
+        self.extend(kept)
+
+    def __iter__(self) -> Iterator[Problem]:
+        return iter(self._order)
 
     def __len__(self) -> int:
-        return len(self._found)
+        return len(self._order)
 
     @property
     def wrong(self) -> list[Problem]:
         """Those that make the picture wrong or incomplete."""
         return [problem for problem in self if problem.severity == ERROR]
+
+
+def _kind(name: str, message: str) -> str:
+    before, found, _ = message.partition(f'"{name}"') if name else ("", "", "")
+    word = before.rstrip().rpartition(" ")[2].lower()
+    return word if found and word in KINDS else ""

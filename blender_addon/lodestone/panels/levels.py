@@ -1,34 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels: Levels of Detail in Properties > Render, Object and Collection."""
+"""Levels of Detail in Properties > Render, Object and Collection."""
 
 import bpy
 from bpy.types import Panel
 
-from .bridge import decisions
-from .core import last_render, progress, store_levels, store_path
-from .core.native import lodestone_native as native
+from ..bridge import decisions
+from ..core import last_render, progress, store_levels, store_path
+from ..core.native import lodestone_native as native
+from . import EnginePanel, presets
 
-ENGINE = "LODESTONE_POVRAY"
-PRESETS = (("Draft", 8.0), ("Preview", 2.0), ("Final", 1.0), ("Exact", 0.0))
 _KINDS = {
     native.Kind.MESH: "Simplified",
     native.Kind.BOX: "Box",
     native.Kind.ELLIPSOID: "Ellipsoid",
     native.Kind.ASSEMBLY: "Group",
 }
-
-
-class LODESTONE_OT_pixel_error(bpy.types.Operator):
-    bl_idname = "lodestone.pixel_error"
-    bl_label = "Pixel Error"
-    bl_description = "Use this Pixel Error in renders"
-    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
-
-    value: bpy.props.FloatProperty()
-
-    def execute(self, context):
-        context.scene.lodestone.pixel_error_render = self.value
-        return {"FINISHED"}
 
 
 class LODESTONE_RENDER_PT_levels(Panel):
@@ -38,36 +24,25 @@ class LODESTONE_RENDER_PT_levels(Panel):
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
 
+    def draw_header_preset(self, context):
+        presets.LODESTONE_PT_levels_presets.draw_panel_header(self.layout)
+
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.lodestone
-        column = layout.column()
-        column.prop(settings, "pixel_error_render", text="Pixel Error")
-        row = column.row(align=True)
-        for name, value in PRESETS:
-            chosen = abs(settings.pixel_error_render - value) < 1e-6
-            row.operator("lodestone.pixel_error", text=name, depress=chosen).value = value
-        if context.engine == ENGINE:
-            column.prop(settings, "antialias")
-            column.prop(settings, "keep_scene_files")
+        layout.prop(settings, "pixel_error_render", text="Pixel Error")
         layout.prop(settings, "scope")
         row = layout.row(align=True)
         row.operator("lodestone.update_levels", icon="FILE_REFRESH")
         row.operator("lodestone.clear_levels", text="", icon="X")
 
 
-class LODESTONE_RENDER_PT_levels_view(Panel):
+class LODESTONE_RENDER_PT_levels_view(EnginePanel, Panel):
     bl_label = "In This View"
     bl_parent_id = "LODESTONE_RENDER_PT_levels"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "render"
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine == ENGINE
 
     def draw(self, context):
         layout = self.layout
@@ -92,19 +67,6 @@ class LODESTONE_RENDER_PT_levels_view(Panel):
             ).path = render.largest_error_name
         else:
             values.label(text=f"{render.largest_error_px:.2f} px")
-        self._problems(layout, render)
-
-    def _problems(self, layout, render):
-        counted: dict[str, list] = {}
-        for problem in render.problems:
-            if problem.severity != "info":
-                counted.setdefault(problem.code, []).append(problem)
-        column = layout.column(align=True)
-        for problems in counted.values():
-            first = problems[0]
-            icon = "CANCEL" if first.severity == "error" else "ERROR"
-            more = f"   (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-            column.label(text=first.sentence + more, icon=icon)
 
 
 def draw_levels(layout, context, item):
@@ -172,7 +134,6 @@ class LODESTONE_COLLECTION_PT_levels(Panel):
 
 
 _CLASSES = (
-    LODESTONE_OT_pixel_error,
     LODESTONE_RENDER_PT_levels,
     LODESTONE_RENDER_PT_levels_view,
     LODESTONE_OBJECT_PT_levels,
@@ -182,9 +143,15 @@ _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
 
 def register():
-    _register()
+    presets.register()
+    try:
+        _register()
+    except Exception:
+        presets.unregister()
+        raise
 
 
 def unregister():
     _unregister()
+    presets.unregister()
     store_levels.forget()

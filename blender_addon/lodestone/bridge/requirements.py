@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a picture needs besides the scene: a camera, POV-Ray, a folder, the libraries."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ..core import store_path
+from ..core.native import lodestone_native as native
+from ..core.problems import ERROR, Problems
+
+NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
+NOTHING = "Nothing to render: no object with faces is visible in renders"
+
+
+def camera(scene: Any, problems: Problems) -> Any | None:
+    """The scene's camera object, or a problem."""
+    found = scene.camera
+    if found is None or found.type != "CAMERA":
+        problems.add("", ERROR, "no_camera", NO_CAMERA.format(scene.name))
+        return None
+    return found
+
+
+def povray(program: str, problems: Problems) -> None:
+    """`program` as in the preferences."""
+    try:
+        native.povray_find(program or None)
+    except native.LodestoneError as error:
+        problems.add("", ERROR, "povray_missing", str(error))
+
+
+def folder(store: Path, problems: Problems) -> None:
+    """Where levels and scene files go."""
+    for needed in (store, store.parent):  # the scene files lie beside the levels
+        if not store_path.writable(needed):
+            text = f"Cannot write into {needed}: levels and scene files have no place"
+            problems.add("", ERROR, "folder_unwritable", text)
+            return
+
+
+def libraries(found: Iterable[Any], blend: str, problems: Problems) -> None:
+    """`blend` is the path of the open file, to which Blender keeps library paths relative."""
+    for library in found:
+        path = library.filepath
+        if path.startswith("//"):
+            path = os.path.join(os.path.dirname(blend), path[2:])
+        if not os.path.exists(path):
+            text = f'Library "{library.name}" is missing ({path}): what it holds is left out'
+            problems.add(library.name, ERROR, "library_missing", text)

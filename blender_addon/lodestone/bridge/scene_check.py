@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Check Scene: what F12 would report of a scene, without a render and without reading a mesh.
+
+It takes the way of the extraction (instances.py, materials.py, lights.py, ...) with a stand-in
+for the leaves and one for the model, so that there is one set of rules. What it walks is the
+depsgraph of the viewport, less what renders hide; what only renders show is added as it is stored.
+"""
+
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
+
+from ..core.last_check import Check
+from ..core.problems import ERROR, Problems
+from . import camera, requirements, scene
+from .images import ImageHeads
+from .leaves import material_slots
+from .materials import Materials
+
+
+def check(
+    original: Any,
+    view_layer: Any,
+    depsgraph: Any,
+    problems: Problems,
+    tick: Callable[[], None] = lambda: None,
+) -> Check:
+    """Of an original scene as the view layers show it that a render would draw; `view_layer` is
+    the current one, which `depsgraph` is of. `problems` are those known already."""
+    recorder, heads = Recorder(), ImageHeads()
+    shown = Shown(depsgraph, rendered_objects(rendered_layers(original, view_layer)))
+    glances = Glances(Materials(recorder, problems, heads))
+    walk = scene.walked(shown, glances, problems, tick)
+    evaluated = shown.scene_eval
+    scene.surroundings(recorder, evaluated, walk.found.lights, problems, heads)
+    if walk.found.shown == 0:
+        problems.add("", ERROR, "nothing_to_render", requirements.NOTHING)
+    eye = requirements.camera(evaluated, problems)
+    if eye is not None:
+        camera.extract(eye, camera.Frame.of(evaluated.render), problems)
+    problems.keep(walk.users.concerns)
+    return Check(tuple(problems), walk.users.found())
+
+
+class Recorder:
+    """Stands where a model is filled: takes everything, keeps nothing, numbers what it is given."""
+
+    def __init__(self) -> None:
+        self._given = -1
+
+    def __getattr__(self, name: str) -> Callable[..., int]:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._take
+
+    def _take(self, *_: Any, **__: Any) -> int:
+        self._given += 1
+        return self._given
+
+
+class Glances:
+    """Stands where Leaves does: translates materials, looks at most at whether there are faces."""
+
+    def __init__(self, materials: Materials) -> None:
+        self._materials = materials
+        self._found: dict[tuple, Any] = {}
+
+    def leaf(self, shown: Any, *_: Any) -> Any | None:
+        """As Leaves.leaf(): None when there is nothing to draw."""
+        slots = material_slots(shown)
+        key = (shown.data.as_pointer(), tuple(m.as_pointer() if m else 0 for m in slots))
+        if key not in self._found:
+            self._found[key] = self._look(shown, slots)
+        return self._found[key]
+
+    def _look(self, shown: Any, slots: list[Any]) -> Any | None:
+        if shown.type == "MESH" and not _has_faces(shown):
+            return None
+        for material in slots:
+            self._materials.index(material)
+        return SimpleNamespace(object=None)
+
+
+def _has_faces(shown: Any) -> bool:
+    # In Edit Mode the evaluated mesh is still BMesh and seems empty
+    return len(shown.data.polygons) > 0 or shown.mode == "EDIT"
+
+
+class Shown:
+    """A viewport depsgraph as if it were that of a render."""
+
+    def __init__(self, depsgraph: Any, rendered: dict[int, Any]) -> None:
+        self._depsgraph = depsgraph
+        self._rendered = rendered
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._depsgraph, name)
+
+    @property
+    def object_instances(self) -> Iterator[Any]:
+        rendered, met = self._rendered, set()
+        for instance in self._depsgraph.object_instances:
+            if instance.is_instance:
+                host = instance.parent.original
+                if host.as_pointer() not in rendered or self._hidden(instance, host):
+                    continue
+                met.add(host.as_pointer())
+            else:
+                pointer = instance.object.original.as_pointer()
+                if pointer not in rendered:
+                    continue
+                met.add(pointer)
+            yield instance
+        seen: set[int] = set()
+        for pointer, item in rendered.items():
+            if pointer not in met:
+                yield from _as_stored(item, seen)
+
+    def _hidden(self, instance: Any, host: Any) -> bool:
+        """Whether a member of an instanced collection is left out of renders."""
+        if host.instance_type != "COLLECTION" or host.instance_collection is None:
+            return False
+        return instance.instance_object.original.hide_render
+
+
+def _as_stored(item: Any, seen: set[int]) -> Iterator[Any]:
+    """Instances of an object that only renders show, from its stored data: without modifiers. Each
+    collection once, in however many places it is: `seen` holds those that were."""
+    yield _instance(item)
+    collection = item.instance_collection if item.instance_type == "COLLECTION" else None
+    if collection is not None and collection.as_pointer() not in seen:
+        seen.add(collection.as_pointer())
+        for member in collection.all_objects:
+            if not member.hide_render:
+                yield from _as_stored(member, seen)
+
+
+def _instance(item: Any) -> Any:
+    return SimpleNamespace(
+        object=item,
+        is_instance=False,
+        show_self=True,
+        show_particles=False,
+        matrix_world=item.matrix_world,
+    )
+
+
+def rendered_layers(original: Any, view_layer: Any) -> list[Any]:
+    """The view layers that a render started in `view_layer` draws."""
+    chosen = [layer for layer in original.view_layers if layer.use]
+    return [view_layer] if original.render.use_single_layer or not chosen else chosen
+
+
+def rendered_objects(layers: list[Any]) -> dict[int, Any]:
+    """The view layers' own objects that a render shows, by pointer."""
+    found: dict[int, Any] = {}
+
+    def walk(layer: Any) -> None:
+        if layer.collection.hide_render:
+            return
+        if not layer.exclude:
+            for item in layer.collection.objects:
+                if not item.hide_render:
+                    found[item.as_pointer()] = item
+        for child in layer.children:
+            walk(child)
+
+    for view_layer in layers:
+        walk(view_layer.layer_collection)
+    return found

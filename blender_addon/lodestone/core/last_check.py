@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What was last found wrong in each scene, by Check Scene or by F12. Never part of the file."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from . import causes
+from .problems import Problem, Subject
+
+
+@dataclass(frozen=True)
+class Check:
+    """Problems, and which objects show each material in use."""
+
+    problems: tuple[Problem, ...]
+    users: causes.Users = field(default_factory=dict)
+    _splits: dict[frozenset[str], causes.Split] = field(default_factory=dict, compare=False)
+
+    def split(self, ignored: Collection[str] = ()) -> causes.Split:
+        """By cause; made once for the same decisions, panels ask at every redraw."""
+        key = frozenset(ignored)
+        if key not in self._splits:
+            self._splits.clear()
+            self._splits[key] = causes.split(self.problems, self.users, key)
+        return self._splits[key]
+
+    @property
+    def exact_materials(self) -> tuple[int, int]:
+        """How many of the materials in use are drawn exactly, and how many there are."""
+        used = {subject for subject in self.users if subject[0] == "material"}
+        inexact: set[Subject] = {problem.subject for problem in self.problems}
+        return len(used - inexact), len(used)
+
+
+_checks: dict[str, Check] = {}
+
+
+def put(scene: str, check: Check) -> None:
+    _checks[scene] = check
+
+
+def get(scene: str) -> Check | None:
+    return _checks.get(scene)
+
+
+def clear() -> None:
+    _checks.clear()

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Check Scene: finds what a render would report, without rendering."""
+
+import bpy
+
+from .. import preferences
+from ..bridge import ignored, requirements, scene_check
+from ..core import causes, last_check, last_render, store_path
+from ..core.native import lodestone_native as native
+from ..core.problems import Problems
+
+
+def check_scene(context):
+    """Checks the context's scene as its view layer shows it; the panels show the result."""
+    problems, scene = Problems(), context.scene
+    requirements.povray(preferences.povray_program(), problems)
+    requirements.folder(store_path.store_folder(bpy.data.filepath), problems)
+    requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
+    depsgraph = context.evaluated_depsgraph_get()
+    found = scene_check.check(scene, context.view_layer, depsgraph, problems)
+    last_check.put(scene.name, found)
+    return found
+
+
+class LODESTONE_OT_check_scene(bpy.types.Operator):
+    bl_idname = "lodestone.check_scene"
+    bl_label = "Check Scene"
+    bl_description = "Find what a render would report, without rendering"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.scene is None:
+            return False
+        if bpy.app.is_job_running("RENDER"):
+            cls.poll_message_set("A render is running; it checks the scene as well")
+            return False
+        return True
+
+    def execute(self, context):
+        try:
+            found = check_scene(context)
+        except native.LodestoneError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, causes.headline(found.split(ignored.keys(context.scene))))
+        for area in context.screen.areas if context.screen else ():
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+        return {"FINISHED"}
+
+
+_CLASSES = (LODESTONE_OT_check_scene,)
+_register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    last_check.clear()
+    last_render.clear()
+
+
+def register():
+    _register()
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister():
+    if _on_load in bpy.app.handlers.load_pre:
+        bpy.app.handlers.load_pre.remove(_on_load)
+    _unregister()

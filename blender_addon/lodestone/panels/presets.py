@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Presets of the picture's quality, in the header of Levels of Detail: ours, and the user's own."""
+
+import os
+
+import bpy
+from bl_operators.presets import AddPresetBase
+from bl_ui.utils import PresetPanel
+from bpy.types import Operator, Panel
+
+# Name: Pixel Error, antialiasing
+PRESETS = {
+    "DRAFT": ("Draft", 8.0, "OFF"),
+    "PREVIEW": ("Preview", 2.0, "FINAL"),
+    "FINAL": ("Final", 1.0, "FINAL"),
+    "EXACT": ("Exact", 0.0, "FINAL"),
+}
+_WORDS = {
+    "DRAFT": "8 pixels, no antialiasing: the fastest picture",
+    "PREVIEW": "2 pixels: for judging light and composition",
+    "FINAL": "1 pixel: differences are hard to see",
+    "EXACT": "0: the originals, as slow as they are",
+}
+
+
+class LODESTONE_OT_levels_preset(Operator):
+    bl_idname = "lodestone.levels_preset"
+    bl_label = "Levels Preset"
+    bl_description = "Use this quality in renders"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    preset: bpy.props.EnumProperty(
+        name="Preset", items=[(key, name, _WORDS[key]) for key, (name, *_) in PRESETS.items()]
+    )
+
+    @classmethod
+    def description(cls, context, properties):
+        return _WORDS[properties.preset]
+
+    def execute(self, context):
+        settings = context.scene.lodestone
+        _, settings.pixel_error_render, settings.antialias = PRESETS[self.preset]
+        return {"FINISHED"}
+
+
+class LODESTONE_OT_levels_preset_add(AddPresetBase, Operator):
+    bl_idname = "lodestone.levels_preset_add"
+    bl_label = "Add Levels Preset"
+    bl_description = "Add or remove a preset of your own"
+    preset_menu = "LODESTONE_PT_levels_presets"
+    preset_subdir = "lodestone/levels"
+    preset_defines = ["settings = bpy.context.scene.lodestone"]
+    preset_values = ["settings.pixel_error_render", "settings.antialias"]
+
+
+class LODESTONE_PT_levels_presets(PresetPanel, Panel):
+    bl_label = "Levels of Detail Presets"
+    preset_subdir = "lodestone/levels"
+    preset_operator = "script.execute_preset"
+    preset_add_operator = "lodestone.levels_preset_add"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.emboss = "PULLDOWN_MENU"
+        for key, (name, *_) in PRESETS.items():
+            layout.operator("lodestone.levels_preset", text=name).preset = key
+        layout.separator()
+        if bpy.utils.preset_paths(self.preset_subdir):
+            super().draw(context)
+        else:  # the user has none: only the row that adds one, not "Missing Paths"
+            self.path_menu(
+                [os.path.dirname(__file__)],
+                self.preset_operator,
+                filter_ext=lambda extension: False,
+                add_operator=self.preset_add_operator,
+            )
+
+
+_CLASSES = (
+    LODESTONE_OT_levels_preset,
+    LODESTONE_OT_levels_preset_add,
+    LODESTONE_PT_levels_presets,
+)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)
