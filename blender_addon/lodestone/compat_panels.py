@@ -3,33 +3,41 @@
 
 import bpy
 
-ENGINE = "LODESTONE_POVRAY"
+from .panels import ENGINE
 
-# Panels of things our pictures do not have
+# Panels of what our pictures do not have, and those that ours stand for
 _LEFT_OUT = {
+    "DATA_PT_area",
+    "DATA_PT_camera_stereoscopy",
+    "DATA_PT_falloff_curve",
+    "DATA_PT_lens_panorama",
+    "DATA_PT_light",
+    "DATA_PT_preview",
+    "DATA_PT_spot",
+    "MATERIAL_PT_freestyle_line",
     "RENDER_PT_freestyle",
+    "RENDER_PT_gpencil",
+    "RENDER_PT_output_views",
+    "RENDER_PT_simplify",
+    "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_simplify_render",
+    "RENDER_PT_simplify_viewport",
+    "RENDER_PT_stereoscopy",
     "VIEWLAYER_PT_filter",
     "VIEWLAYER_PT_layer_passes",
-    "VIEWLAYER_PT_freestyle",
-    "RENDER_PT_simplify_greasepencil",
-    "DATA_PT_lens_panorama",
 }
-# Surface, world and light settings exist only as panels of the engines that brought them
-_BORROWED = {
-    "EEVEE_MATERIAL_PT_context_material",
-    "EEVEE_MATERIAL_PT_surface",
-    "EEVEE_WORLD_PT_surface",
-    "DATA_PT_EEVEE_light",
-}
+_LEFT_OUT_PREFIXES = ("LODESTONE_", "VIEWLAYER_PT_freestyle")
 
 
 def _panels():
     for name in dir(bpy.types):
         panel = getattr(bpy.types, name, None)
         engines = getattr(panel, "COMPAT_ENGINES", None)
-        if not isinstance(engines, set) or name.startswith("LODESTONE_"):
+        # The node editor's copy of a panel shares the very set of its original
+        original = name.removeprefix("NODE_")
+        if not isinstance(engines, set) or original.startswith(_LEFT_OUT_PREFIXES):
             continue
-        if name in _BORROWED or ("BLENDER_RENDER" in engines and name not in _LEFT_OUT):
+        if "BLENDER_RENDER" in engines and original not in _LEFT_OUT:
             yield panel
 
 
@@ -40,6 +48,8 @@ def register():
 
 def unregister():
     for name in dir(bpy.types):
+        if name.startswith("LODESTONE_"):
+            continue
         engines = getattr(getattr(bpy.types, name, None), "COMPAT_ENGINES", None)
         if isinstance(engines, set):
             engines.discard(ENGINE)

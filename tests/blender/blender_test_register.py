@@ -61,8 +61,8 @@ class Register(unittest.TestCase):
             "RENDER_PT_format",
             "RENDER_PT_color_management",
             "DATA_PT_lens",
-            "EEVEE_MATERIAL_PT_surface",
-            "EEVEE_WORLD_PT_surface",
+            "VIEWLAYER_PT_layer",
+            "LODESTONE_MATERIAL_PT_surface",
         ):
             self.assertIn(f"{panel}.COMPAT_ENGINES", joined)
 

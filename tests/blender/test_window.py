@@ -76,6 +76,18 @@ class Window(unittest.TestCase):
     def test_update_levels(self):
         self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate"))
 
+    def test_every_properties_tab_draws_under_our_engine(self):
+        self.succeeds(self.blender("window_panels.py"))
+        said = self.log.read_text("utf-8", "replace")
+        # What Blender says of a layout that names a property, operator or panel that is not there
+        for complaint in ("rna_uiItem", "unknown operator", "not found:", "Error:"):
+            self.assertNotIn(complaint, said)
+        pictures = {path.name for path in self.folder.glob("*.png")}
+        self.assertLessEqual({"render.png", "material.png", "data_key.png"}, pictures)
+        kept = os.environ.get("LODESTONE_SCREENS")  # for who wants to look at them
+        if kept:
+            shutil.copytree(self.folder, kept, dirs_exist_ok=True)
+
     def test_escape_stops_povray_within_a_second(self):
         pid = self.folder / "pid"
         program = self.folder / "povray"

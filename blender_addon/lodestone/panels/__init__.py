@@ -5,7 +5,18 @@ import importlib
 
 ENGINE = "LODESTONE_POVRAY"
 # In the order in which they appear within a tab
-_MODULES = ("sampling", "levels", "problems", "film")
+_MODULES = (
+    "sampling",
+    "simplify",
+    "levels",
+    "problems",
+    "film",
+    "visibility",
+    "material",
+    "light",
+    "world",
+    "camera",
+)
 _loaded: list = []
 
 
