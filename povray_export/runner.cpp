@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "povray_export/messages.h"
+#include "povray_export/spawn.h"
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +15,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -44,7 +44,8 @@ bool is_program(const std::string& path) {
            access(path.c_str(), X_OK) == 0;
 }
 
-/// Ends with the output closed and the process reaped, whatever happens.
+/// Ends with the output closed and the process reaped, whatever happens. Made, watched and
+/// destroyed on one thread: POV-Ray is killed when that thread ends.
 class Child {
 public:
     Child(const std::string& program, const std::filesystem::path& folder,
@@ -61,45 +62,14 @@ public:
             if (value != nullptr)
                 environment.push_back(text(name, '=', value));
         }
-        const auto pointers = [](const std::vector<std::string>& strings) {
-            std::vector<char*> out;
-            out.reserve(strings.size() + 1);
-            for (const std::string& string : strings)
-                out.push_back(const_cast<char*>(string.c_str()));
-            out.push_back(nullptr);
-            return out;
-        };
-
-        // A clean start, whatever the host program (Blender) did to its own: no open files, no
-        // blocked or ignored signals, a process group of its own.
-        posix_spawn_file_actions_t files;
-        posix_spawn_file_actions_init(&files);
-        posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_adddup2(&files, ends[1], 1);
-        posix_spawn_file_actions_adddup2(&files, ends[1], 2);
-        posix_spawn_file_actions_addclosefrom_np(&files, 3);
-        posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
-        posix_spawnattr_t attributes;
-        posix_spawnattr_init(&attributes);
-        sigset_t signals;
-        sigemptyset(&signals);
-        posix_spawnattr_setsigmask(&attributes, &signals);
-        sigfillset(&signals);
-        posix_spawnattr_setsigdefault(&attributes, &signals);
-        posix_spawnattr_setpgroup(&attributes, 0);
-        posix_spawnattr_setflags(&attributes,
-                                 static_cast<short>(POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
-                                                    POSIX_SPAWN_SETSIGDEF));
-        const int number = posix_spawn(&process_, program.c_str(), &files, &attributes,
-                                       pointers(arguments).data(), pointers(environment).data());
-        posix_spawn_file_actions_destroy(&files);
-        posix_spawnattr_destroy(&attributes);
-        close(ends[1]);
-        if (number != 0) {
-            process_ = -1;
+        try {
+            process_ = spawn({program, arguments, environment, folder, ends[1]});
+        } catch (...) {
+            close(ends[1]);
             close(output_);
-            fail(Status::PovrayMissing, "cannot start POV-Ray ('", program, "'): ", reason(number));
+            throw;
         }
+        close(ends[1]);
     }
 
     ~Child() {

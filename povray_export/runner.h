@@ -41,7 +41,8 @@ std::string find_program(const std::string& program = "");
 /// Renders folder/scene.ini; stages Parse and Trace. The picture appears under its name when it is
 /// complete, and an old one stays until then. Throws Error(PovrayMissing); Error(PovrayFailed) with
 /// POV-Ray's own sentence; Error(Cancelled), at most 1 s after the job was cancelled. However it
-/// ends, no process and no file of a broken run is left. Safe from any thread, several at once.
+/// ends, no process and no file of a broken run is left; killing this process kills POV-Ray, too.
+/// Safe from any thread, several at once.
 RunReport run(const RunOptions& options, const Job& job = {});
 
 }  // namespace lodestone::povray

@@ -58,6 +58,24 @@ size_t files_in(const std::filesystem::path& folder) {
     return count;
 }
 
+/// True once a process is gone, or a zombie that waits for init; the system takes a moment.
+bool gone(int process, int tries) {
+    for (int i = 0; i < tries; ++i) {
+        std::ifstream command(text("/proc/", process, "/cmdline"));
+        if (!command || command.peek() == EOF)
+            return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+}
+
+/// A line of a file, "" while it has none.
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    std::string line;
+    return std::getline(file, line) && !file.eof() ? line : "";
+}
+
 const char* const kSphere =
     "global_settings{assumed_gamma 1} camera{location <0,0,-3>} sphere{0,1 pigment{rgb 1} "
     "finish{ambient 1}}\n";
@@ -202,15 +220,25 @@ TEST(PovrayRunner, AStubbornProgramIsStoppedWithinASecond) {
     EXPECT_LT(fraction, 0.7);
     EXPECT_EQ(files_in(folder), 4u);  // scene.pov, scene.ini, program.sh, child
     const int grandchild = std::stoi(read_file(folder / "child"));
-    // Gone, or a zombie that waits for init; the system takes a moment.
-    bool gone = false;
-    for (int i = 0; i < 100 && !gone; ++i) {
-        std::ifstream command(text("/proc/", grandchild, "/cmdline"));
-        gone = !command || command.peek() == EOF;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_TRUE(gone);
+    EXPECT_TRUE(gone(grandchild, 100));
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // no zombie of ours
+}
+
+TEST(PovrayRunner, KillingTheHostKillsTheProgram) {
+    const auto folder = scene_with("orphan", kSphere);
+    const std::string program = script(folder, "echo $$ > child; exec sleep 100\n");
+    const pid_t host = fork();
+    if (host == 0) {
+        error_of([&] { run({.folder = folder, .program = program}); });
+        _exit(0);
+    }
+    for (int i = 0; i < 500 && read_text(folder / "child").empty(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const int child = std::stoi(read_text(folder / "child"));
+    EXPECT_FALSE(gone(child, 1));
+    kill(host, SIGKILL);
+    waitpid(host, nullptr, 0);
+    EXPECT_TRUE(gone(child, 100));
 }
 
 // From here on the real program.
