@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
 
-import shutil
-import tempfile
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from . import report
+from . import locked_folder, report
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -98,18 +96,23 @@ class SceneFolder:
         self._kept = kept
         self.path = kept
         self.stays = keep == "ALWAYS"
+        self._locked: locked_folder.LockedFolder | None = None
 
     def __enter__(self) -> "SceneFolder":
-        self._kept.parent.mkdir(parents=True, exist_ok=True)
+        parent, name = self._kept.parent, self._kept.name
+        parent.mkdir(parents=True, exist_ok=True)
         if self._keep == "ALWAYS":
             self._kept.mkdir(exist_ok=True)
         else:
-            prefix = f"{self._kept.name}-"
-            self.path = Path(tempfile.mkdtemp(prefix=prefix, dir=self._kept.parent))
+            locked_folder.settle(parent, name)  # what a killed run left
+            self._locked = locked_folder.LockedFolder(parent, name)
+            self.path = self._locked.path
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
         failed = kind is not None and not getattr(error, "cancelled", False)
         self.stays = self._keep == "ALWAYS" or (self._keep == "FAILED" and failed)
-        if not self.stays:
-            shutil.rmtree(self.path, ignore_errors=True)
+        if self._locked is not None and self.stays:
+            self._locked.keep()
+        elif self._locked is not None:
+            self._locked.remove()
