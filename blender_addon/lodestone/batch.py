@@ -8,20 +8,14 @@ batch_blender.py. A crash, a signal and a missing report all become exit codes.
 """
 
 import os
-import shutil
-import signal
-import subprocess
 import sys
 import tempfile
-import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent
-GRACE_S = 5.0  # for Blender to stop by itself, before it is killed
-LOG_TAIL = 20
-PROGRESS = "Lodestone: progress: "
-SPOKEN = "Lodestone: "
+PAGE_EVERY_S = 10.0
 
 
 def hand_over() -> None:
@@ -47,185 +41,151 @@ if __name__ == "__main__":
     # The package, not its folder: a module here must not hide one of Python's.
     sys.path[0] = str(PACKAGE.parent)
 
-from lodestone.core import report  # noqa: E402
-from lodestone.core.batch_arguments import FileJob, jobs, parser  # noqa: E402
-from lodestone.core.exit_codes import STATUS, ExitCode, of_many  # noqa: E402
-from lodestone.core.problems import Problem  # noqa: E402
+from lodestone import bl_info  # noqa: E402
+from lodestone.core import batch_log, batch_page, locked_folder, report  # noqa: E402
+from lodestone.core.batch_arguments import jobs, parse, parser  # noqa: E402
+from lodestone.core.batch_console import Console  # noqa: E402
+from lodestone.core.batch_jobs import FileJob  # noqa: E402
+from lodestone.core.batch_queue import Interrupts, Queue  # noqa: E402
+from lodestone.core.batch_resume import Earlier, Found  # noqa: E402
+from lodestone.core.batch_rows import rows_of, table, tally  # noqa: E402
+from lodestone.core.batch_task import JOB_FOLDER, FileTask, Limits, Surroundings  # noqa: E402
+from lodestone.core.exit_codes import ExitCode, of_many  # noqa: E402
 
 
-class Cancelled(Exception):
-    """Ctrl-C or SIGTERM."""
+class Interrupted(Exception):
+    """While nothing ran yet."""
+
+
+class Run:
+    """All files of one call."""
+
+    def __init__(self, options, work: list[FileJob], interrupts: Interrupts) -> None:
+        self.options = options
+        self.work = work
+        self.interrupts = interrupts
+        self.console = Console(len(work))
+        self.reports: dict[int, dict] = {}
+        self.log: batch_log.BatchLog | None = None
+        self.unwritten = False  # something that was asked for could not be written
+        self._page_at = 0.0
+        beside = options.log or options.html
+        files = Path(beside).absolute().with_suffix(".files") if beside else None
+        self.around = Surroundings(
+            blender=options.blender or os.environ.get("LODESTONE_BLENDER") or "blender",
+            script=PACKAGE / "batch_blender.py",
+            limits=Limits(options.timeout, options.max_memory),
+            skip_existing=getattr(options, "skip_existing", False),
+            files=files,
+            record=self._record,
+            said=lambda task, text: self.console.progress(task.number, task.job.file, text),
+            began=lambda task: self.console.began(task.number, task.job.file),
+            done=self._done,
+        )
+
+    def run(self) -> ExitCode:
+        locked_folder.settle(Path(tempfile.gettempdir()), JOB_FOLDER)  # of killed runs
+        earlier = Earlier(batch_log.read(self.options.log) if self.options.resume else ())
+        if self.options.log:
+            self.log = batch_log.BatchLog(self.options.log)
+            started = time.strftime("%Y-%m-%dT%H:%M:%S%z")
+            verb, files = self.options.verb, len(self.work)
+            self._record("run", verb=verb, files=files, time=started)
+        tasks = self._tasks(earlier)
+        for task in Queue(tasks, self.options.jobs, self.interrupts).run():
+            task.leave()
+        code = of_many(made["exit_code"] for made in self._in_order())
+        if self.options.json:
+            self._write(report.write, self.options.json, self._whole(code), "report")
+        self._write_page()
+        if len(self.work) > 1:
+            rows = rows_of(self._in_order())
+            print(f"\n{table(rows)}\n{tally(rows)}", flush=True)
+        return ExitCode.FAILED if self.unwritten and code == ExitCode.DONE else code
+
+    def _tasks(self, earlier: Earlier) -> list[FileTask]:
+        """Those that are left to do; the reports of the others are taken over."""
+        tasks = []
+        for number, job in enumerate(self.work):
+            try:
+                found = earlier.find(job, self._tick)
+            except Interrupted:
+                found = Found()
+            if found.report is not None:
+                self.reports[number] = {**found.report, "resumed": True}
+                self.console.finished(number, self.reports[number])
+            else:
+                tasks.append(FileTask(number, job, found, self.around))
+        return tasks
+
+    def _tick(self) -> None:
+        if self.interrupts.count:
+            raise Interrupted
+
+    def _done(self, task: FileTask) -> None:
+        self.reports[task.number] = task.report
+        self.console.finished(task.number, task.report)
+        if time.monotonic() - self._page_at > PAGE_EVERY_S:
+            self._write_page()
+            self._page_at = time.monotonic()
+
+    def _record(self, line: str, **values) -> None:
+        if self.log is None:
+            return
+        try:
+            self.log.add(line, **values)
+        except OSError as error:
+            self._complain(f"the log cannot be written: {error}")
+            self.log.close()
+            self.log = None
+
+    # ---- What is written ----
+
+    def _in_order(self) -> list[dict]:
+        return [self.reports[number] for number in sorted(self.reports)]
+
+    def _whole(self, code: ExitCode) -> dict:
+        if len(self.work) == 1:
+            return self.reports[0]
+        return report.many_report(self.options.verb, self._in_order(), code)
+
+    def _write_page(self) -> None:
+        if not self.options.html:
+            return
+        reports = self._in_order()
+        title = f"Lodestone: {self.options.verb}"
+        about = time.strftime("%Y-%m-%d %H:%M:%S %z")
+        left = len(self.work) - len(reports)
+        page = batch_page.page(rows_of(reports), title, about, Path(self.options.html), left)
+        self._write(batch_page.write, self.options.html, page, "page")
+
+    def _write(self, write, path: str, value, name: str) -> None:
+        try:
+            write(path, value)
+        except OSError as error:
+            self._complain(f"the {name} cannot be written: {error}")
+
+    def _complain(self, text: str) -> None:
+        self.unwritten = True
+        self.console.line(f"batch.py: {text}", error=True)
 
 
 def main(arguments: list[str]) -> int:
-    top = parser()
-    options = top.parse_args(arguments)
+    options = parse(arguments)
+    if options.jobs > 1 and options.threads == 0:
+        options.threads = max(1, len(os.sched_getaffinity(0)) // options.jobs)
+    version = ".".join(str(part) for part in bl_info["version"])
     try:
-        work = jobs(options)
+        work = [replace(job, version=version) for job in jobs(options)]
     except ValueError as error:
-        top.error(str(error))  # exits 2
-    signal.signal(signal.SIGTERM, _cancel)
-    signal.signal(signal.SIGINT, _cancel)
-    blender = options.blender or os.environ.get("LODESTONE_BLENDER") or "blender"
-    reports, codes = [], []
-    for number, job in enumerate(work):
-        if len(work) > 1:
-            print(f"[{number + 1}/{len(work)}] {job.file}", flush=True)
-        result = run_file(job, blender, options.timeout)
-        reports.append(result)
-        codes.append(ExitCode(result["exit_code"]))
-        speak(result)
-        if codes[-1] == ExitCode.CANCELLED:
-            break
-    code = of_many(codes)
-    if options.json:
-        whole = reports[0] if len(work) == 1 else report.many_report(options.verb, reports, code)
+        parser().error(str(error))  # exits 2
+    with Interrupts() as interrupts:
         try:
-            report.write(options.json, whole)
+            return int(Run(options, work, interrupts).run())
         except OSError as error:
-            print(f"batch.py: the report cannot be written: {error}", file=sys.stderr)
-            code = ExitCode.FAILED if code == ExitCode.DONE else code
-    return int(code)
-
-
-def speak(result: dict) -> None:
-    """One line on how it went, and each problem once."""
-    for problem in result.get("problems", []):
-        if problem["severity"] != "info":
-            print(f"{problem['severity']}: {Problem(**problem).sentence}", file=sys.stderr)
-    if "message" in result:
-        print(f"batch.py: {result['input']}: {result['message']}", file=sys.stderr)
-    for picture in result.get("pictures", [result]):
-        if picture.get("picture"):
-            print(picture["picture"])
-    sys.stdout.flush()
-
-
-def run_file(job: FileJob, blender: str, timeout: float | None) -> dict:
-    """Runs one job in a Blender of its own; returns its report, whatever happened."""
-    program = shutil.which(blender)
-    if program is None:
-        text = f"Blender was not found ({blender}): install it, or name it with --blender"
-        return report.file_report(job.verb, job.file, ExitCode.FAILED, text)
-    if not os.path.isfile(job.file) or not os.access(job.file, os.R_OK):
-        reason = "cannot be read" if os.path.exists(job.file) else "does not exist"
-        return report.file_report(job.verb, job.file, ExitCode.UNREADABLE, f"the file {reason}")
-    with tempfile.TemporaryDirectory(prefix="lodestone-") as folder:
-        place = Path(folder)
-        job = FileJob(**{**job.__dict__, "report": str(place / "report.json")})
-        (place / "job.json").write_text(job.dump(), "utf-8")
-        command = [
-            program,
-            "--background",
-            "--factory-startup",
-            "--disable-autoexec",
-            "--python-exit-code",
-            "1",
-            "--python",
-            str(PACKAGE / "batch_blender.py"),
-            "--",
-            str(place / "job.json"),
-        ]
-        return _supervise(command, job, timeout, place / "report.json")
-
-
-def _supervise(command: list[str], job: FileJob, timeout: float | None, result: Path) -> dict:
-    tail: list[str] = []
-    try:
-        child = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,  # Ctrl-C reaches us alone; the child and its POV-Ray get ours
-        )
-    except OSError as error:
-        text = f"Blender cannot be started: {error}"
-        return report.file_report(job.verb, job.file, ExitCode.FAILED, text)
-    reader = threading.Thread(target=_relay, args=(child.stdout, tail), daemon=True)
-    reader.start()
-    code, message = None, ""
-    try:
-        child.wait(timeout)
-    except subprocess.TimeoutExpired:
-        code, message = ExitCode.FAILED, f"stopped after the {timeout:g} s of --timeout"
-        _stop(child)
-    except Cancelled:
-        code, message = ExitCode.CANCELLED, "cancelled"
-        _stop(child)
-    _kill_group(child)  # nothing of the child's may outlive it
-    reader.join(2.0)
-    written = _read(result)
-    if code is not None:
-        return {**written, **report.file_report(job.verb, job.file, code, message)}
-    if written:
-        return written
-    how = f"exit code {child.returncode}"
-    if child.returncode < 0:
-        how = f"signal {signal.Signals(-child.returncode).name}"
-    print("".join(tail), file=sys.stderr)
-    text = f"Blender died on the file ({how}); the end of its log is above"
-    return report.file_report(job.verb, job.file, ExitCode.UNREADABLE, text)
-
-
-def _relay(stream, tail: list[str]) -> None:
-    """Passes on what our half in Blender says; keeps the end of everything for a crash."""
-    terminal = sys.stdout.isatty()
-    shown = False
-    for raw in stream:
-        line = raw.decode("utf-8", "replace")
-        if line.startswith(PROGRESS):
-            if terminal:
-                print(f"\r\x1b[K{line[len(PROGRESS):].rstrip()}", end="", flush=True)
-                shown = True
-            continue
-        if shown:
-            print("\r\x1b[K", end="", flush=True)
-            shown = False
-        if line.startswith(SPOKEN):
-            print(line[len(SPOKEN) :], end="", flush=True)
-        tail.append(line)
-        del tail[:-LOG_TAIL]
-    if shown:
-        print("\r\x1b[K", end="", flush=True)
-
-
-def _read(path: Path) -> dict:
-    import json
-
-    try:
-        value = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return value if isinstance(value, dict) and value.get("exit_code") in STATUS else {}
-
-
-def _stop(child: subprocess.Popen) -> None:
-    """Asks it to stop, so that it clears up; kills it when it does not."""
-    child.terminate()
-    end = time.monotonic() + GRACE_S
-    while child.poll() is None and time.monotonic() < end:
-        try:
-            time.sleep(0.05)
-        except Cancelled:  # asked twice: now
-            break
-    _kill_group(child)
-    child.wait()
-
-
-def _kill_group(child: subprocess.Popen) -> None:
-    try:
-        os.killpg(child.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
-
-
-def _cancel(number, frame) -> None:
-    raise Cancelled
+            print(f"batch.py: {error}", file=sys.stderr)
+            return int(ExitCode.FAILED)
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except Cancelled:
-        sys.exit(int(ExitCode.CANCELLED))
+    sys.exit(main(sys.argv[1:]))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The half of batch.py that runs inside Blender: one file, one reading of it per frame."""
 
+import json
 import os
 import resource
 import shutil
@@ -8,6 +9,7 @@ import signal
 import sys
 import time
 import traceback
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -18,13 +20,19 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
+from lodestone.bridge import blend_check  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, process_session  # noqa: E402
 from lodestone.core import progress, report, store_path  # noqa: E402
-from lodestone.core.batch_arguments import FileJob, PictureRequest  # noqa: E402
+from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
 from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
-from lodestone.core.problems import ERROR, Problems  # noqa: E402
+from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.work import Stopped, Work  # noqa: E402
+
+
+THUMBNAIL = 192  # pixels
+THUMBNAIL_OF = 64_000_000  # pixels of the largest picture that gets one
 
 
 class Failed(Exception):
@@ -45,7 +53,7 @@ class FileRun:
         self.work = Work()
         self.clock = progress.StageClock(0)
         self._said = 0.0
-        self._built = False
+        self._told = 0  # problems
 
     def run(self) -> ExitCode:
         code, text = ExitCode.DONE, ""
@@ -92,15 +100,17 @@ class FileRun:
 
     def _open(self) -> None:
         try:
-            bpy.ops.wm.open_mainfile(filepath=self.job.file, load_ui=False, use_scripts=False)
-        except RuntimeError as error:
-            text = " ".join(str(error).split())
+            blend = batch_inputs.read(self.job.file, ())  # before anybody can change it
+            bpy.ops.wm.open_mainfile(
+                filepath=self.job.file, load_ui=False, use_scripts=self.job.trust_scripts
+            )
+        except (OSError, RuntimeError) as error:
+            text = " ".join(str(error).split()).removeprefix("Error: ")
+            text += blend_header.written_by(self.job.file)
             raise Failed(ExitCode.UNREADABLE, f"Blender cannot read the file: {text}") from None
-        for library in bpy.data.libraries:
-            path = bpy.path.abspath(library.filepath, library=library.library)
-            if not os.path.exists(path):
-                text = f'Library "{library.name}" is missing ({path}): what it holds is left out'
-                self.problems.add(library.name, ERROR, "library_missing", text)
+        others = bpy.utils.blend_paths(absolute=True, packed=False, local=False)
+        self._tell(inputs={**blend, "others": batch_inputs.stamps(others)})
+        blend_check.check_file(self.problems, self.job.trust_scripts)
 
     # ---- Pictures ----
 
@@ -109,20 +119,24 @@ class FileRun:
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
         for frame in range(first, last + 1):
-            scene.frame_set(frame)
-            self.clock = progress.StageClock(frame)
             requests = self.job.pictures
             if self.job.frames:
                 requests = tuple(picture.for_frame(frame) for picture in requests)
+            requests = tuple(picture for picture in requests if picture.out not in self.job.skip)
+            if self.job.pictures and not requests:
+                continue
+            scene.frame_set(frame)
+            self.clock = progress.StageClock(frame)
             pictures += [
                 {**({"frame": frame} if self.job.frames else {}), **made}
                 for made in self._frame(scene, requests)
             ]
             if pictures:
-                single = len(self.job.pictures) == 1 and not self.job.frames
-                self.result.update(pictures[0] if single else {"pictures": pictures})
+                many = self.job.many_pictures
+                self.result.update({"pictures": pictures} if many else pictures[0])
 
     def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
+        requests = tuple(_filled_up(scene, picture) for picture in requests)
         request = extract_engine.Request(
             cameras=[(picture.camera, picture.size) for picture in requests], tick=self._tick
         )
@@ -143,10 +157,11 @@ class FileRun:
             try:
                 if self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests):
                     self._build(model, store)
-                made = [
-                    self._picture(scene, model, store, picture, view, size)
-                    for picture, (view, size) in zip(requests, request.frames)
-                ]
+                made = []
+                for picture, (view, size) in zip(requests, request.frames):
+                    made.append(self._picture(scene, model, store, picture, view, size))
+                    self.problems.extend_native(model.problems())
+                    self._tell_picture(picture.out, made[-1])
             finally:
                 self.problems.extend_native(model.problems())
         return made
@@ -184,7 +199,10 @@ class FileRun:
                 lambda: cut_and_export(model, view, size, settings, folder, new_job("Export"))
             )
             return {**about, **parts, "scene": str(folder / "scene.pov")}
-        with SceneFolder(store_path.scene_folder(store), "FAILED") as folder:
+        kept = store_path.scene_folder(store)
+        if self.job.keep == "always" and self.job.many_pictures:
+            kept = kept / Path(picture.out).stem
+        with SceneFolder(kept, self.job.keep.upper()) as folder:
             try:
                 made = self._long(
                     lambda: make_picture(
@@ -193,13 +211,27 @@ class FileRun:
                 )
             except native.LodestoneError as error:
                 if error.status == native.Status.POVRAY_FAILED:
-                    text = f"{error} (its files: {folder.path})"
-                    raise Failed(ExitCode.POVRAY, text) from error
+                    where = f" (its files: {folder.path})" if self.job.keep != "never" else ""
+                    raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
                 raise
             save(scene, made.path, Path(picture.out), picture.covered_only)
             if self.job.keep_exr:
                 _replace_by_copy(made.path, Path(picture.out).with_suffix(".exr"))
+        if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
+            save_thumbnail(picture.out, self.job.thumbnail)
         return {**about, **made.parts, "picture": picture.out}
+
+    # ---- What is told at once, for the case that this process does not live to its report ----
+
+    def _tell(self, **event) -> None:
+        path = Path(self.job.report).with_name(report.EVENTS)
+        with open(path, "a", encoding="utf-8") as file:
+            file.write(json.dumps(event) + "\n")
+
+    def _tell_picture(self, out: str, made: dict) -> None:
+        problems = report.problems_part(self.problems)
+        new, self._told = problems[self._told :], len(problems)
+        self._tell(out=out, made={**made, **({"problems": new} if new else {})})
 
     # ---- Progress ----
 
@@ -230,7 +262,7 @@ def save(scene, exr: Path, out: Path, with_alpha: bool) -> None:
     is replaced only when the new one is complete."""
     format_ = scene.render.image_settings
     before = (format_.file_format, format_.color_mode, format_.color_depth)
-    temporary = out.with_name(f".{out.stem}-{os.getpid()}.png")
+    temporary = out.with_name(report.temporary_name())
     image = bpy.data.images.load(str(exr))
     try:
         if format_.file_format != "PNG":
@@ -246,6 +278,36 @@ def save(scene, exr: Path, out: Path, with_alpha: bool) -> None:
         format_.file_format, format_.color_mode, format_.color_depth = before
         bpy.data.images.remove(image)
         temporary.unlink(missing_ok=True)
+
+
+def save_thumbnail(picture: str, target: str) -> None:
+    """A small JPEG of a picture. Failing at it is no failure: the picture is there."""
+    image = None
+    try:
+        width, height = native.image_size(picture)
+        if width * height > THUMBNAIL_OF:
+            return
+        image = bpy.data.images.load(picture)
+        scale = min(1.0, THUMBNAIL / max(width, height))
+        image.scale(max(1, round(width * scale)), max(1, round(height * scale)))
+        image.file_format = "JPEG"
+        image.filepath_raw = target
+        image.save()
+    except (OSError, RuntimeError, native.LodestoneError) as error:
+        print(f"no thumbnail: {error}")
+    finally:
+        if image is not None:
+            bpy.data.images.remove(image)
+
+
+def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
+    """What neither the command line nor a profile says is as the file has it."""
+    own = scene.lodestone
+    return replace(
+        picture,
+        pixel_error=own.pixel_error_render if picture.pixel_error is None else picture.pixel_error,
+        antialias=picture.antialias or own.antialias.lower(),
+    )
 
 
 def _replace_by_copy(source: Path, target: Path) -> None:
@@ -266,6 +328,7 @@ def _code_of(error) -> ExitCode:
 
 def main() -> None:
     job = FileJob.load(Path(sys.argv[sys.argv.index("--") + 1]).read_text("utf-8"))
+    process_session.follow(job.supervisor)
     lodestone.register()
     run = FileRun(job)
     signal.signal(signal.SIGTERM, lambda number, frame: run.work.stop())

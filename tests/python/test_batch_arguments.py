@@ -10,7 +10,9 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core.batch_arguments import FileJob, jobs, parser
+from lodestone.core.batch_arguments import jobs, parser
+from lodestone.core.batch_arguments import parse as parse_options
+from lodestone.core.batch_jobs import FileJob
 
 
 def parse(*arguments):
@@ -48,6 +50,10 @@ class Usage(unittest.TestCase):
             ("--frames", "5-1"),
             ("--frames", "a-b"),
             ("--timeout", "0"),
+            ("--jobs", "0"),
+            ("--max-memory", "8X"),
+            ("--max-memory", "0"),
+            ("--max-memory", "-1G"),
         ):
             said = self.refused("render", "a.blend", "--out", "a.png", f"{option}={value}")
             self.assertIn(option, said)
@@ -56,6 +62,22 @@ class Usage(unittest.TestCase):
         self.assertIn("two files", self.refused("render", "x/a.blend", "y/a.blend", "--out", "o"))
         parse("build", "x/a.blend", "y/a.blend")
         self.refused("build", "x/a.blend", "y/a.blend", "--store", "s")
+
+    def test_resuming_needs_the_log_to_go_on_with(self):
+        with contextlib.redirect_stderr(io.StringIO()) as said, self.assertRaises(SystemExit):
+            parse_options(["build", "a.blend", "--resume"])
+        self.assertIn("--log", said.getvalue())
+
+    def test_memory_is_told_as_people_write_it(self):
+        for text, expected in (
+            ("8G", 8_000_000_000),
+            ("500M", 500_000_000),
+            ("1.5gb", 1_500_000_000),
+            ("2 GiB", 2 << 30),
+            ("1048576", 1 << 20),
+        ):
+            options = parser().parse_args(["build", "a.blend", "--max-memory", text])
+            self.assertEqual(options.max_memory, expected, text)
 
 
 class Jobs(unittest.TestCase):
@@ -92,6 +114,29 @@ class Jobs(unittest.TestCase):
         ):
             self.assertEqual(FileJob.load(job.dump()), job)
 
+    def test_the_key_is_of_what_is_made_and_not_of_how_the_run_goes(self):
+        (job,) = parse("render", "a.blend", "--out", "o.png")
+        same = ("--threads=3", "--timeout=9", "--jobs=2", "--keep=always", "--max-memory=1G")
+        for option in same:
+            (other,) = parse("render", "a.blend", "--out", "o.png", option)
+            self.assertEqual(other.key(), job.key(), option)
+        for option in (
+            "--pixel-error=2",
+            "--camera=B",
+            "--size=1x1",
+            "--trust-scripts",
+            "--strict",
+        ):
+            (other,) = parse("render", "a.blend", "--out", "o.png", option)
+            self.assertNotEqual(other.key(), job.key(), option)
+
+    def test_the_same_frame_of_a_longer_range_has_the_same_key(self):
+        (short,) = parse("render", "a.blend", "--out", "o", "--frames=1-2")
+        (long,) = parse("render", "a.blend", "--out", "o", "--frames=1-9")
+        keys = [job.picture_key(*next(job.wanted())) for job in (short, long)]
+        self.assertEqual(keys[0], keys[1])
+        self.assertNotEqual(short.key(), long.key())
+
 
 class Views(unittest.TestCase):
     def setUp(self):
@@ -110,7 +155,7 @@ class Views(unittest.TestCase):
             "--size=640x360",
         )
         self.assertEqual([p.camera for p in pictures], ["Far", "Far"])
-        self.assertEqual([p.pixel_error for p in pictures], [1.0, 0.0])
+        self.assertEqual([p.pixel_error for p in pictures], [None, 0.0])  # None: as the file has it
         self.assertEqual([p.size for p in pictures], [(640, 360), (64, 36)])
 
     def test_mistakes_are_named_with_their_entry(self):

@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
@@ -12,6 +13,7 @@ from .exit_codes import STATUS, ExitCode
 from .problems import Problem
 
 SCHEMA = 1
+EVENTS = "events.jsonl"  # beside the report while Blender runs: what is finished so far
 
 
 def file_report(verb: str, source: str, code: ExitCode, message: str = "") -> dict[str, Any]:
@@ -77,6 +79,17 @@ def povray_part(report: Any) -> dict[str, Any]:
         "peak_bytes": report.peak_bytes,
         "exit_code": report.exit_code,
     }
+
+
+def temporary_name() -> str:
+    """Of a picture that is being written by this process."""
+    return f".lodestone-{os.getpid()}.png"
+
+
+def temporary_owner(name: str) -> int:
+    """The process that was writing a picture of that name; 0 of other names."""
+    found = re.fullmatch(r"\.lodestone-(\d{1,9})\.png", name)
+    return int(found[1]) if found else 0
 
 
 def problems_part(problems: Iterable[Problem]) -> list[dict[str, str]]:

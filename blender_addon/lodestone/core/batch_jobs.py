@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one Blender is asked to do with one file, and how it travels there."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class PictureRequest:
+    """One picture (or exported scene) of one input. `out`: the picture, or for export the folder;
+    `camera` "" and None in the others: as the file has it."""
+
+    out: str
+    camera: str = ""
+    pixel_error: float | None = None
+    antialias: str | None = None
+    false_color: bool = False
+    covered_only: bool = False
+    size: tuple[int, int] | None = None
+
+    def for_frame(self, frame: int) -> "PictureRequest":
+        """out.png -> out_0001.png"""
+        path = Path(self.out)
+        return replace(self, out=str(path.with_name(f"{path.stem}_{frame:04}{path.suffix}")))
+
+
+@dataclass(frozen=True)
+class FileJob:
+    """What one Blender is to do with one input. `skip` names the `out` of pictures that are there
+    already; `report`, `thumbnail` and `supervisor` are those of one run."""
+
+    verb: str
+    file: str
+    store: str
+    report: str
+    pictures: tuple[PictureRequest, ...]
+    frames: tuple[int, int] | None = None
+    threads: int = 0
+    program: str = ""
+    keep: str = "failed"
+    keep_exr: bool = False
+    strict: bool = False
+    trust_scripts: bool = False
+    skip: tuple[str, ...] = ()
+    thumbnail: str = ""
+    supervisor: int = 0  # process id of batch.py
+    version: str = ""  # of Lodestone
+
+    def wanted(self) -> Iterator[tuple[int | None, PictureRequest]]:
+        """Each picture with its frame (None: the file's own), in the order of the report."""
+        if self.frames is None:
+            yield from ((None, picture) for picture in self.pictures)
+            return
+        for frame in range(self.frames[0], self.frames[1] + 1):
+            yield from ((frame, picture.for_frame(frame)) for picture in self.pictures)
+
+    @property
+    def many_pictures(self) -> bool:
+        """Whether the report has a list of them."""
+        return len(self.pictures) > 1 or self.frames is not None
+
+    def key(self) -> str:
+        """Equal for jobs that make the same things from the same input."""
+        values = asdict(self)
+        for of_a_run in ("report", "threads", "program", "skip", "thumbnail", "supervisor", "keep"):
+            del values[of_a_run]
+        return _hash(values)
+
+    def picture_key(self, frame: int | None, picture: PictureRequest) -> str:
+        of_all = [self.version, self.verb, self.file, self.trust_scripts, self.keep_exr]
+        return _hash([*of_all, frame, asdict(picture)])
+
+    def dump(self) -> str:
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def load(cls, text: str) -> "FileJob":
+        values = json.loads(text)
+        pictures = [
+            PictureRequest(**{**p, "size": tuple(p["size"]) if p["size"] else None})
+            for p in values["pictures"]
+        ]
+        frames = tuple(values["frames"]) if values["frames"] else None
+        changed = {"pictures": tuple(pictures), "frames": frames, "skip": tuple(values["skip"])}
+        return cls(**{**values, **changed})
+
+
+def _hash(value: Any) -> str:
+    text = json.dumps(value, sort_keys=True)
+    return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One row for each file of a run, for the table on the terminal and the page."""
+
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from . import progress
+from .exit_codes import ExitCode
+
+_ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # any failure: 0
+_JOINERS = "\u200c\u200d"  # of Persian, Hindi and others
+
+
+@dataclass(frozen=True)
+class Row:
+    """`status` is the report's, or why it was stopped; numbers are None where there is none."""
+
+    file: str
+    code: ExitCode
+    status: str
+    message: str = ""
+    wall_s: float | None = None
+    peak_bytes: int | None = None
+    triangles: int | None = None  # drawn, of the picture with most
+    triangles_placed: int | None = None
+    error_px: float | None = None  # the largest of all pictures
+    error_name: str = ""
+    pictures: tuple[str, ...] = ()
+    problems: tuple[dict[str, str], ...] = ()
+    log: str = ""
+    thumbnail: str = ""
+    resumed: bool = False
+
+    @classmethod
+    def of(cls, report: dict[str, Any]) -> "Row":
+        made = report.get("pictures", [report])
+        cuts = [picture["cut"] for picture in made if "cut" in picture]
+        worst = max(cuts, key=lambda cut: cut["largest_error_px"], default=None)
+        code = ExitCode(report["exit_code"])
+        return cls(
+            file=report["input"],
+            code=code,
+            status=report.get("cause") or report["status"],
+            message=report.get("message", ""),
+            wall_s=report.get("wall_s"),
+            peak_bytes=report.get("memory", {}).get("peak_bytes"),
+            triangles=max((cut["triangles"] for cut in cuts), default=None),
+            triangles_placed=report.get("model", {}).get("triangles_placed"),
+            error_px=worst["largest_error_px"] if worst else None,
+            error_name=worst["largest_error_name"] if worst else "",
+            pictures=tuple(picture["picture"] for picture in made if picture.get("picture")),
+            problems=tuple(report.get("problems", ())),
+            log=report.get("log", ""),
+            thumbnail=report.get("thumbnail", ""),
+            resumed=bool(report.get("resumed")),
+        )
+
+    @property
+    def failed(self) -> bool:
+        return self.code not in _ORDER
+
+
+def rows_of(reports: Iterable[dict[str, Any]]) -> list[Row]:
+    """Failed ones first, then what is not done, incomplete and done; else in their order."""
+    return sorted(map(Row.of, reports), key=lambda row: _ORDER.get(row.code, 0))
+
+
+def printable(text: str) -> str:
+    """On one line, and without what steers a terminal or turns the direction of reading."""
+
+    def shown(c: str) -> str:
+        if c in "\r\n\t":
+            return " "
+        steers = unicodedata.category(c) in ("Cc", "Cf", "Cs") and c not in _JOINERS
+        return "\ufffd" if steers else c
+
+    return "".join(map(shown, text))
+
+
+def table(rows: Iterable[Row]) -> str:
+    """For a terminal of any width: the file comes last."""
+    lines = [("status", "time", "memory", "triangles", "of", "error", "file")]
+    for row in rows:
+        lines.append(
+            (
+                printable(row.status),
+                "" if row.wall_s is None else progress.clock(row.wall_s),
+                "" if row.peak_bytes is None else progress.memory(row.peak_bytes),
+                "" if row.triangles is None else progress.count(row.triangles),
+                "" if row.triangles_placed is None else progress.count(row.triangles_placed),
+                "" if row.error_px is None else f"{row.error_px:.2f} px",
+                printable(Path(row.file).name),
+            )
+        )
+    widths = [max(len(line[i]) for line in lines) for i in range(6)]
+    return "\n".join(
+        "  ".join(
+            [line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in range(1, 6)), line[6]]
+        )
+        for line in lines
+    )
+
+
+def tally(rows: Iterable[Row]) -> str:
+    """3 of 20 failed, 1 incomplete, 16 done"""
+    found = list(rows)
+    numbers = {
+        "failed": sum(row.failed for row in found),
+        "not done": sum(row.code == ExitCode.CANCELLED for row in found),
+        "incomplete": sum(row.code == ExitCode.INCOMPLETE for row in found),
+        "done": sum(row.code == ExitCode.DONE for row in found),
+    }
+    parts = [f"{count} {name}" for name, count in numbers.items() if count]
+    return f"{len(found)} files: {', '.join(parts)}" if parts else "0 files"

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The file of --views: many pictures from one reading of one .blend."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from . import batch_values
+from .batch_jobs import PictureRequest
+
+ANTIALIAS = ("off", "final", "reference")
+VIEW_KEYS = (
+    "camera",
+    "pixel_error",
+    "antialias",
+    "out",
+    "false_color",
+    "covered_only",
+    "size",
+)
+
+
+def read_views(path: str, options: argparse.Namespace) -> tuple[PictureRequest, ...]:
+    """The pictures of a views file; what an entry leaves out comes from the command line. Raises
+    ValueError with a sentence."""
+    try:
+        entries = json.loads(Path(path).read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"--views {path}: {error}") from None
+    if not isinstance(entries, list) or not entries:
+        raise ValueError(f"--views {path}: a list of pictures is expected")
+    pictures = [_view(path, number, entry, options) for number, entry in enumerate(entries)]
+    if len({picture.out for picture in pictures}) < len(pictures):
+        raise ValueError(f"--views {path}: two pictures have the same out")
+    return tuple(pictures)
+
+
+def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> PictureRequest:
+    where = f"--views {path}: entry {number}"
+    if not isinstance(entry, dict):
+        raise ValueError(f"{where} is not an object")
+    unknown = sorted(set(entry) - set(VIEW_KEYS))
+    if unknown:
+        raise ValueError(f"{where} has an unknown {unknown[0]} (known: {', '.join(VIEW_KEYS)})")
+    out = entry.get("out")
+    if not isinstance(out, str) or not out.lower().endswith(".png"):
+        raise ValueError(f"{where}: out must name a .png")
+    antialias = entry.get("antialias", options.antialias)
+    if antialias is not None and antialias not in ANTIALIAS:
+        raise ValueError(f"{where}: antialias is one of {', '.join(ANTIALIAS)}")
+    try:
+        wanted = entry.get("size")
+        chosen = options.size if wanted is None else batch_values.size(size_text(wanted))
+        error = entry.get("pixel_error", options.pixel_error)
+        return PictureRequest(
+            out=str(Path(out).absolute()),
+            camera=str(entry.get("camera") or options.camera),
+            pixel_error=None if error is None else batch_values.pixels(str(error)),
+            antialias=antialias,
+            false_color=bool(entry.get("false_color", options.false_color)),
+            covered_only=bool(entry.get("covered_only", options.covered_only)),
+            size=chosen,
+        )
+    except argparse.ArgumentTypeError as error:
+        raise ValueError(f"{where}: {error}") from None
+
+
+def size_text(value: Any) -> str:
+    """[640, 360] or "640x360" as the command line has it."""
+    return "x".join(str(v) for v in value) if isinstance(value, list) else str(value)

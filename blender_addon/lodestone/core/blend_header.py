@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which Blender wrote a file, as far as its first bytes tell."""
+
+import re
+
+
+def version(path: str) -> tuple[int, int] | None:
+    """(4, 2) of a file of Blender 4.2; None of a compressed file, and of anything else."""
+    try:
+        with open(path, "rb") as file:
+            head = file.read(17)
+    except OSError:
+        return None
+    # BLENDER-v402 up to 4.5; BLENDER17-01v0500 since 5.0
+    found = re.match(rb"BLENDER(?:[-_][vV](\d)(\d\d)|\d\d-\d\d[vV](\d\d)(\d\d))", head)
+    if not found:
+        return None
+    major, minor = (int(part) for part in found.groups() if part is not None)
+    return major, minor
+
+
+def written_by(path: str) -> str:
+    """` (written by Blender 4.2)`, or nothing: for the end of a sentence."""
+    known = version(path)
+    return f" (written by Blender {known[0]}.{known[1]})" if known else ""
