@@ -3,7 +3,9 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
+#include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
+#include "povray_export/light_writer.h"
 #include "povray_export/number.h"
 #include "povray_export/representation_writer.h"
 
@@ -13,7 +15,6 @@
 #include <atomic>
 #include <cmath>
 #include <ctime>
-#include <numbers>
 #include <unordered_map>
 
 namespace lodestone::povray {
@@ -128,7 +129,7 @@ public:
     ExportReport write() {
         const double start = thread_cpu_s();
         job_.stage(Stage::Export);
-        check_view();
+        check_view(view_);
         make_folders();
         collect();
         const double before_files = thread_cpu_s();
@@ -152,20 +153,6 @@ public:
     }
 
 private:
-    void check_view() const {
-        const Camera& camera = view_.camera;
-        if (view_.width <= 0 || view_.height <= 0)
-            fail(Status::InvalidArgument, "a picture of ", view_.width, " x ", view_.height,
-                 " pixels");
-        if (!finite(camera.position) || !finite(camera.direction) || !finite(camera.right) ||
-            !finite(camera.up))
-            fail(Status::InvalidArgument, "the camera '", camera.name, "' is not finite");
-        const double volume =
-            std::abs(glm::dot(glm::cross(camera.right, camera.up), camera.direction));
-        if (!(volume > 0))
-            fail(Status::InvalidArgument, "the camera '", camera.name, "' sees no volume");
-    }
-
     void make_folders() const {
         std::error_code error;
         std::filesystem::create_directories(options_.folder / "r", error);
@@ -240,6 +227,12 @@ private:
         ++report_.written;
     }
 
+    Shadows shadows() const {
+        if (options_.antialiasing == Antialiasing::Reference)
+            return Shadows::Finest;
+        return options_.antialiasing == Antialiasing::Off ? Shadows::Sharp : Shadows::Soft;
+    }
+
     bool transparent() const { return options_.covered_only || view_world().transparent; }
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
@@ -287,10 +280,10 @@ private:
             append_number(out, sky()[i], 6);
             out += i < 2 ? "," : (transparent() ? ",1>}\n\n" : ">}\n\n");
         }
-        append_camera(out);
+        append_camera(out, view_.camera);
         if (lit()) {
             for (const Light& light : model_.lights)
-                append_light(out, light, bound);
+                append_light(out, light, bound, shadows(), problems_);
         }
         out += '\n';
         for (const Include& include : includes_) {
@@ -298,62 +291,6 @@ private:
                 out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
         }
         return out + '\n' + objects;
-    }
-
-    void append_camera(std::string& out) const {
-        const Camera& camera = view_.camera;
-        out += camera.orthographic ? "camera{orthographic\n" : "camera{perspective\n";
-        const std::pair<const char*, const glm::dvec3&> vectors[] = {
-            {"location", camera.position},
-            {"direction", camera.direction},
-            {"right", camera.right},
-            {"up", camera.up}};
-        for (const auto& [name, value] : vectors) {
-            out += "    ";
-            out += name;
-            out += ' ';
-            append_vector(out, value, 15);
-            out += '\n';
-        }
-        out += "}\n\n";
-    }
-
-    void append_light(std::string& out, const Light& light, const Bound& bound) {
-        const double watts = std::isfinite(light.power) ? std::max(light.power, 0.0) : 0.0;
-        glm::dvec3 color =
-            finite(light.color) ? glm::max(light.color, glm::dvec3(0.0)) * watts : glm::dvec3(0.0);
-        if (color == glm::dvec3(0.0))
-            return;
-        const double length = glm::length(light.direction);
-        if (light.kind == LightKind::Sun ? !(length > 0 && std::isfinite(length))
-                                         : !finite(light.position)) {
-            problems_.push_back({light.name, Severity::Warning, "bad_light",
-                                 "has no finite place or direction, so it is not used"});
-            return;
-        }
-        constexpr double kPi = std::numbers::pi;
-        if (light.kind == LightKind::Sun) {
-            // S W/m2 on a facing surface of albedo a leave with a S / pi. Parallel light starts at a
-            // plane: outside of everything, or what is behind it would cast no shadow.
-            const glm::dvec3 way = light.direction / length;
-            const glm::dvec3 from = bound.center - way * (2 * bound.radius + 1);
-            out += "light_source{";
-            append_vector(out, from);
-            out += " rgb ";
-            append_vector(out, color / kPi, 6);
-            out += " parallel point_at ";
-            append_vector(out, from + way);
-        } else {
-            // Falls with 1/d2 exactly enough: POV-Ray's 2 / (1 + (d/e)2) with a tiny e.
-            constexpr double kNear = 1e-3;
-            out += "light_source{";
-            append_vector(out, light.position);
-            out += " rgb ";
-            append_vector(out, color / (4 * kPi * kPi) / (2 * kNear * kNear), 6);
-            out += " fade_power 2 fade_distance ";
-            append_number(out, kNear);
-        }
-        out += light.shadow ? "}\n" : " shadowless}\n";
     }
 
     std::string ini() const {

@@ -51,11 +51,26 @@ Model rich_model() {
     Camera camera;
     camera.name = "far";
     camera.position = {1.0 / 7, 2, 3};
+    camera.focus_distance = 1.0 / 3;
+    camera.aperture = 0.02;
     model.cameras.push_back(camera);
     Light sun;
     sun.name = "Sun";
     sun.power = 3;
+    sun.angle = 0.01;
     model.lights.push_back(sun);
+    Light spot;
+    spot.kind = LightKind::Spot;
+    spot.radius = 0.1;
+    spot.spot_size = 1.0 / 3;
+    spot.spot_blend = 0.15;
+    model.lights.push_back(spot);
+    Light area;
+    area.kind = LightKind::Area;
+    area.edge_u = {1.0 / 3, 0, 0};
+    area.round = true;
+    area.spread = 1;
+    model.lights.push_back(area);
     model.world.color = {0.1, 0.2, 0.3};
     Material brick = models::colored("brick", {0.5, 0.25, 0.125});
     brick.base_color_texture.picture = models::checker();
@@ -117,6 +132,19 @@ void expect_same(const Model& a, const Model& b) {
     }
     ASSERT_EQ(a.cameras.size(), b.cameras.size());
     EXPECT_EQ(a.cameras[0].position, b.cameras[0].position);
+    EXPECT_EQ(a.cameras[0].focus_distance, b.cameras[0].focus_distance);
+    EXPECT_EQ(a.cameras[0].aperture, b.cameras[0].aperture);
+    ASSERT_EQ(a.lights.size(), b.lights.size());
+    for (size_t i = 0; i < a.lights.size(); ++i) {
+        const Light& x = a.lights[i];
+        const Light& y = b.lights[i];
+        EXPECT_EQ(std::tie(x.name, x.kind, x.power, x.shadow, x.radius, x.angle),
+                  std::tie(y.name, y.kind, y.power, y.shadow, y.radius, y.angle));
+        EXPECT_EQ(std::tie(x.spot_size, x.spot_blend, x.round, x.spread),
+                  std::tie(y.spot_size, y.spot_blend, y.round, y.spread));
+        EXPECT_EQ(x.edge_u, y.edge_u);
+        EXPECT_EQ(x.edge_v, y.edge_v);
+    }
     EXPECT_EQ(a.world.color, b.world.color);
 }
 

@@ -102,6 +102,77 @@ static void test_cameras_come_back(void) {
     lds_model_destroy(model);
 }
 
+static void test_lights_of_every_kind_are_checked(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_light light;
+    memset(&light, 0, sizeof light);
+    light.struct_size = sizeof light;
+    light.name = "Lamp";
+    light.direction[2] = -1;
+    light.spot_size = 1;
+    for (light.kind = LDS_LIGHT_SUN; light.kind <= LDS_LIGHT_AREA; ++light.kind)
+        EXPECT(lds_model_add_light(model, &light) == LDS_OK);
+    EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT); /* no such kind */
+    light.kind = LDS_LIGHT_SPOT;
+    light.spot_size = 4;
+    EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "spot_size") != NULL);
+    light.kind = LDS_LIGHT_POINT;
+    light.radius = -1;
+    EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
+/* A program built before cameras and lights had all of today's fields. */
+static void test_older_structs_go_on_working(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_camera whole = camera_before(20);
+    struct {
+        uint32_t struct_size;
+        char camera[offsetof(lds_camera, focus_distance)];
+        int32_t width, height;
+        double pixel_error;
+        uint32_t kinds;
+    } view;
+    memset(&view, 0, sizeof view);
+    const size_t start = offsetof(lds_view, camera);
+    const uint32_t camera_size = sizeof view.camera;
+    memcpy((char*)&view + start, &whole, camera_size);
+    memcpy((char*)&view + start, &camera_size, sizeof camera_size);
+    const int32_t size[2] = {64, 36};
+    memcpy((char*)&view + start + camera_size, size, sizeof size);
+    view.struct_size = (uint32_t)(start + camera_size + 24);
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, (const lds_view*)(const void*)&view, NULL, &cut) == LDS_OK);
+    lds_cut_destroy(cut);
+    view.struct_size -= 8;
+    EXPECT(lds_cut_create(model, (const lds_view*)(const void*)&view, NULL, &cut) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+
+    lds_camera given = whole;
+    given.struct_size = camera_size;
+    given.aperture = 7; /* beyond what this caller knows: not looked at */
+    EXPECT(lds_model_add_camera(model, &given) == LDS_OK);
+    lds_camera back = whole;
+    EXPECT(lds_model_camera(model, 0, &back) == LDS_OK);
+    EXPECT(back.aperture == 0 && back.struct_size == sizeof back);
+    back.aperture = 7;
+    back.struct_size = camera_size;
+    EXPECT(lds_model_camera(model, 0, &back) == LDS_OK);
+    EXPECT(back.aperture == 7 && back.position[1] == -20);
+
+    lds_light light;
+    memset(&light, 0, sizeof light);
+    light.struct_size = offsetof(lds_light, radius);
+    light.direction[2] = light.radius = -1;
+    EXPECT(lds_model_add_light(model, &light) == LDS_OK);
+    light.struct_size -= 8;
+    EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
 static void test_representations_and_occurrences(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -276,6 +347,8 @@ int main(void) {
     test_files_keep_the_model("capi_cubes.glb");
     test_problems_name_the_object();
     test_cameras_come_back();
+    test_lights_of_every_kind_are_checked();
+    test_older_structs_go_on_working();
     test_representations_and_occurrences();
     test_choices_carry_the_path_of_placements();
     if (lds_rays_check() == LDS_OK) {

@@ -138,7 +138,7 @@ TEST(PovrayRender, TheCameraProjectsWhereItShould) {
         View view;
         view.width = test.width;
         view.height = test.height;
-        view.camera = {"", test.orthographic, {3, -2, 5}, test.direction, test.right, test.up, 0.1};
+        view.camera = {"", test.orthographic, {3, -2, 5}, test.direction, test.right, test.up};
         Builder builder;
         Material glow;
         glow.emission = glm::dvec3(1.0);

@@ -104,6 +104,7 @@ class Functions(unittest.TestCase):
             (enums.Extension, "LDS_EXTENSION_"),
             (enums.AlphaMode, "LDS_ALPHA_MODE_"),
             (enums.Antialias, "LDS_ANTIALIAS_"),
+            (enums.LightKind, "LDS_LIGHT_"),
             (enums.Status, "LDS_ERROR_"),
         ):
             named = {n: int(v) for n, v in re.findall(rf"{prefix}(\w+) = (\d+)", text)}

@@ -8,7 +8,7 @@
    status      LDS_OK (0) or the cause; the sentence that names the thing is lds_last_error_text().
                On failure outputs are untouched
    structs     start with struct_size; set it to sizeof the struct (lds_..._default does). Fields may
-               be added at the end in later versions
+               be added at the end in later versions; those of a shorter, older struct count as 0
    strings     UTF-8 in, any bytes accepted; strings handed out stay valid until the model or cut
                they came from changes or is destroyed. A null name counts as ""
    arrays      read during the call only, never kept; results are copied into the caller's buffers
@@ -215,15 +215,30 @@ typedef struct lds_mesh_view {
                                     counts as the nearest slot (Blender's rule) */
 } lds_mesh_view;
 
+typedef enum lds_light_kind {
+    LDS_LIGHT_SUN = 0,
+    LDS_LIGHT_POINT = 1,
+    LDS_LIGHT_SPOT = 2,
+    LDS_LIGHT_AREA = 3
+} lds_light_kind;
+
 typedef struct lds_light {
     uint32_t struct_size;
     const char* name;
-    int32_t kind; /* 0 sun, 1 point */
+    int32_t kind; /* lds_light_kind */
     double color[3];
-    double power;        /* sun: W/m^2; point: W, Blender's energy units */
-    double position[3];  /* point */
-    double direction[3]; /* sun: the way the light travels */
+    double power; /* sun: W/m^2; others: W; Blender's energy units. Negative takes light away */
+    double position[3];  /* all but suns; an area's center */
+    double direction[3]; /* all but points: the way the light travels */
     int32_t shadow;      /* 0: casts none */
+    double radius;       /* point, spot: metres; 0: sharp shadows */
+    double angle;        /* sun: its diameter in the sky, radians; 0: sharp shadows */
+    double spot_size;    /* spot: the whole cone, radians, more than 0, at most pi */
+    double spot_blend;   /* spot: 0 (a sharp edge) to 1 (fading from the axis on) */
+    double edge_u[3];    /* area: its width and height, metres */
+    double edge_v[3];
+    int32_t round; /* area: 1: the ellipse inside the edges */
+    double spread; /* area: light leaves only within this cone, radians; 0: the whole half space */
 } lds_light;
 
 /* Perspective: pixel (u, v) in [-1/2, 1/2]^2 looks along direction + u right + v up from position.
@@ -237,6 +252,8 @@ typedef struct lds_camera {
     double right[3];
     double up[3];
     double near_clip;
+    double focus_distance; /* metres along the view to the sharp plane; 0: all is sharp */
+    double aperture;       /* diameter of the lens's opening, metres */
 } lds_camera;
 
 typedef struct lds_world {
@@ -469,6 +486,8 @@ typedef struct lds_view {
     int32_t height;
     double pixel_error; /* T, usual 1; larger is coarser and cheaper; 0 = originals */
     uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
+    int32_t border[4];  /* the part that is drawn: left, top, width, height in pixels of the final
+                             image, the rest of which stays empty; width 0: all of it */
 } lds_view;
 
 typedef struct lds_cut lds_cut;

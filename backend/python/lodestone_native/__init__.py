@@ -40,7 +40,7 @@ from .povray import (
     povray_run,
 )
 from .structs import Object
-from .view import Camera, View
+from .view import Camera, Light, View
 
 __all__ = [
     "AlphaMode",
@@ -53,6 +53,7 @@ __all__ = [
     "Image",
     "Job",
     "Kind",
+    "Light",
     "LightKind",
     "LodestoneError",
     "MeasureOptions",

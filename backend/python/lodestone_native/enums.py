@@ -80,6 +80,8 @@ class Antialias(IntEnum):
 class LightKind(IntEnum):
     SUN = 0
     POINT = 1
+    SPOT = 2
+    AREA = 3
 
 
 class Severity(IntEnum):

@@ -9,11 +9,11 @@ from typing import Any
 
 from . import structs
 from .handle import Handle
-from .enums import Channel, Extension, LightKind, Role
+from .enums import Channel, Extension, Role
 from .job import Job
 from .library import check, library
 from .structs import Object, record, text_in
-from .view import Camera, Vector
+from .view import Camera, Light, Vector
 
 
 @dataclass
@@ -213,26 +213,8 @@ class Model(Handle):
     def set_root(self, root: Object) -> None:
         check(library().lds_model_set_root(self.handle, root))
 
-    def add_light(
-        self,
-        name: str,
-        kind: LightKind,
-        color: Vector,
-        power: float,
-        position: Vector = (0.0, 0.0, 0.0),
-        direction: Vector = (0.0, 0.0, -1.0),
-        shadow: bool = True,
-    ) -> None:
-        light = structs.Light(
-            name=text_in(name),
-            kind=kind,
-            color=color,
-            power=power,
-            position=position,
-            direction=direction,
-            shadow=int(shadow),
-        )
-        check(library().lds_model_add_light(self.handle, light))
+    def add_light(self, light: Light) -> None:
+        check(library().lds_model_add_light(self.handle, light.struct()))
 
     def add_camera(self, camera: Camera) -> None:
         check(library().lds_model_add_camera(self.handle, camera.struct()))

@@ -141,6 +141,14 @@ class Light(Sized):
         ("position", c_double * 3),
         ("direction", c_double * 3),
         ("shadow", c_int32),
+        ("radius", c_double),
+        ("angle", c_double),
+        ("spot_size", c_double),
+        ("spot_blend", c_double),
+        ("edge_u", c_double * 3),
+        ("edge_v", c_double * 3),
+        ("round", c_int32),
+        ("spread", c_double),
     ]
 
 
@@ -154,6 +162,8 @@ class Camera(Sized):
         ("right", c_double * 3),
         ("up", c_double * 3),
         ("near_clip", c_double),
+        ("focus_distance", c_double),
+        ("aperture", c_double),
     ]
 
 
@@ -298,6 +308,7 @@ class View(Sized):
         ("height", c_int32),
         ("pixel_error", c_double),
         ("kinds", c_uint32),
+        ("border", c_int32 * 4),
     ]
 
 

@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/job.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 namespace lodestone::capi {
@@ -56,6 +58,30 @@ const Struct& checked(const Struct* value, const char* what) {
         fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ",
              sizeof(Struct), " expected");
     return *value;
+}
+
+/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least` is
+/// the size of version 1.
+template <typename Struct>
+Struct grown(const Struct* value, size_t least, const char* what) {
+    require(value, what);
+    if (value->struct_size < least)
+        fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ", least,
+             " or more expected");
+    Struct out{};
+    std::memcpy(&out, value, std::min<size_t>(value->struct_size, sizeof out));
+    return out;
+}
+
+/// Copies as much of a result out as the caller's struct can hold; throws before anything is written.
+template <typename Struct>
+void hand_out_grown(Struct* out, Struct value, size_t least, const char* what) {
+    require(out, what);
+    if (out->struct_size < least)
+        fail(Status::InvalidArgument, what, ".struct_size is ", out->struct_size, "; ", least,
+             " or more expected");
+    value.struct_size = out->struct_size;
+    std::memcpy(out, &value, std::min<size_t>(value.struct_size, sizeof value));
 }
 
 /// Copies a result out, keeping the caller's struct_size; throws before anything is written.

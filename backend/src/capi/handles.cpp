@@ -65,52 +65,6 @@ std::string name_of(const char* text) {
     return text == nullptr ? "" : valid_utf8(text);
 }
 
-Camera camera_of(const lds_camera& camera) {
-    Camera out;
-    out.name = name_of(camera.name);
-    out.orthographic = camera.orthographic != 0;
-    out.position = vector(camera.position, "camera.position");
-    out.direction = vector(camera.direction, "camera.direction");
-    out.right = vector(camera.right, "camera.right");
-    out.up = vector(camera.up, "camera.up");
-    out.near_clip = camera.near_clip;
-    if (!(out.near_clip > 0) || !std::isfinite(out.near_clip))
-        fail(Status::InvalidArgument, "camera.near_clip is ", camera.near_clip,
-             "; it must be more than 0");
-    if (glm::length(glm::cross(out.right, out.up)) == 0 || glm::length(out.direction) == 0)
-        fail(Status::InvalidArgument, "the camera's frame has no area");
-    return out;
-}
-
-lds_camera camera_of(const Camera& camera) {
-    lds_camera out{};
-    out.struct_size = sizeof out;
-    out.name = camera.name.c_str();
-    out.orthographic = camera.orthographic ? 1 : 0;
-    copy(camera.position, out.position);
-    copy(camera.direction, out.direction);
-    copy(camera.right, out.right);
-    copy(camera.up, out.up);
-    out.near_clip = camera.near_clip;
-    return out;
-}
-
-View view_of(const lds_view* view) {
-    const lds_view& given = checked(view, "view");
-    View out;
-    out.camera = camera_of(given.camera);
-    out.width = given.width;
-    out.height = given.height;
-    if (out.width < 1 || out.height < 1 || out.width > 65536 || out.height > 65536)
-        fail(Status::InvalidArgument, "a picture of ", out.width, " x ", out.height, " pixels");
-    out.pixel_error = given.pixel_error;
-    if (!(out.pixel_error >= 0) || !std::isfinite(out.pixel_error))
-        fail(Status::InvalidArgument, "Pixel Error is ", given.pixel_error,
-             "; it must be 0 or more");
-    out.kinds = given.kinds == 0 ? kAllKinds : given.kinds;
-    return out;
-}
-
 lds_model* new_model() {
     static std::atomic<uint32_t> generations{0};
     auto model = std::make_unique<lds_model>();

@@ -48,8 +48,6 @@ namespace lodestone::capi {
 glm::dvec3 vector(const double values[3], const char* what);
 void copy(const glm::dvec3& from, double to[3]);
 std::string name_of(const char* text);
-Camera camera_of(const lds_camera& camera);
-lds_camera camera_of(const Camera& camera);
 View view_of(const lds_view* view);
 lds_model* new_model();
 

@@ -120,19 +120,6 @@ lds_status lds_model_occurrence_copy(lds_model* model, lds_occurrence* out_occur
     });
 }
 
-size_t lds_model_camera_count(const lds_model* model) {
-    return model == nullptr ? 0 : model->model.cameras.size();
-}
-
-lds_status lds_model_camera(const lds_model* model, size_t position, lds_camera* out_camera) {
-    return guard([&] {
-        require(model, "model");
-        if (position >= model->model.cameras.size())
-            fail(Status::InvalidArgument, "camera ", position, " of ", model->model.cameras.size());
-        hand_out(out_camera, camera_of(model->model.cameras[position]), "out_camera");
-    });
-}
-
 size_t lds_model_problem_count(const lds_model* model) {
     return model == nullptr ? 0 : model->problems.size();
 }

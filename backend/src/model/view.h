@@ -5,6 +5,7 @@
 #include "base/maths.h"
 #include "model/representation.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,23 +22,47 @@ struct Camera {
     glm::dvec3 right{1, 0, 0};       // whole frame width (perspective: at distance 1)
     glm::dvec3 up{0, 1, 0};          // whole frame height
     double near_clip = 0.1;          // metres
+    double focus_distance = 0;       // metres along the view to the sharp plane; 0: all is sharp
+    double aperture = 0;             // diameter of the lens's opening, metres
 };
 
-enum class LightKind : uint8_t { Sun = 0, Point = 1 };
+enum class LightKind : uint8_t { Sun = 0, Point = 1, Spot = 2, Area = 3 };
+
+/// "sun", "point", "spot", "area"
+const char* name_of(LightKind kind);
+/// Throws Error(BadFile) for a name that is none of these.
+LightKind light_kind_named(const std::string& name);
 
 struct Light {
     std::string name;
     LightKind kind = LightKind::Sun;
     glm::dvec3 color{1.0};  // linear
-    double power = 1;       // sun: W/m^2; point: W (Blender's energy units)
-    glm::dvec3 position{0.0};
-    glm::dvec3 direction{0, 0, -1};  // the way a sun's light travels
+    double power = 1;       // sun: W/m^2; others: W (Blender's energy units); negative takes away
+    glm::dvec3 position{0.0};        // all but suns; an area's center
+    glm::dvec3 direction{0, 0, -1};  // all but points: the way the light travels
     bool shadow = true;
+    double radius = 0;           // point, spot: metres
+    double angle = 0;            // sun: its diameter in the sky, radians
+    double spot_size = 0.785;    // spot: the whole cone, radians, at most pi
+    double spot_blend = 0;       // spot: 0 (a sharp edge) to 1 (fading from the axis on)
+    glm::dvec3 edge_u{1, 0, 0};  // area: its width and height
+    glm::dvec3 edge_v{0, 1, 0};
+    bool round = false;  // area: the ellipse inside the edges
+    double spread =
+        0;  // area: light leaves only within this cone, radians; 0: all of the half space
 };
 
 struct World {
     glm::dvec3 color{0.05};    // linear radiance, the same from everywhere
     bool transparent = false;  // film: the background has alpha 0
+};
+
+/// A part of the picture, in its pixels.
+struct Border {
+    int left = 0;
+    int top = 0;
+    int width = 1;
+    int height = 1;
 };
 
 /// Everything but the model.
@@ -47,6 +72,7 @@ struct View {
     int height = 360;
     double pixel_error = 1;      // T; 0 = originals
     KindMask kinds = kAllKinds;  // what the consumer can draw
+    std::optional<Border> border;
 };
 
 }  // namespace lodestone

@@ -148,13 +148,25 @@ Json out(const Representation& r) {
 }
 
 Json out(const Light& l) {
-    return {{"name", l.name},
-            {"kind", l.kind == LightKind::Sun ? "sun" : "point"},
-            {"color", out(l.color)},
-            {"power", l.power},
-            {"position", out(l.position)},
-            {"direction", out(l.direction)},
-            {"shadow", l.shadow}};
+    Json json = {
+        {"name", l.name},    {"kind", name_of(l.kind)},     {"color", out(l.color)},
+        {"power", l.power},  {"position", out(l.position)}, {"direction", out(l.direction)},
+        {"shadow", l.shadow}};
+    if (l.kind == LightKind::Sun)
+        json["angle"] = l.angle;
+    if (l.kind == LightKind::Point || l.kind == LightKind::Spot)
+        json["radius"] = l.radius;
+    if (l.kind == LightKind::Spot) {
+        json["spot_size"] = l.spot_size;
+        json["spot_blend"] = l.spot_blend;
+    }
+    if (l.kind == LightKind::Area) {
+        json["edge_u"] = out(l.edge_u);
+        json["edge_v"] = out(l.edge_v);
+        json["round"] = l.round;
+        json["spread"] = l.spread;
+    }
+    return json;
 }
 
 Json out(const Camera& c) {
@@ -164,7 +176,9 @@ Json out(const Camera& c) {
             {"direction", out(c.direction)},
             {"right", out(c.right)},
             {"up", out(c.up)},
-            {"near_clip", c.near_clip}};
+            {"near_clip", c.near_clip},
+            {"focus_distance", c.focus_distance},
+            {"aperture", c.aperture}};
 }
 
 /// Our own description of a model. Object indices are positions in `order`.

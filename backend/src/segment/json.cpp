@@ -235,6 +235,47 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     return o;
 }
 
+/// Stores of earlier versions lack the key.
+double number_or(const Json& json, const char* key, double otherwise) {
+    return json.contains(key) ? number(json, key) : otherwise;
+}
+
+Light light(const Json& json) {
+    Light light;
+    light.name = json.at("name").get<std::string>();
+    light.kind = light_kind_named(json.at("kind").get<std::string>());
+    light.color = vector(json, "color");
+    light.power = number(json, "power");
+    light.position = vector(json, "position");
+    light.direction = vector(json, "direction");
+    light.shadow = json.at("shadow").get<bool>();
+    light.angle = number_or(json, "angle", 0);
+    light.radius = number_or(json, "radius", 0);
+    light.spot_size = number_or(json, "spot_size", light.spot_size);
+    light.spot_blend = number_or(json, "spot_blend", 0);
+    if (light.kind == LightKind::Area) {
+        light.edge_u = vector(json, "edge_u");
+        light.edge_v = vector(json, "edge_v");
+        light.round = json.at("round").get<bool>();
+        light.spread = number(json, "spread");
+    }
+    return light;
+}
+
+Camera camera(const Json& json) {
+    Camera camera;
+    camera.name = json.at("name").get<std::string>();
+    camera.orthographic = json.at("orthographic").get<bool>();
+    camera.position = vector(json, "position");
+    camera.direction = vector(json, "direction");
+    camera.right = vector(json, "right");
+    camera.up = vector(json, "up");
+    camera.near_clip = number(json, "near_clip");
+    camera.focus_distance = number_or(json, "focus_distance", 0);
+    camera.aperture = number_or(json, "aperture", 0);
+    return camera;
+}
+
 Model model_of(const Json& json) {
     if (json.at("format").get<int>() != kStoreFormat)
         fail(Status::BadFile, "the store has format ", json.at("format").get<int>(),
@@ -248,28 +289,10 @@ Model model_of(const Json& json) {
     const Json& objects = json.at("objects");
     for (const Json& one : objects)
         model.objects.push_back(object(one, objects.size(), model.materials.size()));
-    for (const Json& one : json.at("lights")) {
-        Light light;
-        light.name = one.at("name").get<std::string>();
-        light.kind = one.at("kind") == "sun" ? LightKind::Sun : LightKind::Point;
-        light.color = vector(one, "color");
-        light.power = number(one, "power");
-        light.position = vector(one, "position");
-        light.direction = vector(one, "direction");
-        light.shadow = one.at("shadow").get<bool>();
-        model.lights.push_back(std::move(light));
-    }
-    for (const Json& one : json.at("cameras")) {
-        Camera camera;
-        camera.name = one.at("name").get<std::string>();
-        camera.orthographic = one.at("orthographic").get<bool>();
-        camera.position = vector(one, "position");
-        camera.direction = vector(one, "direction");
-        camera.right = vector(one, "right");
-        camera.up = vector(one, "up");
-        camera.near_clip = number(one, "near_clip");
-        model.cameras.push_back(std::move(camera));
-    }
+    for (const Json& one : json.at("lights"))
+        model.lights.push_back(light(one));
+    for (const Json& one : json.at("cameras"))
+        model.cameras.push_back(camera(one));
     model.world.color = vector(json.at("world"), "color");
     model.world.transparent = json.at("world").at("transparent").get<bool>();
     if (!json.at("root").is_null()) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lights in Blender's units: sun W/m^2, point W."""
+"""Lights in Blender's units (sun W/m^2, others W), with the sizes that make their shadows soft."""
 
 import math
 from typing import Any
@@ -9,47 +9,72 @@ from mathutils import Matrix, Vector
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
 
-SOFT_SUN = math.radians(1.0)  # wider suns and
-SOFT_RADIUS = 0.25  # larger lamps have shadows one sees to be soft
+_KINDS = {
+    "SUN": native.LightKind.SUN,
+    "POINT": native.LightKind.POINT,
+    "SPOT": native.LightKind.SPOT,
+    "AREA": native.LightKind.AREA,
+}
 
 
 def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -> None:
     """Adds an evaluated light datablock as placed by matrix; what is not exact is a problem."""
-    color, power = tuple(light.color), light.energy
-    position = tuple(matrix.translation)
-    shadow = bool(light.use_shadow)
     if light.use_nodes and light.node_tree and _has_own_nodes(light.node_tree):
         text = f'Nodes of light "{name}" are left out; its color and power are used'
         problems.add(name, WARNING, "light_nodes", text)
-    if light.type == "SUN":
-        direction = matrix.to_3x3() @ Vector((0.0, 0.0, -1.0))
-        if direction.length == 0.0:
-            direction = Vector((0.0, 0.0, -1.0))
-        if light.angle > SOFT_SUN:
-            _soft(name, problems)
-        model.add_light(
-            name,
-            native.LightKind.SUN,
-            color,
-            power,
-            direction=tuple(direction.normalized()),
-            shadow=shadow,
-        )
+    cycles = getattr(light, "cycles", None)  # Cycles' own settings, where it is enabled
+    if light.type == "AREA" and getattr(cycles, "is_portal", False):
+        return  # a hint for Cycles' sampling, which gives no light
+    values = [*matrix.translation, *light.color, light.energy]
+    if not all(math.isfinite(value) for row in (values, *matrix) for value in row):
+        text = f'Light "{name}" is left out: its place or its power is not a number'
+        problems.add(name, WARNING, "bad_light", text)
         return
+    given = native.Light(
+        name=name,
+        kind=_KINDS[light.type],
+        color=tuple(light.color),
+        power=light.energy,
+        position=tuple(matrix.translation),
+        direction=_direction(matrix),
+        shadow=bool(light.use_shadow and getattr(cycles, "cast_shadow", True)),
+        **_shape(light, matrix),
+    )
+    if light.type == "SPOT" and light.use_square:
+        text = f'Spot light "{name}" is drawn round, as Cycles does: not square'
+        problems.add(name, INFO, "spot_square", text)
+    model.add_light(given)
+
+
+def _direction(matrix: Matrix) -> tuple[float, float, float]:
+    """The way the light travels: -Z, whatever the scale."""
+    direction = matrix.to_3x3() @ Vector((0.0, 0.0, -1.0))
+    if direction.length == 0.0:
+        return (0.0, 0.0, -1.0)
+    return tuple(direction.normalized())
+
+
+def _shape(light: Any, matrix: Matrix) -> dict[str, Any]:
+    """What else its kind has. Scaling an object changes the size of area lights alone."""
+    if light.type == "SUN":
+        return {"angle": min(math.pi, light.angle)}
     if light.type == "POINT":
-        if light.shadow_soft_size > SOFT_RADIUS:
-            _soft(name, problems)
-    else:
-        # The nearest thing that lights what it faces: an area lamp sends pi times a point lamp's
-        # light along its axis, a spot just a point lamp's.
-        power *= math.pi if light.type == "AREA" else 1.0
-        text = f'{light.type.capitalize()} light "{name}" is drawn as a point light'
-        problems.add(name, WARNING, "light_kind", text)
-    model.add_light(name, native.LightKind.POINT, color, power, position=position, shadow=shadow)
-
-
-def _soft(name: str, problems: Problems) -> None:
-    problems.add(name, INFO, "soft_shadow", f'Shadows of light "{name}" are drawn sharp')
+        return {"radius": light.shadow_soft_size}
+    if light.type == "SPOT":
+        return {
+            "radius": light.shadow_soft_size,
+            "spot_size": min(math.pi, light.spot_size),
+            "spot_blend": light.spot_blend,
+        }
+    width = light.size
+    height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else width
+    axes = matrix.to_3x3()
+    return {
+        "edge_u": tuple(width * axes.col[0]),
+        "edge_v": tuple(height * axes.col[1]),
+        "round": light.shape in {"DISK", "ELLIPSE"},
+        "spread": min(math.pi, light.spread),
+    }
 
 
 def _has_own_nodes(tree: Any) -> bool:

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the text of lights: what POV-Ray gets for each kind, and what is named instead. That their
+// energy is Cycles' is tests/blender/blender_test_lights.py's to prove.
+#include "povray_export/light_writer.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+
+namespace {
+
+struct Written {
+    std::string text;
+    Problems problems;
+
+    bool has(const std::string& part) const { return text.find(part) != std::string::npos; }
+};
+
+Written written(const Light& light, Shadows shadows = Shadows::Soft) {
+    Written out;
+    Bound bound;
+    bound.center = {1, 2, 3};
+    bound.radius = 10;
+    append_light(out.text, light, bound, shadows, out.problems);
+    return out;
+}
+
+Light light_of(LightKind kind) {
+    Light light;
+    light.name = "Lamp";
+    light.kind = kind;
+    light.radius = light.angle = 0.25;
+    return light;
+}
+
+constexpr LightKind kKinds[] = {LightKind::Sun, LightKind::Point, LightKind::Spot, LightKind::Area};
+
+}  // namespace
+
+TEST(PovrayLight, WithoutPowerNothingIsWritten) {
+    for (const LightKind kind : kKinds) {
+        Light light = light_of(kind);
+        light.power = 0;
+        EXPECT_EQ(written(light).text, "");
+        EXPECT_TRUE(written(light).problems.empty());
+    }
+}
+
+TEST(PovrayLight, ASunStartsOutsideOfEverything) {
+    Light sun = light_of(LightKind::Sun);
+    sun.angle = 0;
+    sun.power = std::numbers::pi;
+    EXPECT_EQ(written(sun).text, "light_source{<1,2,24> rgb <1,1,1> parallel point_at <1,2,3>}\n");
+}
+
+TEST(PovrayLight, OnlySoftLightsCastManyRaysAndDraftsNone) {
+    for (const LightKind kind : kKinds) {
+        const Light light = light_of(kind);
+        EXPECT_TRUE(written(light).has(" area_light ")) << written(light).text;
+        EXPECT_TRUE(written(light).has(" adaptive 1"));
+        EXPECT_TRUE(written(light, Shadows::Finest).has(" adaptive 2"));
+        EXPECT_FALSE(written(light, Shadows::Sharp).has("area_light"));
+        EXPECT_FALSE(written(light).has("jitter"));
+        if (kind == LightKind::Area)
+            continue;
+        Light sharp = light;
+        sharp.radius = sharp.angle = 0;
+        EXPECT_FALSE(written(sharp).has("area_light"));
+    }
+}
+
+TEST(PovrayLight, ASpotFadesFromItsBlendToItsEdge) {
+    Light spot = light_of(LightKind::Spot);
+    spot.radius = 0;
+    spot.spot_size = std::numbers::pi / 2;
+    EXPECT_TRUE(written(spot).has("radius 45 falloff 45 tightness 1"));
+    spot.spot_blend = 1;
+    EXPECT_TRUE(written(spot).has("radius 0 falloff 45 tightness 1"));
+    spot.spot_size = std::numbers::pi;
+    EXPECT_TRUE(written(spot).has("radius 0 falloff 90 tightness 1"));
+}
+
+TEST(PovrayLight, ALongAreaCastsItsRaysAlongItsLength) {
+    Light area = light_of(LightKind::Area);
+    EXPECT_TRUE(written(area).has(",9,9 adaptive"));
+    area.edge_u = {5, 0, 0};
+    EXPECT_TRUE(written(area).has(",17,5 adaptive"));
+    area.edge_v = {0, 90, 0};
+    area.round = true;
+    EXPECT_TRUE(written(area).has(",3,33 adaptive 1 circular area_illumination on"))
+        << written(area).text;
+}
+
+TEST(PovrayLight, ANarrowSpreadIsBrighterAheadAndNamed) {
+    Light area = light_of(LightKind::Area);
+    EXPECT_TRUE(written(area).has("falloff 90 tightness 1"));
+    area.spread = std::numbers::pi / 3;
+    const Written narrow = written(area);
+    EXPECT_TRUE(narrow.has("radius 0 falloff 30 ")) << narrow.text;
+    ASSERT_EQ(narrow.problems.size(), 1u);
+    EXPECT_EQ(narrow.problems[0].code, "light_spread");
+}
+
+TEST(PovrayLight, NegativePowerTakesLightAway) {
+    Light sun = light_of(LightKind::Sun);
+    sun.angle = 0;
+    sun.power = -2 * std::numbers::pi;
+    EXPECT_TRUE(written(sun).has("rgb <-2,-2,-2>"));
+}
+
+TEST(PovrayLight, WithoutShadowsAConeKeepsItsShapeAndSaysSo) {
+    for (const LightKind kind : kKinds) {
+        Light light = light_of(kind);
+        light.shadow = false;
+        const Written out = written(light);
+        const bool cone = kind == LightKind::Spot || kind == LightKind::Area;
+        EXPECT_EQ(out.has("shadowless"), !cone) << out.text;
+        ASSERT_EQ(out.problems.size(), cone ? 1u : 0u);
+        for (const Problem& problem : out.problems)
+            EXPECT_EQ(problem.code, "light_shadow");
+    }
+}
+
+TEST(PovrayLight, WhatIsNotFiniteOrHasNoSizeIsNamedAndLeftOut) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Light sun = light_of(LightKind::Sun);
+    sun.direction = {0, 0, 0};
+    Light point = light_of(LightKind::Point);
+    point.position.x = kInfinity;
+    Light flat = light_of(LightKind::Area);
+    flat.edge_v = flat.edge_u;
+    Light broken = light_of(LightKind::Area);
+    broken.edge_u.y = kInfinity;
+    for (const Light& light : {sun, point, flat, broken}) {
+        const Written out = written(light);
+        EXPECT_EQ(out.text, "");
+        ASSERT_EQ(out.problems.size(), 1u);
+        EXPECT_EQ(out.problems[0].object, "Lamp");
+    }
+}
+
+TEST(PovrayLight, ExtremesGiveTextThatPovrayReads) {
+    for (const LightKind kind : kKinds) {
+        Light light = light_of(kind);
+        for (const double value : {1e-300, 1e-9, 3.14159, 1e9}) {
+            light.radius = value;
+            light.angle = light.spread = light.spot_size = std::min(value, std::numbers::pi);
+            light.edge_u = {value, 0, 0};
+            const std::string text = written(light).text;  // throws for inf and nan
+            EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+            EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+        }
+    }
+}
