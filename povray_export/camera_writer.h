@@ -2,7 +2,9 @@
 // Camera writer: a camera as POV-Ray's camera statement.
 #pragma once
 
+#include "base/error.h"
 #include "model/view.h"
+#include "povray_export/antialiasing.h"
 
 #include <string>
 
@@ -11,7 +13,9 @@ namespace lodestone::povray {
 /// Throws Error(InvalidArgument) for a view that cannot be a picture.
 void check_view(const View& view);
 
-/// camera{...} with explicit vectors: no angles, no look_at, no flip.
-void append_camera(std::string& out, const Camera& camera);
+/// camera{...} with explicit vectors: no angles, no look_at, no flip. The blur of the depth is that
+/// of a thin lens, as Cycles'; orthographic cameras have none in POV-Ray, which becomes a problem.
+void append_camera(std::string& out, const Camera& camera, Antialiasing antialiasing,
+                   Problems& problems);
 
 }  // namespace lodestone::povray

@@ -36,9 +36,9 @@ struct Grid {
 
 class Writer {
 public:
-    Writer(std::string& out, const Light& light, Shadows shadows)
-        : out_(out), light_(light), soft_(shadows != Shadows::Sharp && light.shadow) {
-        start_ = shadows == Shadows::Finest ? 2 : 1;
+    Writer(std::string& out, const Light& light, Antialiasing antialiasing)
+        : out_(out), light_(light), soft_(antialiasing != Antialiasing::Off && light.shadow) {
+        start_ = antialiasing == Antialiasing::Reference ? 2 : 1;
     }
 
     void sun(const glm::dvec3& color, const Bound& bound) {
@@ -227,8 +227,8 @@ bool placed(const Light& light) {
 
 }  // namespace
 
-void append_light(std::string& out, const Light& light, const Bound& bound, Shadows shadows,
-                  Problems& problems) {
+void append_light(std::string& out, const Light& light, const Bound& bound,
+                  Antialiasing antialiasing, Problems& problems) {
     // Cycles subtracts what a light of negative power would give, and so does POV-Ray.
     const glm::dvec3 color = light.color * light.power;
     if (!finite(color) || color == glm::dvec3(0.0))
@@ -238,7 +238,7 @@ void append_light(std::string& out, const Light& light, const Bound& bound, Shad
                             "has no finite place or direction, so it is not used"});
         return;
     }
-    Writer writer(out, light, shadows);
+    Writer writer(out, light, antialiasing);
     if (light.kind == LightKind::Sun)
         return writer.sun(color, bound);
     if (light.kind == LightKind::Point)

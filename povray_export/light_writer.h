@@ -4,16 +4,11 @@
 
 #include "base/error.h"
 #include "model/view.h"
+#include "povray_export/antialiasing.h"
 
 #include <string>
 
 namespace lodestone::povray {
-
-enum class Shadows : uint8_t {
-    Sharp = 0,  // one ray a light, for drafts
-    Soft = 1,   // grids of rays, refined where they disagree; without noise
-    Finest = 2  // grids that start finer, for references
-};
 
 /// Appends one light_source, or nothing for a light without power. What a surface of albedo a (its
 /// pigment; lights carry a 1 / pi) sends back, S and P being the power:
@@ -21,9 +16,10 @@ enum class Shadows : uint8_t {
 ///   point  a P / (4 pi^2 (d^2 + r^2)): a sphere of radius r that turns a disk to whom it lights
 ///   spot   the same times cos angle smoothstep((cos angle - cos outer) / (blend (1 - cos outer)))
 ///   area   a radiance P / (4 A) of each part of it, with the cosine at both ends
+/// Their sizes are grids of rays, refined where these disagree, without noise; drafts cast one ray.
 /// What POV-Ray has no way for is drawn near it and becomes a problem. `bound`: of all objects;
 /// suns start outside of it, for what is behind a parallel light casts no shadow.
-void append_light(std::string& out, const Light& light, const Bound& bound, Shadows shadows,
-                  Problems& problems);
+void append_light(std::string& out, const Light& light, const Bound& bound,
+                  Antialiasing antialiasing, Problems& problems);
 
 }  // namespace lodestone::povray

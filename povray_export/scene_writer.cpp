@@ -227,12 +227,6 @@ private:
         ++report_.written;
     }
 
-    Shadows shadows() const {
-        if (options_.antialiasing == Antialiasing::Reference)
-            return Shadows::Finest;
-        return options_.antialiasing == Antialiasing::Off ? Shadows::Sharp : Shadows::Soft;
-    }
-
     bool transparent() const { return options_.covered_only || view_world().transparent; }
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
@@ -280,10 +274,10 @@ private:
             append_number(out, sky()[i], 6);
             out += i < 2 ? "," : (transparent() ? ",1>}\n\n" : ">}\n\n");
         }
-        append_camera(out, view_.camera);
+        append_camera(out, view_.camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights)
-                append_light(out, light, bound, shadows(), problems_);
+                append_light(out, light, bound, options_.antialiasing, problems_);
         }
         out += '\n';
         for (const Include& include : includes_) {
@@ -301,6 +295,19 @@ private:
         append_count(out, static_cast<uint64_t>(view_.width));
         out += "\nHeight=";
         append_count(out, static_cast<uint64_t>(view_.height));
+        if (view_.border) {
+            const auto [left, top, width, height] = *view_.border;
+            const std::pair<const char*, int> ends[] = {{"Start_Column", left + 1},
+                                                        {"End_Column", left + width},
+                                                        {"Start_Row", top + 1},
+                                                        {"End_Row", top + height}};
+            for (const auto& [name, pixel] : ends) {
+                out += '\n';
+                out += name;
+                out += '=';
+                append_count(out, static_cast<uint64_t>(pixel));
+            }
+        }
         out += transparent() ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
         switch (options_.antialiasing) {
             case Antialiasing::Off:

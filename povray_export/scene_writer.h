@@ -4,18 +4,12 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/antialiasing.h"
 #include "quality/cut.h"
 
 #include <filesystem>
 
 namespace lodestone::povray {
-
-/// How a pixel is sampled. One setting for every picture that is compared with another.
-enum class Antialiasing : uint8_t {
-    Off = 0,        // one sample a pixel
-    Final = 1,      // 9 more where neighbors differ by .1: +A0.1 +AM1 +R3, no jitter
-    Reference = 2,  // 16 more in every pixel: +A0.0 +AM1 +R4, no jitter
-};
 
 struct ExportOptions {
     std::filesystem::path folder;  // made when missing; its path may hold any characters

@@ -8,6 +8,7 @@ and exit with 1; error_set() or an escaping exception would save black and exit 
 
 import time
 import traceback
+from dataclasses import replace
 
 import bpy
 
@@ -99,12 +100,18 @@ class _Run:
             triangles = progress.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
             view = camera.extract(camera_object, frame, self.problems)
+            camera.report_render(self.scene.render, self.scene.name, self.problems)
             size = (frame.width, frame.height)
+            left, bottom, *part = picture.border(self.scene.render, *size)
+            border = (left, size[1] - bottom - part[1], *part)
+            self.settings = replace(self.settings, border=border)
             made, image = self.work.run(lambda: self._make(model, view, size), self._poll)
             self.problems.extend_native(model.problems())
         self._remember(totals, made)
-        part = picture.cropped(image, *picture.border(self.scene.render, *size))
-        picture.hand_over(self.engine, self.depsgraph.view_layer_eval.name, part)
+        left, top, *part = self.settings.border
+        part = picture.cropped(image, left, size[1] - top - part[1], *part)
+        name = self.depsgraph.view_layer_eval.name
+        picture.hand_over(self.engine, name, part, self.settings.stamp())
         self._report()
 
     def _required(self):

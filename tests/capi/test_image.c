@@ -41,6 +41,21 @@ static void test_a_picture_comes_back_either_way_up(void) {
         EXPECT(fabsf(back[4 * y * WIDTH + 1] - given[4 * (HEIGHT - 1 - y) * WIDTH + 1]) < 0.005f);
 }
 
+static void test_text_is_added_to_a_png_alone(void) {
+    static float pixels[NUMBERS];
+    paint(pixels, 0);
+    const char* keywords[] = {"Lodestone", "Pixel Error"};
+    const char* texts[] = {"0.1.0", NULL};
+    EXPECT(lds_image_write_png("capi_text.png", WIDTH, HEIGHT, pixels) == LDS_OK);
+    EXPECT(lds_image_add_text("capi_text.png", keywords, texts, 2) == LDS_OK);
+    EXPECT(lds_image_add_text("capi_text.png", NULL, NULL, 0) == LDS_OK);
+    EXPECT(lds_image_add_text("capi_text.png", NULL, texts, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_image_add_text("no_such_file.png", keywords, texts, 2) == LDS_ERROR_IO);
+    int32_t width = 0;
+    int32_t height = 0;
+    EXPECT(lds_image_size("capi_text.png", &width, &height) == LDS_OK && width == WIDTH);
+}
+
 static void test_differences_are_those_that_were_painted(void) {
     static float pixels[NUMBERS];
     paint(pixels, 0);
@@ -68,6 +83,7 @@ static void test_differences_are_those_that_were_painted(void) {
 
 int main(void) {
     test_a_picture_comes_back_either_way_up();
+    test_text_is_added_to_a_png_alone();
     test_differences_are_those_that_were_painted();
     return finish();
 }

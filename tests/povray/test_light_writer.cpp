@@ -19,12 +19,12 @@ struct Written {
     bool has(const std::string& part) const { return text.find(part) != std::string::npos; }
 };
 
-Written written(const Light& light, Shadows shadows = Shadows::Soft) {
+Written written(const Light& light, Antialiasing antialiasing = Antialiasing::Final) {
     Written out;
     Bound bound;
     bound.center = {1, 2, 3};
     bound.radius = 10;
-    append_light(out.text, light, bound, shadows, out.problems);
+    append_light(out.text, light, bound, antialiasing, out.problems);
     return out;
 }
 
@@ -61,8 +61,8 @@ TEST(PovrayLight, OnlySoftLightsCastManyRaysAndDraftsNone) {
         const Light light = light_of(kind);
         EXPECT_TRUE(written(light).has(" area_light ")) << written(light).text;
         EXPECT_TRUE(written(light).has(" adaptive 1"));
-        EXPECT_TRUE(written(light, Shadows::Finest).has(" adaptive 2"));
-        EXPECT_FALSE(written(light, Shadows::Sharp).has("area_light"));
+        EXPECT_TRUE(written(light, Antialiasing::Reference).has(" adaptive 2"));
+        EXPECT_FALSE(written(light, Antialiasing::Off).has("area_light"));
         EXPECT_FALSE(written(light).has("jitter"));
         if (kind == LightKind::Area)
             continue;

@@ -588,6 +588,12 @@ LDS_API lds_status lds_image_read(const char* path, int32_t bottom_up, float* ou
 LDS_API lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
                                        const float* pixels);
 
+/* Adds lines of text to a PNG, as its readers show them ("Comment", "Software"): keywords of 1 to 79
+   characters. Lines of the same keyword are replaced; what is not ASCII becomes '?'. All or
+   nothing. */
+LDS_API lds_status lds_image_add_text(const char* path, const char* const* keywords,
+                                      const char* const* texts, size_t count);
+
 typedef struct lds_difference {
     uint32_t struct_size;
     double mean; /* of display-encoded values 0...1 over the compared pixels */

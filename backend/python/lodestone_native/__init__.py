@@ -19,7 +19,14 @@ from .enums import (
     Status,
 )
 from .errors import LodestoneError
-from .image import Image, image_compare, image_read, image_size, image_write_png
+from .image import (
+    Image,
+    image_add_text,
+    image_compare,
+    image_read,
+    image_size,
+    image_write_png,
+)
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
 from .measure import surface_inertia
@@ -68,6 +75,7 @@ __all__ = [
     "Status",
     "View",
     "abi_version",
+    "image_add_text",
     "image_compare",
     "image_read",
     "image_size",

@@ -3,6 +3,7 @@
 
 import ctypes
 from array import array
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,6 +44,14 @@ def image_write_png(path: str, image: Image) -> None:
             text_in(path), image.width, image.height, _floats(image.pixels)
         )
     )
+
+
+def image_add_text(path: str, lines: Mapping[str, str]) -> None:
+    """Adds lines of text by keyword to a PNG; those of the same keyword are replaced."""
+    strings = ctypes.c_char_p * len(lines)
+    keywords = strings(*(text_in(keyword) for keyword in lines))
+    texts = strings(*(text_in(value) for value in lines.values()))
+    check(library().lds_image_add_text(text_in(path), keywords, texts, len(lines)))
 
 
 def image_compare(path_a: str, path_b: str, mask: str | None = None) -> Any:

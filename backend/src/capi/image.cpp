@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/image.h"
 
+#include "base/files.h"
 #include "capi/guard.h"
 #include "image/compare.h"
+#include "image/png_text.h"
 
 #include <algorithm>
 #include <optional>
@@ -69,6 +71,21 @@ lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
         picture.pixels.assign(
             pixels, pixels + static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
         image::write_png(path, picture);
+    });
+}
+
+lds_status lds_image_add_text(const char* path, const char* const* keywords,
+                              const char* const* texts, size_t count) {
+    return guard([&] {
+        require(path, "path");
+        image::TextLines lines;
+        for (size_t i = 0; i < count; ++i) {
+            require(keywords, "keywords");
+            require(texts, "texts");
+            require(keywords[i], "a keyword");
+            lines.emplace_back(keywords[i], texts[i] == nullptr ? "" : texts[i]);
+        }
+        write_file(path, image::with_text(read_file(path), lines, path));
     });
 }
 

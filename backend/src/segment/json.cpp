@@ -235,11 +235,6 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     return o;
 }
 
-/// Stores of earlier versions lack the key.
-double number_or(const Json& json, const char* key, double otherwise) {
-    return json.contains(key) ? number(json, key) : otherwise;
-}
-
 Light light(const Json& json) {
     Light light;
     light.name = json.at("name").get<std::string>();

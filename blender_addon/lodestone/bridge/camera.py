@@ -7,7 +7,7 @@ from typing import Any
 from mathutils import Vector
 
 from ..core.native import lodestone_native as native
-from ..core.problems import WARNING, Problems
+from ..core.problems import INFO, WARNING, Problems
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,7 @@ def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
     if data.type == "PANO":
         text = f'Camera "{camera.name}" is panoramic; it is drawn as a perspective camera'
         problems.add(camera.name, WARNING, "camera_panoramic", text)
-    if data.type != "PANO" and data.dof.use_dof:
-        text = f'Depth of field of camera "{camera.name}" is left out'
-        problems.add(camera.name, WARNING, "depth_of_field", text)
+    focus_distance, aperture = depth_of_field(camera, problems)
     matrix = camera.matrix_world.normalized()
     turn, place = matrix.to_3x3(), matrix.translation
     width, height, center_x, center_y = view_plane(data, frame)
@@ -78,4 +76,43 @@ def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
         right=tuple(turn @ Vector((width, 0.0, 0.0))),
         up=tuple(turn @ Vector((0.0, height, 0.0))),
         near_clip=data.clip_start,
+        focus_distance=focus_distance,
+        aperture=aperture,
     )
+
+
+def depth_of_field(camera: Any, problems: Problems) -> tuple[float, float]:
+    """Distance to the sharp plane and diameter of the lens's opening as Cycles has them, in metres;
+    (0, 0) when everything is sharp."""
+    data = camera.data
+    dof = data.dof
+    if not dof.use_dof or data.type == "PANO":
+        return (0.0, 0.0)
+    distance = dof.focus_distance
+    if dof.focus_object is not None:
+        matrix = camera.matrix_world
+        ahead = matrix.col[2].to_3d().normalized()
+        distance = abs(ahead.dot(matrix.translation - _focus_place(dof)))
+    stop = max(dof.aperture_fstop, 1e-5)
+    lens = 1.0 if data.type == "ORTHO" else data.lens * 1e-3
+    if dof.aperture_blades > 2 or dof.aperture_ratio != 1.0:
+        text = f'Blades of the lens of camera "{camera.name}" are left out: its blur is round'
+        problems.add(camera.name, INFO, "lens_blades", text)
+    return (max(distance, 1e-5), lens / stop)
+
+
+def _focus_place(dof: Any) -> Vector:
+    """Where the focus object is, or the bone of it that is named."""
+    item = dof.focus_object
+    bone = item.pose.bones.get(dof.focus_subtarget) if item.pose else None
+    return (item.matrix_world @ bone.matrix if bone else item.matrix_world).translation
+
+
+def report_render(render: Any, name: str, problems: Problems) -> None:
+    """What the scene's render settings ask for and pictures lack."""
+    if render.use_motion_blur:
+        text = f'Motion blur of scene "{name}" is left out'
+        problems.add(name, WARNING, "motion_blur", text)
+    if render.use_multiview:
+        text = f'Scene "{name}" is stereoscopic; every eye gets the same picture'
+        problems.add(name, WARNING, "stereo", text)

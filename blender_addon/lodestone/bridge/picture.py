@@ -34,13 +34,16 @@ def border(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
     return (left, bottom, max(1, right - left), max(1, top - bottom))
 
 
-def hand_over(engine: Any, layer: str, image: Any) -> None:
+def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str]) -> None:
     """Into the layer's combined pass; other passes stay empty. The result's corner is that of the
-    border. An exception between begin and end would take Blender down, so nothing but the pixels
-    is done between them."""
+    border. `stamp` becomes text in the saved file. An exception between begin and end would take
+    Blender down, so nothing but the pixels is done between them."""
     result = engine.begin_result(0, 0, image.width, image.height, layer=layer)
     try:
         combined = result.layers[0].passes.find_by_name("Combined", "")
         compat.set_pass(combined, image.width, image.height, image.pixels)
     finally:
         engine.end_result(result)
+    whole = engine.get_result()  # merging the part above would have dropped its stamp
+    for field, value in stamp.items():
+        whole.stamp_data_add_field(field, value)

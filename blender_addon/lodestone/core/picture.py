@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from . import locked_folder, report
+from . import identity, locked_folder, report
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -24,6 +24,7 @@ class Settings:
     covered_only: bool = False
     threads: int = 0
     program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
+    border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
 
     def povray(self) -> Any:
         return native.PovrayOptions(
@@ -33,6 +34,16 @@ class Settings:
             threads=self.threads,
             program=self.program,
         )
+
+    def stamp(self) -> dict[str, str]:
+        """What a picture's file says about how it was made: the version, the Pixel Error, and a
+        hash of all settings that show in the picture."""
+        shown = (self.pixel_error, int(self.antialias), self.false_color, self.covered_only)
+        return {
+            "Lodestone": native.version(),
+            "Lodestone Pixel Error": f"{self.pixel_error:g}",
+            "Lodestone Settings": identity.stable_id(native.version(), *(str(v) for v in shown)),
+        }
 
 
 @dataclass
@@ -50,7 +61,9 @@ def cut_and_export(
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
     folder.mkdir(parents=True, exist_ok=True)
-    view = native.View(camera, size[0], size[1], settings.pixel_error, POVRAY_KINDS)
+    view = native.View(
+        camera, size[0], size[1], settings.pixel_error, POVRAY_KINDS, settings.border
+    )
     with native.Cut(model, view, job) as cut:
         parts = {"cut": report.cut_part(cut.summary())}
         in_use = levels_in_use(model, cut)

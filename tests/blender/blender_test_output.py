@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards what ends up in the file: the border's pixels, Blender's colors, how it was made."""
+
+import struct
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+
+def png_text(path):
+    """The tEXt lines of a PNG."""
+    data, at, found = Path(path).read_bytes(), 8, {}
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at : at + 8])
+        if kind == b"tEXt":
+            keyword, text = data[at + 8 : at + 8 + size].split(b"\0", 1)
+            found[keyword.decode("latin-1")] = text.decode("latin-1")
+        at += 12 + size
+    return found
+
+
+class Output(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
+        self.scene.render.engine = "LODESTONE_POVRAY"
+        self.scene.lodestone.pixel_error_render = 0.0
+        self.scene.render.dither_intensity = 0.0
+        cube = scenes.cube(size=3.0)
+        cube.data.materials.append(scenes.material("Paint", (0.3, 0.6, 0.1)))
+        cube.rotation_euler = (0.3, 0.4, 0.5)
+        scenes.sun()
+
+    def render(self, name="picture.png"):
+        self.scene.render.filepath = str(self.folder / name)
+        bpy.ops.render.render(write_still=True)
+        return self.read(self.scene.render.filepath)
+
+    def read(self, path):
+        image = bpy.data.images.load(str(path))
+        (width, height), pixels = image.size, list(image.pixels)
+        bpy.data.images.remove(image)
+        return width, height, pixels
+
+    def test_a_border_has_the_pixels_of_the_whole_picture(self):
+        width, height, whole = self.render()
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.25, 0.75
+        render.border_min_y, render.border_max_y = 0.25, 0.5
+        part_width, part_height, part = self.render()
+        self.assertEqual((part_width, part_height), (width, height))
+        render.use_crop_to_border = True
+        crop_width, crop_height, crop = self.render()
+        self.assertEqual((crop_width, crop_height), (32, 9))
+        for y in range(height):
+            for x in range(width):
+                at = 4 * (y * width + x)
+                inside = 16 <= x < 48 and 9 <= y < 18
+                expected = whole[at : at + 3] if inside else [0.0, 0.0, 0.0]
+                self.assertEqual(part[at : at + 3], expected, (x, y))
+                if inside:
+                    there = 4 * ((y - 9) * crop_width + x - 16)
+                    self.assertEqual(crop[there : there + 3], expected, (x, y))
+
+    def test_only_the_border_is_traced(self):
+        self.scene.lodestone.keep_scene_files = "ALWAYS"
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.25, 0.75
+        render.border_min_y, render.border_max_y = 0.25, 0.5
+        self.render()
+        (ini,) = self.folder.rglob("scene.ini")
+        lines = ini.read_text().splitlines()
+        rows = {"Start_Column=17", "End_Column=48", "Start_Row=19", "End_Row=27"}
+        self.assertLessEqual(rows, set(lines))
+
+    def test_resolution_percentage_scales_the_picture(self):
+        self.scene.render.resolution_percentage = 50
+        width, height, _ = self.render()
+        self.assertEqual((width, height), (32, 18))
+
+    def test_colors_are_blenders_in_every_view_transform(self):
+        settings, view = self.scene.render.image_settings, self.scene.view_settings
+        settings.file_format, settings.color_depth = "OPEN_EXR", "32"
+        _, _, linear = self.render("linear.exr")
+        self.assertGreater(max(linear[:3] + linear[1::4]), 0.1)
+        settings.file_format, settings.color_depth = "PNG", "8"
+        for transform, look, exposure, gamma in (
+            ("Standard", "None", 0.0, 1.0),
+            ("Filmic", "High Contrast", 0.5, 1.2),
+        ):
+            view.view_transform, view.look = transform, look
+            view.exposure, view.gamma = exposure, gamma
+            _, _, ours = self.render()
+            image = bpy.data.images.load(str(self.folder / "linear.exr"))
+            image.save_render(str(self.folder / "blenders.png"), scene=self.scene)
+            bpy.data.images.remove(image)
+            _, _, blenders = self.read(self.folder / "blenders.png")
+            worst = max(abs(a - b) for a, b in zip(ours, blenders))
+            self.assertLessEqual(worst, 1.01 / 255, transform)
+        encoded = [12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055 for v in linear]
+        view.view_transform, view.look, view.exposure, view.gamma = "Standard", "None", 0.0, 1.0
+        _, _, ours = self.render()
+        worst = max(abs(a - min(1.0, b)) for a, b in zip(ours[1::4], encoded[1::4]))
+        self.assertLess(worst, 1.01 / 255)
+
+    def test_the_file_says_how_it_was_made(self):
+        self.scene.lodestone.pixel_error_render = 2.5
+        self.render()
+        text = png_text(self.folder / "picture.png")
+        self.assertRegex(text["Lodestone"], r"^\d+\.\d+\.\d+$")
+        self.assertEqual(text["Lodestone Pixel Error"], "2.5")
+        first = text["Lodestone Settings"]
+        self.assertRegex(first, "^[0-9a-f]{16}$")
+        self.scene.lodestone.antialias = "OFF"
+        self.render()
+        self.assertNotEqual(png_text(self.folder / "picture.png")["Lodestone Settings"], first)
+
+
+if __name__ == "__main__":
+    unittest.main()
