@@ -214,7 +214,8 @@ class FileRun:
                     where = f" (its files: {folder.path})" if self.job.keep != "never" else ""
                     raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
                 raise
-            save(scene, made.path, Path(picture.out), picture.covered_only)
+            with_alpha = picture.covered_only
+            save(scene, made.path, Path(picture.out), with_alpha, settings.stamp())
             if self.job.keep_exr:
                 _replace_by_copy(made.path, Path(picture.out).with_suffix(".exr"))
         if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
@@ -257,9 +258,9 @@ class FileRun:
             print(f"Lodestone: progress: {line}", flush=True)
 
 
-def save(scene, exr: Path, out: Path, with_alpha: bool) -> None:
-    """The picture as F12 would save it: through the scene's view transform, as a PNG. The old one
-    is replaced only when the new one is complete."""
+def save(scene, exr: Path, out: Path, with_alpha: bool, stamp: dict[str, str]) -> None:
+    """The picture as F12 would save it: through the scene's view transform, as a PNG with the
+    stamp's text in it. The old one is replaced only when the new one is complete."""
     format_ = scene.render.image_settings
     before = (format_.file_format, format_.color_mode, format_.color_depth)
     temporary = out.with_name(report.temporary_name())
@@ -271,6 +272,7 @@ def save(scene, exr: Path, out: Path, with_alpha: bool) -> None:
         if with_alpha or scene.render.film_transparent:
             format_.color_mode = "RGBA"
         image.save_render(str(temporary), scene=scene)
+        native.image_add_text(str(temporary), stamp)
         os.replace(temporary, out)
     except (OSError, RuntimeError) as error:
         raise Failed(ExitCode.FAILED, f"cannot write {out}: {error}") from error
