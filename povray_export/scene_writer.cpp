@@ -8,6 +8,7 @@
 #include "povray_export/light_writer.h"
 #include "povray_export/number.h"
 #include "povray_export/representation_writer.h"
+#include "povray_export/sky_writer.h"
 
 #include <glm/common.hpp>
 
@@ -29,10 +30,6 @@ double thread_cpu_s() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-bool finite(const glm::dvec3& value) {
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
 }
 
 /// A user's name inside a comment: letters, digits and underscores only.
@@ -133,8 +130,15 @@ public:
         make_folders();
         collect();
         const double before_files = thread_cpu_s();
+        if (!options_.covered_only)
+            sky_ = write_sky(view_world(), options_.antialiasing, options_.folder, problems_);
         write_includes();
         const double after_files = thread_cpu_s();
+        if (!sky_.file.empty()) {
+            report_.bytes += sky_.bytes;
+            ++report_.files;
+            report_.written += sky_.written ? 1u : 0u;
+        }
         write_text("scene.pov", scene());
         write_text("scene.ini", ini());
         ExportReport report = report_;
@@ -231,13 +235,6 @@ private:
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
 
-    glm::dvec3 sky() const {
-        const glm::dvec3& color = view_world().color;
-        if (options_.covered_only || !finite(color))
-            return glm::dvec3(0.0);
-        return glm::max(color, glm::dvec3(0.0));
-    }
-
     std::string scene() {
         std::string objects;
         Bound bound;
@@ -268,15 +265,22 @@ private:
             "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
             "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
             "global_settings{assumed_gamma 1 max_trace_level 5 ambient_light rgb ";
-        append_vector(out, sky(), 6);
+        append_vector(out, sky_.ambient, 6);
+        const glm::dvec3 background = sky_.statement.empty() ? sky_.ambient : glm::dvec3(0.0);
         out += transparent() ? "}\nbackground{rgbt <" : "}\nbackground{rgb <";
         for (int i = 0; i < 3; ++i) {
-            append_number(out, sky()[i], 6);
+            append_number(out, background[i], 6);
             out += i < 2 ? "," : (transparent() ? ",1>}\n\n" : ">}\n\n");
         }
+        if (!transparent())
+            out += sky_.statement;
         append_camera(out, view_.camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights)
+                append_light(out, light, bound, options_.antialiasing, problems_);
+            if (!sky_.lights.empty())
+                out += "// The rest of the environment's light\n";
+            for (const Light& light : sky_.lights)
                 append_light(out, light, bound, options_.antialiasing, problems_);
         }
         out += '\n';
@@ -333,6 +337,7 @@ private:
     std::vector<Use> uses_;
     std::vector<Include> includes_;
     ExportReport report_;
+    Sky sky_;
 };
 
 }  // namespace

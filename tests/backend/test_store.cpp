@@ -72,6 +72,9 @@ Model rich_model() {
     area.spread = 1;
     model.lights.push_back(area);
     model.world.color = {0.1, 0.2, 0.3};
+    model.world.environment = models::checker();
+    model.world.environment_turn = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    model.world.environment_strength = {1.0 / 3, 1, 2};
     Material brick = models::colored("brick", {0.5, 0.25, 0.125});
     brick.base_color_texture.picture = models::checker();
     brick.base_color_texture.extension = Extension::Mirror;
@@ -146,6 +149,12 @@ void expect_same(const Model& a, const Model& b) {
         EXPECT_EQ(x.edge_v, y.edge_v);
     }
     EXPECT_EQ(a.world.color, b.world.color);
+    ASSERT_EQ(a.world.environment != nullptr, b.world.environment != nullptr);
+    if (a.world.environment) {
+        EXPECT_EQ(a.world.environment->hash, b.world.environment->hash);
+        EXPECT_EQ(a.world.environment_turn, b.world.environment_turn);
+        EXPECT_EQ(a.world.environment_strength, b.world.environment_strength);
+    }
 }
 
 nlohmann::json tileset_of(const fs::path& folder) {
@@ -301,6 +310,9 @@ TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["format"] = 99; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["hash"] = "../../passwd"; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["format"] = "sh"; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["world"]["environment"] = 1; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["world"]["turn"] = std::vector<double>(9, 0); }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["lights"][0]["kind"] = "moon"; }));
     EXPECT_TRUE(refused(
         [](nlohmann::json& j) { j["materials"].back()["base_color_texture"]["picture"] = 1; }));
     EXPECT_TRUE(refused(

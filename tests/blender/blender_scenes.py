@@ -71,6 +71,19 @@ def material(name, color=(0.8, 0.1, 0.1)):
     return made
 
 
+def matte(name, color):
+    """A diffuse shader alone: Lambert's law in every engine, unlike the principled one's."""
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.remove(tree.nodes["Principled BSDF"])
+    shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    shader.inputs["Color"].default_value = (*color, 1.0)
+    output = tree.nodes["Material Output"]
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    return made
+
+
 def sun(name="Sun", energy=3.0):
     data = bpy.data.lights.new(name, "SUN")
     data.energy = energy

@@ -19,17 +19,6 @@ def encoded(value):
     return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
 
 
-def matte(albedo):
-    made = bpy.data.materials.new("Matte")
-    made.use_nodes = True
-    tree = made.node_tree
-    shader = tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*albedo, 1.0)
-    shader.inputs["Specular"].default_value = 0.0
-    shader.inputs["Roughness"].default_value = 1.0
-    return made
-
-
 def lamp(kind, location, turn=(0, 0, 0), scale=(1, 1, 1), **values):
     data = bpy.data.lights.new("Lamp", kind)
     for name, value in values.items():
@@ -47,7 +36,7 @@ class Lights(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
-        grey = matte((0.8, 0.7, 0.5))
+        grey = scenes.matte("Matte", (0.8, 0.7, 0.5))
         for name, left, height in (("Near", -3.0, 0.0), ("Far", 0.0, -2.0)):
             corners = [(left, -2), (left + 3, -2), (left + 3, 2), (left, 2)]
             floor = scenes.mesh(name, [(x, y, height) for x, y in corners], [(0, 1, 2, 3)])

@@ -108,7 +108,7 @@ static void test_build_and_cut(const char* scratch) {
     lds_model* model = two_cubes(&cube);
     const lds_camera camera = camera_before(400);
     EXPECT(lds_model_add_camera(model, &camera) == LDS_OK);
-    lds_world world = {sizeof world, {0.1, 0.1, 0.1}, 0};
+    lds_world world = {.struct_size = sizeof world, .color = {0.1, 0.1, 0.1}};
     EXPECT(lds_model_set_world(model, &world) == LDS_OK);
     lds_light light;
     memset(&light, 0, sizeof light);

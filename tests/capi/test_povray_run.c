@@ -8,7 +8,8 @@ enum { WIDTH = 64, HEIGHT = 36 };
 static void test_two_cubes_are_seen(const char* folder) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_world world = {sizeof world, {0.5, 0.5, 0.5}, 1};
+    const lds_world world = {
+        .struct_size = sizeof world, .color = {0.5, 0.5, 0.5}, .transparent = 1};
     EXPECT(lds_model_set_world(model, &world) == LDS_OK);
     const lds_view view = view_before(20, WIDTH, HEIGHT);
     lds_cut* cut = NULL;

@@ -258,8 +258,13 @@ typedef struct lds_camera {
 
 typedef struct lds_world {
     uint32_t struct_size;
-    double color[3];     /* linear radiance, the same from everywhere */
-    int32_t transparent; /* 1: the background has alpha 0 */
+    double color[3];            /* linear radiance, the same from everywhere */
+    int32_t transparent;        /* 1: the background has alpha 0 */
+    double environment_turn[9]; /* row-major: directions in the world -> in the picture; all 0: the
+                                   same */
+    double environment_strength[3]; /* times the picture's radiance */
+    uint32_t environment; /* 1 + the index of an added picture, seen all around instead of color:
+                             equirectangular as Blender's, +Z up; 0: none */
 } lds_world;
 
 LDS_API lds_status lds_model_create(lds_model** out_model);

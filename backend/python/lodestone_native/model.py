@@ -219,8 +219,23 @@ class Model(Handle):
     def add_camera(self, camera: Camera) -> None:
         check(library().lds_model_add_camera(self.handle, camera.struct()))
 
-    def set_world(self, color: Vector, transparent: bool = False) -> None:
-        world = structs.World(color=color, transparent=int(transparent))
+    def set_world(
+        self,
+        color: Vector,
+        transparent: bool = False,
+        environment: int | None = None,
+        turn: Sequence[float] = (1, 0, 0, 0, 1, 0, 0, 0, 1),
+        strength: Vector = (1.0, 1.0, 1.0),
+    ) -> None:
+        """environment: index of a picture seen all around instead of color (equirectangular, +Z
+        up); turn: row-major, directions in the world to those in the picture."""
+        world = structs.World(
+            color=color,
+            transparent=int(transparent),
+            environment=0 if environment is None else environment + 1,
+            environment_turn=tuple(turn),
+            environment_strength=strength,
+        )
         check(library().lds_model_set_world(self.handle, world))
 
     # ---- Asking ----

@@ -168,7 +168,14 @@ class Camera(Sized):
 
 
 class World(Sized):
-    _fields_ = [("struct_size", c_uint32), ("color", c_double * 3), ("transparent", c_int32)]
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("color", c_double * 3),
+        ("transparent", c_int32),
+        ("environment_turn", c_double * 9),
+        ("environment_strength", c_double * 3),
+        ("environment", c_uint32),
+    ]
 
 
 class Totals(Sized):

@@ -15,6 +15,7 @@ namespace {
 // Sizes of version 1: callers built with it go on working.
 constexpr size_t kFirstLight = offsetof(lds_light, radius);
 constexpr size_t kFirstCamera = offsetof(lds_camera, focus_distance);
+constexpr size_t kFirstWorld = offsetof(lds_world, environment_turn);
 constexpr size_t kViewTail = sizeof(lds_view) - offsetof(lds_view, width);
 constexpr size_t kFirstViewTail = offsetof(lds_view, border) - offsetof(lds_view, width);
 
@@ -140,9 +141,29 @@ lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera) {
 lds_status lds_model_set_world(lds_model* model, const lds_world* world) {
     return guard([&] {
         require(model, "model");
-        const lds_world& given = checked(world, "world");
-        model->model.world.color = vector(given.color, "world.color");
-        model->model.world.transparent = given.transparent != 0;
+        const lds_world given = grown(world, kFirstWorld, "world");
+        World made;
+        made.color = vector(given.color, "world.color");
+        made.transparent = given.transparent != 0;
+        if (given.environment > model->pictures.size())
+            fail(Status::InvalidArgument, "world.environment is ", given.environment, " of ",
+                 model->pictures.size(), " pictures");
+        if (given.environment > 0) {
+            made.environment = model->pictures[given.environment - 1];
+            made.environment_strength = vector(given.environment_strength, "world.strength");
+            glm::dmat3& turn = made.environment_turn;
+            for (int row = 0; row < 3; ++row) {
+                const glm::dvec3 values =
+                    vector(given.environment_turn + size_t{3} * row, "world.turn");
+                for (int column = 0; column < 3; ++column)
+                    turn[column][row] = values[column];
+            }
+            if (turn == glm::dmat3(0.0))
+                turn = glm::dmat3(1.0);
+            if (!(std::abs(glm::determinant(turn)) > 1e-12))
+                fail(Status::InvalidArgument, "world.environment_turn flattens directions");
+        }
+        model->model.world = std::move(made);
     });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/maths.h"
+#include "model/picture.h"
 #include "model/representation.h"
 
 #include <optional>
@@ -55,6 +56,10 @@ struct Light {
 struct World {
     glm::dvec3 color{0.05};    // linear radiance, the same from everywhere
     bool transparent = false;  // film: the background has alpha 0
+    /// What is seen all around instead of `color`: equirectangular, +Z up.
+    PicturePtr environment;
+    glm::dmat3 environment_turn{1.0};  // directions in the world -> in the picture
+    glm::dvec3 environment_strength{1.0};
 };
 
 /// A part of the picture, in its pixels.

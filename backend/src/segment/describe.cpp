@@ -190,7 +190,6 @@ Json describe(const Model& model) {
     Pictures pictures;
     for (const Material& material : model.materials)
         materials.push_back(out(material, pictures));
-    json["pictures"] = pictures.take();
     Json& objects = json["objects"] = Json::array();
     for (const Object& object : model.objects) {
         Json one = {{"uid", object.uid},
@@ -213,6 +212,12 @@ Json describe(const Model& model) {
     for (const Camera& camera : model.cameras)
         json["cameras"].push_back(out(camera));
     json["world"] = {{"color", out(model.world.color)}, {"transparent", model.world.transparent}};
+    if (model.world.environment) {
+        json["world"]["environment"] = pictures.index_of(model.world.environment);
+        json["world"]["turn"] = out(model.world.environment_turn);
+        json["world"]["strength"] = out(model.world.environment_strength);
+    }
+    json["pictures"] = pictures.take();
     return json;
 }
 

@@ -271,6 +271,23 @@ Camera camera(const Json& json) {
     return camera;
 }
 
+World world(const Json& json, const Pictures& pictures) {
+    World world;
+    world.color = vector(json, "color");
+    world.transparent = json.at("transparent").get<bool>();
+    if (json.contains("environment")) {
+        const auto index = json.at("environment").get<size_t>();
+        if (index >= pictures.size())
+            fail(Status::BadFile, "the world names picture ", index, " of ", pictures.size());
+        world.environment = pictures[index];
+        world.environment_turn = matrix(json, "turn");
+        if (!(std::abs(glm::determinant(world.environment_turn)) > 1e-12))
+            fail(Status::BadFile, "the world's environment is flattened");
+        world.environment_strength = vector(json, "strength");
+    }
+    return world;
+}
+
 Model model_of(const Json& json) {
     if (json.at("format").get<int>() != kStoreFormat)
         fail(Status::BadFile, "the store has format ", json.at("format").get<int>(),
@@ -288,8 +305,7 @@ Model model_of(const Json& json) {
         model.lights.push_back(light(one));
     for (const Json& one : json.at("cameras"))
         model.cameras.push_back(camera(one));
-    model.world.color = vector(json.at("world"), "color");
-    model.world.transparent = json.at("world").at("transparent").get<bool>();
+    model.world = world(json.at("world"), pictures);
     if (!json.at("root").is_null()) {
         model.root = json.at("root").get<uint32_t>();
         if (model.root >= model.objects.size())
@@ -340,6 +356,8 @@ std::set<std::string> files_of(const Model& model) {
     for (const Material& material : model.materials)
         for_each_texture(material,
                          [&](const Texture& texture) { files.insert(file_of(*texture.picture)); });
+    if (model.world.environment)
+        files.insert(file_of(*model.world.environment));
     return files;
 }
 

@@ -49,15 +49,18 @@ void remove_unused(const fs::path& folder, const std::set<std::string>& wanted) 
     }
 }
 
-/// Each distinct picture of a model's materials.
+/// Each distinct picture of a model's materials and world.
 std::map<Hash, PicturePtr> pictures_of(const Model& model) {
     std::map<Hash, PicturePtr> found;
+    const auto add = [&](const PicturePtr& picture) {
+        PicturePtr& kept = found[picture->hash];
+        if (kept == nullptr || kept->bytes.empty())
+            kept = picture;
+    };
     for (const Material& material : model.materials)
-        for_each_texture(material, [&](const Texture& texture) {
-            PicturePtr& kept = found[texture.picture->hash];
-            if (kept == nullptr || kept->bytes.empty())
-                kept = texture.picture;
-        });
+        for_each_texture(material, [&](const Texture& texture) { add(texture.picture); });
+    if (model.world.environment)
+        add(model.world.environment);
     return found;
 }
 
@@ -112,6 +115,8 @@ void Store::load_pictures(Model& model) const {
     }
     for (Material& material : model.materials)
         use_pictures(material, resident);
+    if (model.world.environment)
+        model.world.environment = resident.at(model.world.environment->hash);
 }
 
 uint64_t Store::write(const Model& model, const Job& job) const {

@@ -34,7 +34,7 @@ public:
     /// Makes the mesh of a representation resident.
     void load(Representation& representation) const;
 
-    /// Makes the pictures of all materials resident. Throws Error(Io or BadFile).
+    /// Makes the pictures of all materials and the world resident. Throws Error(Io or BadFile).
     void load_pictures(Model& model) const;
 
     /// Writes what is missing, then replaces tileset.json, then removes files that

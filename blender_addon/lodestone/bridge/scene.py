@@ -92,5 +92,11 @@ def surroundings(
     """Adds the lights that were found, (light, matrix, name) each, and the world."""
     for light, matrix, name in found:
         lights.add(model, light, matrix, name, problems)
-    tint = world.color(scene.world, problems, images or ImageMeans())
-    model.set_world(tint, scene.render.film_transparent)
+    around = world.extract(model, scene.world, problems, images or ImageMeans())
+    model.set_world(
+        around.color,
+        scene.render.film_transparent,
+        around.environment,
+        around.turn,
+        around.strength,
+    )

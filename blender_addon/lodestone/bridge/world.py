@@ -1,13 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The world as one color: exact for a flat background, else its mean, named."""
+"""The world: one color, an image all around, or nodes drawn into an image; else its mean, named."""
 
+import math
+import os
+from array import array
+from dataclasses import dataclass
 from typing import Any
 
-from ..core.problems import WARNING, Problems
-from .images import ImageMeans
+import bpy
+from mathutils import Vector
+
+from ..core import exr
+from ..core.native import lodestone_native as native
+from ..core.problems import ERROR, INFO, WARNING, Problems
+from .images import ImageHeads, ImageMeans, to_linear
 from .node_values import NodeValues
+from .sky_nodes import SkyNodes, Unknown
 
-
+WIDTH, HEIGHT = 128, 64  # of the image that nodes are drawn into
+_READ = {"PNG", "JPEG", "OPEN_EXR"}  # what the backend reads itself
 # Mean radiance of the upper half of Blender's sky textures with their default settings, measured
 # with Cycles in 3.4: drawn in one color a sky still lights as much as it would.
 _SKIES = {
@@ -17,64 +28,225 @@ _SKIES = {
 }
 
 
-def color(
-    world: Any | None, problems: Problems, images: ImageMeans | None = None
-) -> tuple[float, float, float]:
-    """Linear radiance of an evaluated world; no world is black."""
+@dataclass(frozen=True)
+class World:
+    """As native.Model.set_world wants it; `environment` is one of its pictures."""
+
+    color: tuple[float, float, float]
+    environment: int | None = None
+    turn: tuple[float, ...] = (1, 0, 0, 0, 1, 0, 0, 0, 1)
+    strength: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+def extract(
+    model: Any, world: Any | None, problems: Problems, images: ImageMeans | None = None
+) -> World:
+    """Of an evaluated world; no world is black. Adds the environment's picture to the model. With
+    ImageHeads only problems are looked for."""
     if world is None:
-        return (0.0, 0.0, 0.0)
+        return World((0.0, 0.0, 0.0))
     if not world.use_nodes or world.node_tree is None:
-        return tuple(world.color)
-    name = world.name
-
-    def note(code: str, text: str) -> None:
-        message = f'World "{name}": drawn as one flat color ({text})'
-        problems.add(name, WARNING, f"world_{code}", message)
-
-    output = world.node_tree.get_output_node("ALL")
-    node = _background(output.inputs["Surface"], set()) if output else None
-    if node is None:
-        if output and output.inputs["Surface"].is_linked:
-            note("shader", "its shader is not known")
-            return tuple(world.color)
-        return (0.0, 0.0, 0.0)
-    images = images or ImageMeans()
-    values = NodeValues(images, note)
-    source = node.inputs["Color"]
-    tint = _environment(source, images, note)
-    if tint is None:
-        tint = values.color(source)
-    strength = values.number(node.inputs["Strength"])
-    return tuple(min(1e9, max(0.0, strength * c)) for c in tint)
+        return World(tuple(world.color))
+    return _Reader(model, world, problems, images or ImageMeans()).read()
 
 
-def _background(socket: Any, seen: set) -> Any | None:
-    """The first background node that feeds this socket."""
+class _Reader:
+    def __init__(self, model: Any, world: Any, problems: Problems, means: ImageMeans) -> None:
+        self._model = model
+        self._world = world
+        self._problems = problems
+        self._means = means
+        self._glance = isinstance(means, ImageHeads)
+        self._images: dict[int, Any] = {}
+
+    def read(self) -> World:
+        tree = self._world.node_tree
+        output = tree.get_output_node("ALL")
+        if output is None or not output.inputs["Surface"].is_linked:
+            return World((0.0, 0.0, 0.0))
+        if output.inputs["Volume"].is_linked:
+            self._note(WARNING, "volume", "its volume is left out")
+        nodes: list[Any] = []
+        _backgrounds(output.inputs["Surface"], set(), nodes)
+        if not nodes:
+            self._note(WARNING, "shader", "drawn as its viewport color: its shader is not known")
+            return World(tuple(self._world.color))
+        if len(nodes) > 1:
+            text = f'drawn as its first background, "{nodes[0].name}", alone'
+            self._note(WARNING, "backgrounds", text)
+        node = nodes[0]
+        if not any(node.inputs[name].is_linked for name in ("Color", "Strength")):
+            return World(self._mean(node))
+        return self._image(node) or self._drawn(node) or World(self._mean(node))
+
+    # ---- An image as it is ----
+
+    def _image(self, node: Any) -> World | None:
+        """An environment texture right behind the color, turned or not, times a constant."""
+        color, strength = node.inputs["Color"], node.inputs["Strength"]
+        if strength.is_linked or not color.is_linked:
+            return None
+        texture = color.links[0].from_node
+        if texture.type != "TEX_ENVIRONMENT" or texture.projection != "EQUIRECTANGULAR":
+            return None
+        if texture.image is None:
+            self._note(ERROR, "image_missing", "its environment texture has no image")
+            return None
+        try:
+            turn = _linear(SkyNodes(self._texel).direction(texture))
+        except Unknown:
+            return None
+        index = self._picture(texture.image) if turn else None
+        if index is None:
+            return None
+        return World((0.0, 0.0, 0.0), index, turn, (max(0.0, strength.default_value),) * 3)
+
+    def _picture(self, image: Any) -> int | None:
+        if self._glance:
+            if self._means.mean(image) is None:
+                self._note(ERROR, "image_missing", f'image "{image.name}" cannot be read')
+            return 0
+        linear = image.colorspace_settings.name != "sRGB"
+        given = image.source == "FILE" and not image.is_dirty and image.file_format in _READ
+        try:
+            if given and image.packed_file is not None:
+                data = image.packed_file.data
+                return self._model.add_picture(image.name, data=data, linear=linear)
+            if given:
+                path = bpy.path.abspath(image.filepath, library=image.library)
+                if os.path.isfile(path):
+                    return self._model.add_picture(image.name, path=path, linear=linear)
+        except native.LodestoneError as error:
+            if error.status not in {native.Status.BAD_FILE, native.Status.IO}:
+                raise
+        found = self._pixels(image)
+        if found is None:
+            self._note(ERROR, "image_missing", f'image "{image.name}" cannot be read')
+            return None
+        width, height, pixels = found
+        return self._model.add_picture(image.name, data=exr.encode(width, height, pixels))
+
+    # ---- Nodes, looked at all around ----
+
+    def _drawn(self, node: Any) -> World | None:
+        nodes = SkyNodes(self._texel)
+        try:
+            color = nodes.color(node.inputs["Color"])
+            strength = nodes.number(node.inputs["Strength"])
+        except Unknown as unknown:
+            self._note(WARNING, "nodes", f"drawn as one flat color: {unknown} is not known")
+            return None
+        size = f"{WIDTH} x {HEIGHT}"
+        self._note(INFO, "drawn", f"its nodes are drawn into an image of {size} pixels")
+        if self._glance:
+            return World((0.0, 0.0, 0.0), 0)
+        pixels = array("f")
+        for row in range(HEIGHT):
+            height = math.pi * ((row + 0.5) / HEIGHT - 0.5)
+            for column in range(WIDTH):
+                turn = math.pi * (1.0 - 2.0 * (column + 0.5) / WIDTH)
+                flat = math.cos(height)
+                at = Vector((flat * math.cos(turn), flat * math.sin(turn), math.sin(height)))
+                try:
+                    power = strength(at)
+                    values = [power * part for part in color(at)]
+                except (ArithmeticError, ValueError, TypeError):
+                    values = [0.0, 0.0, 0.0]
+                pixels.extend(min(1e9, max(0.0, v)) if v == v else 0.0 for v in values)
+        data = exr.encode(WIDTH, HEIGHT, pixels)
+        return World((0.0, 0.0, 0.0), self._model.add_picture(self._world.name, data=data))
+
+    def _texel(self, image: Any, u: float, v: float) -> Any | None:
+        """The linear color of the pixel there; None when the image cannot be read."""
+        if self._glance:
+            return self._means.mean(image)
+        key = image.as_pointer()
+        if key not in self._images:
+            self._images[key] = self._pixels(image)
+        if self._images[key] is None:
+            return None
+        width, height, pixels = self._images[key]
+        x = min(width - 1, max(0, int(u * width)))
+        y = min(height - 1, max(0, int(v * height)))
+        return tuple(pixels[3 * (y * width + x) : 3 * (y * width + x) + 3])
+
+    def _pixels(self, image: Any) -> Any | None:
+        """Width, height and linear RGB (array 'f', lowest row first) by Blender's own reader."""
+        loaded = image.has_data
+        width, height = image.size  # loads it
+        channels = image.channels
+        count = width * height * channels
+        if count == 0 or len(image.pixels) != count:
+            return None
+        pixels = array("f", bytes(4 * count))
+        image.pixels.foreach_get(pixels)
+        encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
+        if not loaded and not image.is_dirty and image.source == "FILE":
+            image.buffers_free()
+        if encoded:
+            table = [to_linear(i / 255.0) for i in range(256)]
+            pixels = array("f", (table[min(255, max(0, int(255.0 * p + 0.5)))] for p in pixels))
+        wide = array("f", bytes(12 * width * height))
+        for channel in range(3):
+            wide[channel::3] = pixels[(channel if channels > 2 else 0) :: channels]
+        return width, height, wide
+
+    # ---- One color ----
+
+    def _mean(self, node: Any) -> tuple[float, float, float]:
+        def note(code: str, text: str) -> None:
+            self._note(WARNING, code, f"drawn as one flat color ({text})")
+
+        values = NodeValues(self._means, note)
+        source = node.inputs["Color"]
+        tint = None
+        if source.is_linked:
+            behind = source.links[0].from_node
+            if behind.type == "TEX_SKY":
+                note("sky", "the mean of a sky like it")
+                tint = _SKIES.get(behind.sky_type, _SKIES["HOSEK_WILKIE"])
+            elif behind.type == "TEX_ENVIRONMENT" and behind.image is not None:
+                tint = self._means.mean(behind.image)
+                if tint is not None:
+                    note("texture_mean", "the mean of its environment texture")
+        if tint is None:
+            tint = values.color(source)
+        strength = values.number(node.inputs["Strength"])
+        return tuple(min(1e9, max(0.0, strength * c)) for c in tint)
+
+    def _note(self, severity: str, code: str, text: str) -> None:
+        name = self._world.name
+        self._problems.add(name, severity, f"world_{code}", f'World "{name}": {text}')
+
+
+def _backgrounds(socket: Any, seen: set, found: list[Any]) -> None:
+    """The background nodes that feed this socket, the first one first."""
     for link in socket.links:
         node = link.from_node
         if node.name in seen:
             continue
         seen.add(node.name)
         if node.type == "BACKGROUND":
-            return node
+            found.append(node)
+            continue
         for inner in node.inputs:
-            found = _background(inner, seen)
-            if found is not None:
-                return found
-    return None
+            if inner.type == "SHADER" or node.type == "REROUTE":
+                _backgrounds(inner, seen, found)
 
 
-def _environment(socket: Any, images: ImageMeans, note: Any) -> Any | None:
-    """The mean of an environment or sky texture right behind the socket."""
-    if not socket.is_linked:
+def _linear(function: Any) -> tuple[float, ...] | None:
+    """The row-major rotation (or mirror) that a function of directions is; None for others."""
+    columns = [Vector(function(Vector(axis))) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    size = columns[0].length
+    if size < 1e-6:
         return None
-    node = socket.links[0].from_node
-    if node.type == "TEX_ENVIRONMENT" and node.image is not None:
-        mean = images.mean(node.image)
-        if mean is not None:
-            note("texture_mean", "the mean of its environment texture")
-        return mean
-    if node.type == "TEX_SKY":
-        note("sky", "the mean of a sky like it")
-        return _SKIES.get(node.sky_type, _SKIES["HOSEK_WILKIE"])
-    return None
+    for test in ((0.0, 0.0, 0.0), (0.3, -0.5, 0.8), (-0.7, 0.2, -0.4)):
+        expected = sum((c * t for c, t in zip(columns, test)), Vector((0.0, 0.0, 0.0)))
+        if (Vector(function(Vector(test))) - expected).length > 1e-5 * size:
+            return None
+    for one, other in ((0, 1), (1, 2), (2, 0)):
+        if abs(columns[one].dot(columns[other])) > 1e-5 * size * size:
+            return None
+        if abs(columns[one].length - columns[other].length) > 1e-5 * size:
+            return None
+    return tuple(columns[column][row] / size for row in range(3) for column in range(3))

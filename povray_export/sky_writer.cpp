@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/sky_writer.h"
+
+#include "base/files.h"
+#include "measure/environment_lights.h"
+#include "povray_export/number.h"
+
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+bool finite(const glm::dvec3& value) {
+    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
+}
+
+/// More suns: finer shadows of the sky, a ray each at every point that is seen.
+size_t sun_count(Antialiasing antialiasing) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return 12;
+        case Antialiasing::Final:
+            return 24;
+        case Antialiasing::Reference:
+            break;
+    }
+    return 64;
+}
+
+const char* keyword_of(PictureFormat format) {
+    switch (format) {
+        case PictureFormat::Png:
+            return "png";
+        case PictureFormat::Jpeg:
+            return "jpeg";
+        case PictureFormat::Exr:
+            break;
+    }
+    return "exr";
+}
+
+std::string statement_of(const World& world, const std::string& file) {
+    const Picture& picture = *world.environment;
+    std::string out = "sky_sphere{pigment{image_map{";
+    out += keyword_of(picture.format);
+    out += " \"" + file + '"';
+    if (picture.format != PictureFormat::Exr)
+        out += picture.space == ColorSpace::Linear ? " gamma 1" : " gamma srgb";
+    out += " map_type 1 interpolate 2}}\n    matrix<";
+    // POV-Ray's map starts at +X and turns to +Z, Y being up; Blender's starts at -X and turns to
+    // +Y. So the map's axes are -X, Z, Y of the picture's frame.
+    const glm::dmat3 to_world = glm::inverse(world.environment_turn);
+    for (const glm::dvec3& axis : {-to_world[0], to_world[2], to_world[1]}) {
+        for (int i = 0; i < 3; ++i) {
+            append_number(out, axis[i]);
+            out += ',';
+        }
+    }
+    out += "0,0,0>\n    emission rgb ";
+    append_vector(out, world.environment_strength, 6);
+    return out + "}\n\n";
+}
+
+}  // namespace
+
+Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesystem::path& folder,
+              Problems& problems) {
+    Sky sky;
+    if (finite(world.color))
+        sky.ambient = glm::max(world.color, glm::dvec3(0.0));
+    if (!world.environment)
+        return sky;
+    const Picture& picture = *world.environment;
+    measure::EnvironmentLights found;
+    try {
+        found = measure::environment_lights(world, sun_count(antialiasing));
+    } catch (const Error& error) {
+        problems.push_back({picture.name, Severity::Error, "environment_unreadable", error.what()});
+        return sky;
+    }
+    sky.ambient = found.ambient;
+    for (const measure::EnvironmentLight& each : found.lights) {
+        Light& sun = sky.lights.emplace_back();
+        sun.direction = each.direction;
+        sun.color = each.irradiance;
+        sun.shadow = antialiasing != Antialiasing::Off;
+    }
+    sky.file = "i/" + hex16(picture.hash) + '.' + suffix_of(picture.format);
+    sky.bytes = picture.bytes.size();
+    const std::filesystem::path path = folder / sky.file;
+    std::error_code error;
+    if (std::filesystem::file_size(path, error) != picture.bytes.size() || error) {
+        std::filesystem::create_directories(path.parent_path(), error);
+        write_file(path, picture.bytes);
+        sky.written = true;
+    }
+    sky.statement = statement_of(world, sky.file);
+    return sky;
+}
+
+}  // namespace lodestone::povray

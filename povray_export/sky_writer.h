@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sky writer: a world as what is seen behind everything and as the light it gives.
+#pragma once
+
+#include "model/view.h"
+#include "povray_export/antialiasing.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lodestone::povray {
+
+struct Sky {
+    glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
+    std::vector<Light> lights;  // suns for the rest of an environment
+    std::string statement;      // sky_sphere{...}, or nothing where the background does
+    std::string file;           // of an environment, relative to the scene; "" without
+    uint64_t bytes = 0;         // of that file
+    bool written = false;       // false: it was there already
+};
+
+/// Writes an environment's picture into `folder`/i when it is not there. One that cannot be decoded
+/// becomes a problem, and its world counts as its color. Throws Error(Io).
+Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesystem::path& folder,
+              Problems& problems);
+
+}  // namespace lodestone::povray

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards worlds: what is seen of them and how they light, against Cycles; what is named."""
+
+import math
+import tempfile
+import unittest
+from array import array
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+WIDTH, HEIGHT = 48, 32
+LIMIT = 3 / 255  # of display values, Standard
+
+
+def encoded(value):
+    value = min(1.0, max(0.0, value))
+    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
+class World(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        self.world = bpy.data.worlds.new("World")
+        self.world.use_nodes = True
+        self.tree = self.world.node_tree
+        self.background = self.tree.nodes["Background"]
+        self.scene.world = self.world
+        scenes.cube()
+
+    def extracted(self):
+        """(world, codes of its problems)"""
+        from lodestone.bridge import world
+        from lodestone.core.native import lodestone_native as native
+        from lodestone.core.problems import Problems
+
+        problems = Problems()
+        with native.Model() as model:
+            found = world.extract(model, self.scene.world, problems)
+            model.set_world(found.color, False, found.environment, found.turn, found.strength)
+        return found, [problem.code for problem in problems]
+
+    def environment(self, image=None, mapping=None):
+        node = self.tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = image
+        self.tree.links.new(node.outputs[0], self.background.inputs["Color"])
+        if mapping is not None:
+            place = self.tree.nodes.new("ShaderNodeTexCoord")
+            turn = self.tree.nodes.new("ShaderNodeMapping")
+            turn.inputs["Rotation"].default_value = mapping
+            self.tree.links.new(place.outputs["Generated"], turn.inputs["Vector"])
+            self.tree.links.new(turn.outputs["Vector"], node.inputs["Vector"])
+        return node
+
+    def sky(self):
+        """A bright patch over a gradient, brighter than an 8-bit picture can be."""
+        image = bpy.data.images.new("Sky", 64, 32, float_buffer=True)
+        image.colorspace_settings.name = "Linear"
+        pixels = array("f")
+        for y in range(32):
+            for x in range(64):
+                patch = 6.0 if abs(x - 20) < 3 and abs(y - 22) < 3 else 0.0
+                high = y / 32
+                pixels.extend((0.1 + patch, 0.1 + 0.3 * high + patch, 0.5 * high + patch, 1.0))
+        image.pixels.foreach_set(pixels)
+        return image
+
+    def test_one_color_is_exact_and_none_is_black(self):
+        self.background.inputs["Color"].default_value = (0.45, 0.6, 0.85, 1.0)
+        self.background.inputs["Strength"].default_value = 0.5
+        found, codes = self.extracted()
+        for value, expected in zip(found.color, (0.225, 0.3, 0.425)):
+            self.assertAlmostEqual(value, expected, places=6)
+        self.assertEqual((found.environment, codes), (None, []))
+        self.scene.world = None
+        self.assertEqual(self.extracted()[0].color, (0.0, 0.0, 0.0))
+
+    def test_an_image_all_around_is_a_picture_turned_as_mapped(self):
+        self.environment(self.sky(), (0.0, 0.0, math.radians(90)))
+        self.background.inputs["Strength"].default_value = 2.0
+        found, codes = self.extracted()
+        self.assertEqual((found.environment, codes), (0, []))
+        self.assertEqual(found.strength, (2.0, 2.0, 2.0))
+        for value, expected in zip(found.turn, (0, -1, 0, 1, 0, 0, 0, 0, 1)):
+            self.assertAlmostEqual(value, expected, places=6)
+
+    def test_a_missing_image_is_named(self):
+        node = self.environment()
+        self.assertIn("world_image_missing", self.extracted()[1])
+        node.image = bpy.data.images.new("Gone", 4, 4)
+        node.image.source = "FILE"
+        node.image.filepath = "/nowhere/sky.png"
+        self.assertIn("world_image_missing", self.extracted()[1])
+
+    def test_unknown_nodes_are_one_named_color(self):
+        noise = self.tree.nodes.new("ShaderNodeTexNoise")
+        self.tree.links.new(noise.outputs["Color"], self.background.inputs["Color"])
+        found, codes = self.extracted()
+        self.assertIsNone(found.environment)
+        self.assertIn("world_nodes", codes)
+
+    def test_nodes_in_a_circle_of_groups_and_nonsense_end(self):
+        power = self.tree.nodes.new("ShaderNodeMath")
+        power.operation = "POWER"
+        power.inputs[0].default_value, power.inputs[1].default_value = 1e30, 1e9
+        self.tree.links.new(power.outputs[0], self.background.inputs["Color"])
+        found, _ = self.extracted()
+        self.assertTrue(all(math.isfinite(value) for value in found.color))
+
+    # ---- Against Cycles ----
+
+    def compare(self):
+        """A matte ball in front of the world, in both engines."""
+        bpy.data.objects.remove(bpy.data.objects["Cube"])
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5)
+        ball = bpy.context.object
+        for polygon in ball.data.polygons:
+            polygon.use_smooth = True
+        ball.data.materials.append(scenes.matte("Matte", (0.8, 0.7, 0.5)))
+        scene = self.scene
+        scene.camera.location = (0.0, -6.0, 0.0)
+        scene.camera.rotation_euler = (math.radians(90), 0.0, 0.0)
+        scene.lodestone.pixel_error_render = 0.0
+        render = scene.render
+        render.resolution_x, render.resolution_y = WIDTH, HEIGHT
+        render.image_settings.file_format = "OPEN_EXR"
+        render.image_settings.color_depth = "32"
+        cycles = scene.cycles
+        cycles.device, cycles.samples, cycles.pixel_filter_type = "CPU", 128, "BOX"
+        cycles.use_denoising = cycles.use_adaptive_sampling = False
+        cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
+        cycles.sample_clamp_direct = 0.0
+        with tempfile.TemporaryDirectory() as folder:
+            bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "file.blend"))
+            ours, theirs = (
+                self.render(engine, folder) for engine in ("LODESTONE_POVRAY", "CYCLES")
+            )
+        differences = [abs(a - b) for a, b in zip(ours, theirs)]
+        self.assertLess(sum(differences) / len(differences), LIMIT)
+        worst = 0.0
+        for x, y in ((24, 16), (20, 20), (28, 20), (20, 11), (28, 11), (24, 22), (4, 4), (44, 28)):
+            for channel in range(3):
+                mean = [
+                    sum(
+                        picture[3 * ((y + dy) * WIDTH + x + dx) + channel]
+                        for dx in (-1, 0, 1)
+                        for dy in (-1, 0, 1)
+                    )
+                    / 9
+                    for picture in (ours, theirs)
+                ]
+                worst = max(worst, abs(mean[0] - mean[1]))
+                with self.subTest((x, y, channel)):
+                    self.assertLess(abs(mean[0] - mean[1]), LIMIT, mean)
+        print(f"worst: {255 * worst:.2f} / 255")
+
+    def render(self, engine, folder):
+        self.scene.render.engine = engine
+        self.scene.render.filepath = str(Path(folder) / f"{engine}.exr")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(self.scene.render.filepath)
+        pixels = list(image.pixels)
+        bpy.data.images.remove(image)
+        return [encoded(value) for i, value in enumerate(pixels) if i % 4 < 3]
+
+    def test_an_image_is_seen_and_lights_as_in_cycles(self):
+        self.environment(self.sky(), (0.2, 0.1, 1.0))
+        self.compare()
+
+    def test_a_gradient_of_nodes_is_seen_and_lights_as_in_cycles(self):
+        place = self.tree.nodes.new("ShaderNodeTexCoord")
+        split = self.tree.nodes.new("ShaderNodeSeparateXYZ")
+        ramp = self.tree.nodes.new("ShaderNodeValToRGB")
+        ramp.color_ramp.elements[0].color = (0.9, 0.6, 0.3, 1.0)
+        ramp.color_ramp.elements[1].color = (0.1, 0.2, 0.6, 1.0)
+        link = self.tree.links.new
+        link(place.outputs["Generated"], split.inputs[0])
+        link(split.outputs["Z"], ramp.inputs["Fac"])
+        link(ramp.outputs["Color"], self.background.inputs["Color"])
+        self.assertEqual(self.extracted()[1], ["world_drawn"])
+        self.compare()
+
+
+if __name__ == "__main__":
+    unittest.main()
