@@ -41,6 +41,9 @@ private:
 /// A report with the fields every verb has.
 Fields report_of(const char* verb, const std::string& input);
 
+/// The report's "cut".
+Fields fields_of(const lds_cut_summary& summary);
+
 /// The model's problems as the report's list; printed to stderr too.
 List problems_of(const lds_model* model);
 

@@ -1,99 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cut, compare, version.
+#include "cameras.h"
 #include "report.h"
 #include "session.h"
 #include "verbs.h"
 
-#include <array>
-#include <cmath>
 #include <cstdio>
-#include <cstring>
 
 namespace lodestone::tools {
-namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector vector_of(const std::string& option, const std::string& text) {
-    Vector v{};
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v[0], &v[1], &v[2], &rest) != 3 ||
-        !std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
-        throw UsageError("--" + option + " is '" + text + "'; X,Y,Z expected");
-    return v;
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector scaled(const Vector& v, double factor) {
-    return {v[0] * factor, v[1] * factor, v[2] * factor};
-}
-
-double length(const Vector& v) {
-    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/// A perspective camera at `eye`, Z up.
-lds_camera camera_at(const Vector& eye, const Vector& target, double angle_deg, double aspect) {
-    Vector direction{target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
-    if (length(direction) == 0)
-        throw UsageError("--eye and --look-at are the same point");
-    direction = scaled(direction, 1 / length(direction));
-    const Vector world_up = std::abs(direction[2]) > 0.999 ? Vector{0, 1, 0} : Vector{0, 0, 1};
-    Vector right = cross(direction, world_up);
-    right = scaled(right, 1 / length(right));
-    const Vector up = cross(right, direction);
-    const double width = 2 * std::tan(angle_deg * 3.14159265358979323846 / 360);
-    lds_camera camera{};
-    camera.struct_size = sizeof camera;
-    camera.near_clip = 0.1;
-    for (size_t i = 0; i < 3; ++i) {
-        camera.position[i] = eye[i];
-        camera.direction[i] = direction[i];
-        camera.right[i] = right[i] * width;
-        camera.up[i] = up[i] * width / aspect;
-    }
-    return camera;
-}
-
-lds_camera camera_named(const lds_model* model, const std::string* name) {
-    const size_t count = lds_model_camera_count(model);
-    for (size_t i = 0; i < count; ++i) {
-        lds_camera camera{};
-        camera.struct_size = sizeof camera;
-        check(lds_model_camera(model, i, &camera));
-        if (name == nullptr || *name == camera.name)
-            return camera;
-    }
-    if (name != nullptr)
-        throw UsageError("there is no camera '" + *name + "' here");
-    throw UsageError("the model has no camera: give --eye X,Y,Z");
-}
-
-}  // namespace
-
 int run_cut(const Arguments& arguments) {
     const std::string& input = arguments.positional()[0];
-    lds_view view{};
-    view.struct_size = sizeof view;
-    view.pixel_error = arguments.number("pixel-error", 1, 0, 1e9);
-    const std::string size = arguments.text("size").value_or("640x360");
-    char rest = 0;
-    if (std::sscanf(size.c_str(), "%dx%d%c", &view.width, &view.height, &rest) != 2 ||
-        view.width < 1 || view.height < 1)
-        throw UsageError("--size is '" + size + "'; WxH expected, e.g. 640x360");
+    size_of(arguments);  // before anything is read
     const ModelHandle model = read_model(input);
-    const auto eye = arguments.text("eye");
-    const auto name = arguments.text("camera");
-    if (eye)
-        view.camera = camera_at(vector_of("eye", *eye),
-                                vector_of("look-at", arguments.text("look-at").value_or("0,0,0")),
-                                arguments.number("angle-deg", 50, 0.01, 175),
-                                static_cast<double>(view.width) / view.height);
-    else
-        view.camera = camera_named(model.get(), name ? &*name : nullptr);
+    const lds_view view = view_of(arguments, model.get(), false);
 
     lds_cut* made = nullptr;
     check(lds_cut_create(model.get(), &view, nullptr, &made));
@@ -113,14 +32,7 @@ int run_cut(const Arguments& arguments) {
         summary.largest_error_name);
     Fields report = report_of("cut", input);
     report.push_back({"pixel_error", view.pixel_error});
-    report.push_back({"cut", Fields{{"kinds", Fields{{"mesh", summary.mesh},
-                                                     {"box", summary.box},
-                                                     {"ellipsoid", summary.ellipsoid}}},
-                                    {"occurrences", summary.occurrences},
-                                    {"originals", summary.originals},
-                                    {"triangles", summary.triangles},
-                                    {"bytes", summary.bytes},
-                                    {"largest_error_px", summary.largest_error_px}}});
+    report.push_back({"cut", fields_of(summary)});
     if (arguments.has("list")) {
         std::vector<lds_choice> choices(lds_cut_choice_count(cut.get()));
         check(lds_cut_choice_copy(cut.get(), choices.data(), choices.size()));

@@ -27,6 +27,7 @@ int run_simplify(const Arguments& arguments);
 int run_build(const Arguments& arguments);
 int run_info(const Arguments& arguments);
 int run_cut(const Arguments& arguments);
+int run_povray(const Arguments& arguments);
 int run_compare(const Arguments& arguments);
 int run_version(const Arguments& arguments);
 

@@ -113,6 +113,7 @@ static void test_lights_of_every_kind_are_checked(void) {
     light.spot_size = 1;
     for (light.kind = LDS_LIGHT_SUN; light.kind <= LDS_LIGHT_AREA; ++light.kind)
         EXPECT(lds_model_add_light(model, &light) == LDS_OK);
+    EXPECT(lds_model_light_count(model) == 4 && lds_model_light_count(NULL) == 0);
     EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT); /* no such kind */
     light.kind = LDS_LIGHT_SPOT;
     light.spot_size = 4;

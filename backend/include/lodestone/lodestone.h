@@ -361,6 +361,7 @@ LDS_API lds_status lds_model_occurrence_copy(lds_model* model, lds_occurrence* o
 LDS_API size_t lds_model_camera_count(const lds_model* model);
 LDS_API lds_status lds_model_camera(const lds_model* model, size_t position,
                                     lds_camera* out_camera);
+LDS_API size_t lds_model_light_count(const lds_model* model);
 
 /* Problems of the user's data, found while adding, reading, building, exporting. */
 typedef struct lds_problem {

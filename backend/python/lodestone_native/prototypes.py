@@ -44,6 +44,7 @@ PROTOTYPES = (
     ("lds_model_occurrence_copy", I, [M, P(s.Occurrence), Z]),
     ("lds_model_camera_count", Z, [M]),
     ("lds_model_camera", I, [M, Z, P(s.Camera)]),
+    ("lds_model_light_count", Z, [M]),
     ("lds_model_problem_count", Z, [M]),
     ("lds_model_problem", I, [M, Z, P(s.Problem)]),
     ("lds_surface_inertia", I, [P(c_float), Z, P(c_uint32), Z, P(D), P(D), P(D)]),

@@ -190,3 +190,7 @@ lds_status lds_model_camera(const lds_model* model, size_t position, lds_camera*
         hand_out_grown(out_camera, out, kFirstCamera, "out_camera");
     });
 }
+
+size_t lds_model_light_count(const lds_model* model) {
+    return model == nullptr ? 0 : model->model.lights.size();
+}

@@ -4,13 +4,15 @@
 Called inside RenderEngine.render(); keeps no reference to Blender's data afterwards.
 """
 
+import contextlib
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
-from . import groups, ids, lights, world
+from . import camera, groups, ids, lights, world
 from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves
@@ -53,6 +55,7 @@ def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extracti
         for name in tree.unplaced:
             report_outside(problems, name)
         surroundings(model, scene, walk.found.lights, problems)
+        _add_cameras(model, scene)
         problems.keep(walk.users.concerns)
     except BaseException:
         model.close()
@@ -100,3 +103,16 @@ def surroundings(
         around.turn,
         around.strength,
     )
+
+
+def _add_cameras(model: Any, scene: Any) -> None:
+    """All of the scene, its own one first, for programs that render the store. What is not exact
+    about one is told when it is used."""
+    frame = camera.Frame.of(scene.render)
+    items = [item for item in scene.objects if item.type == "CAMERA"]
+    items.sort(key=lambda item: (item != scene.camera, item.name))
+    for item in items:
+        matrix = item.matrix_world
+        if all(math.isfinite(value) for row in matrix for value in row):
+            with contextlib.suppress(native.LodestoneError):  # such as one of no size
+                model.add_camera(camera.extract(item, frame, Problems()))

@@ -38,6 +38,7 @@ def check(
     eye = requirements.camera(evaluated, problems)
     if eye is not None:
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
+    camera.report_render(evaluated.render, evaluated.name, problems)
     problems.keep(walk.users.concerns)
     return Check(tuple(problems), walk.users.found())
 
