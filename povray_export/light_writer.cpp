@@ -38,7 +38,7 @@ class Writer {
 public:
     Writer(std::string& out, const Light& light, Antialiasing antialiasing)
         : out_(out), light_(light), soft_(antialiasing != Antialiasing::Off && light.shadow) {
-        start_ = antialiasing == Antialiasing::Reference ? 2 : 1;
+        start_ = antialiasing == Antialiasing::Reference ? 1 : 0;
     }
 
     void sun(const glm::dvec3& color, const Bound& bound) {
@@ -56,9 +56,9 @@ public:
         if (soft_ && half > 1e-4) {
             Grid grid{17, 17, start_};
             if (in_parts)
-                grid.u = grid.v = 9;
+                grid = {9, 9, start_ + 1};
             else if (half < kNarrowSun)
-                grid = {5, 5, start_ - 1};
+                grid.u = grid.v = 5;
             const glm::dvec3 u = perpendicular(way);
             const double width = 2 * r * reach;
             append_grid(u * width, glm::cross(way, u) * width, grid);
@@ -85,7 +85,7 @@ public:
                                                           std::clamp(light_.spot_blend, 0.0, 1.0)));
         append_cone(inner, outer, 1);
         if (soft) {  // each part has its own cone, as in Cycles
-            append_ball({9, 9, start_});
+            append_ball({9, 9, start_ + 1});
             out_ += " area_illumination on";
         }
         close();
@@ -102,7 +102,7 @@ public:
         fading(light_.position, color * (cone.strength / (4 * kPi)), fade);
         append_cone(cone.inner, cone.outer, cone.tightness);
         if (soft_) {
-            Grid grid{9, 9, start_};
+            Grid grid{9, 9, start_ + 1};
             const double ratio = std::max(width, height) / std::min(width, height);
             int& longer = width > height ? grid.u : grid.v;
             int& shorter = width > height ? grid.v : grid.u;

@@ -18,7 +18,7 @@ constexpr size_t kFrame = 12;  // length, type, checksum of a chunk
 
 /// The checksum of PNG's specification (annex D).
 uint32_t checksum(std::string_view bytes) {
-    static const std::array<uint32_t, 256> table = [] {
+    static const std::array<uint32_t, 256> kTable = [] {
         std::array<uint32_t, 256> out{};
         for (uint32_t i = 0; i < 256; ++i) {
             uint32_t c = i;
@@ -30,7 +30,7 @@ uint32_t checksum(std::string_view bytes) {
     }();
     uint32_t c = 0xffffffffu;
     for (const char byte : bytes)
-        c = table[(c ^ static_cast<unsigned char>(byte)) & 0xffu] ^ (c >> 8u);
+        c = kTable[(c ^ static_cast<unsigned char>(byte)) & 0xffu] ^ (c >> 8u);
     return c ^ 0xffffffffu;
 }
 
