@@ -5,6 +5,7 @@
 #include "format/gltf_frame.h"
 #include "format/gltf_material.h"
 #include "format/gltf_mesh.h"
+#include "format/gltf_view.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
@@ -65,6 +66,10 @@ public:
         // Children before parents.
         for (size_t i = order.size(); i-- > 0;)
             read_node(order[i]);
+        const auto own = [this](int node) {
+            return placements_[static_cast<size_t>(node)].transform;
+        };
+        read_view(from_, order, own, model_, problems_);
         model_.root = add_group("gltf:scene", scene_name(), gather(roots));
         summarize_assemblies(model_, bottom_up(model_));
         return std::move(model_);
