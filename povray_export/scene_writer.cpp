@@ -77,6 +77,18 @@ void append_matrix(std::string& out, const Affine& transform) {
     }
 }
 
+/// POV-Ray's flags; only ever on single objects, as it loses no_image in some of its CSG.
+void append_hidden(std::string& out, RayMask hidden) {
+    if ((hidden & kCameraRays) != 0)
+        out += " no_image";
+    if ((hidden & kReflectionRays) != 0)
+        out += " no_reflection";
+    if ((hidden & kShadowRays) != 0)
+        out += " no_shadow";
+    if ((hidden & kRadiosityRays) != 0)
+        out += " no_radiosity";
+}
+
 /// Below an Environment group, or a stand-in for a group that holds Environment.
 bool environment(const Model& model, const quality::Cut& cut,
                  const std::vector<uint8_t>& holds_environment, uint32_t node) {
@@ -250,6 +262,7 @@ private:
                 objects += ' ';
             }
             append_matrix(objects, use.world);
+            append_hidden(objects, node.hidden);
             objects += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
             append_count(objects, node.lod);
             objects += '\n';

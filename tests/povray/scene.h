@@ -61,8 +61,9 @@ public:
         return add(kind, primitive, std::move(materials));
     }
 
-    void place(ObjectIndex object, const Affine& transform = {}, const std::string& name = "it") {
-        placements_.push_back({object, transform, name});
+    void place(ObjectIndex object, const Affine& transform = {}, const std::string& name = "it",
+               RayMask hidden = 0) {
+        placements_.push_back({object, transform, name, hidden});
     }
     void place_at(ObjectIndex object, const glm::dvec3& offset) {
         place(object, {glm::dmat3(1.0), offset});

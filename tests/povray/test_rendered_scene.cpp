@@ -209,6 +209,45 @@ TEST(PovrayRender, ABoxLooksLikeItsMesh) {
     EXPECT_GT(*std::max_element(images[0].values.begin(), images[0].values.end()), 0.3);
 }
 
+TEST(PovrayRender, EachRayClassSeesWhatItMay) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    // A slanting sun over a white floor: what stands at x casts its shadow at x + 0.5. One red thing
+    // a row, from the top down.
+    struct Row {
+        Kind kind;
+        RayMask hidden;
+        bool object;
+        bool shadow;
+    };
+    std::vector<Row> rows;
+    for (const Kind kind : {Kind::Mesh, Kind::Ellipsoid}) {
+        rows.push_back({kind, 0, true, true});
+        rows.push_back({kind, kCameraRays, false, true});
+        rows.push_back({kind, kShadowRays, true, false});
+        rows.push_back({kind, kReflectionRays | kRadiosityRays, true, true});
+        rows.push_back({kind, kAllRays, false, false});
+    }
+    Builder builder;
+    const uint32_t red = builder.matte({1, 0, 0});
+    builder.place_at(builder.mesh(shapes::quad(20, 20), {builder.matte({1, 1, 1})}), {-10, -10, 0});
+    for (size_t i = 0; i < rows.size(); ++i)
+        builder.place(rows[i].kind == Kind::Mesh ? builder.mesh(shapes::cube(), {red})
+                                                 : builder.primitive(rows[i].kind, {}, {red}),
+                      Affine{glm::dmat3(0.2), {-0.3, 4.5 - static_cast<double>(i), 0.5}}, "it",
+                      rows[i].hidden);
+    builder.model.lights.push_back(scenes::sun(std::numbers::pi, {1, 0, -1}));
+    ExportOptions options;
+    options.folder = scratch("hidden");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(64, 320), options);
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const int y = 16 + 32 * static_cast<int>(i);
+        EXPECT_EQ(image.at(32 - 10, y).y < 0.1, rows[i].object) << i;
+        EXPECT_EQ(image.at(32 + 7, y).y < 0.1, rows[i].shadow) << i;
+    }
+}
+
 TEST(PovrayRender, FalseColorsAreThoseOfTheLegend) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";

@@ -99,6 +99,7 @@ class Functions(unittest.TestCase):
         for enum, prefix in (
             (enums.Stage, "LDS_STAGE_"),
             (enums.Role, "LDS_ROLE_"),
+            (enums.RayClass, "LDS_RAY_"),
             (enums.Kind, "LDS_KIND_"),
             (enums.Channel, "LDS_CHANNEL_"),
             (enums.Extension, "LDS_EXTENSION_"),

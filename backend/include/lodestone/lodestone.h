@@ -106,6 +106,14 @@ typedef enum lds_kind {
     LDS_KIND_ASSEMBLY = 8
 } lds_kind;
 
+/* Bits; what is seen through glass is seen by the camera. */
+typedef enum lds_ray_class {
+    LDS_RAY_CAMERA = 1,
+    LDS_RAY_REFLECTION = 2,
+    LDS_RAY_SHADOW = 4,
+    LDS_RAY_RADIOSITY = 8
+} lds_ray_class;
+
 typedef struct lds_object_info {
     uint32_t struct_size;
     const char* uid;  /* stable and unique in the model; not empty */
@@ -215,12 +223,25 @@ typedef struct lds_mesh_view {
                                     counts as the nearest slot (Blender's rule) */
 } lds_mesh_view;
 
+/* Hair or grass: lines with radii. Points of all strands in a row, each strand's root first. */
+typedef struct lds_strands_view {
+    uint32_t struct_size;
+    const float* points; /* float32[point_count][3] metres */
+    const float* radii;  /* float32[point_count] metres */
+    size_t point_count;
+    const uint32_t* counts; /* uint32[strand_count]: points of each; their sum is point_count */
+    size_t strand_count;
+    const int32_t* slots; /* int32[strand_count]; null: all 0. Outside 0...material_count-1 counts
+                             as the nearest slot */
+    const float* uvs;     /* float32[strand_count][2]: of the surface at its root; null: none */
+} lds_strands_view;
 typedef enum lds_light_kind {
     LDS_LIGHT_SUN = 0,
     LDS_LIGHT_POINT = 1,
     LDS_LIGHT_SPOT = 2,
     LDS_LIGHT_AREA = 3
 } lds_light_kind;
+
 
 typedef struct lds_light {
     uint32_t struct_size;
@@ -292,12 +313,28 @@ LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* 
 LDS_API lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
                                       const lds_mesh_view* mesh, const uint32_t* materials,
                                       size_t material_count, lds_object* out_object);
+/* Adds an object with one mesh: a closed, tapered, smooth tube a strand, through its points in a
+   curve; three-sided, as wide on average as a round one. What has no length or no radius draws
+   nothing; runs that are straight to a quarter of the strand's radius cost one segment. */
+LDS_API lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
+                                         const lds_strands_view* strands, const uint32_t* materials,
+                                         size_t material_count, lds_object* out_object);
 /* Adds a group without children. */
 LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* info,
                                        lds_object* out_object);
 /* Places child in group. An object never becomes its own descendant: found when it is used. */
 LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
                                            const double transform[12], const char* name);
+/* Hides a group's newest placement, with all below it, from the ray classes in the mask (lds_ray_class
+   bits). Groups with something hidden in them are drawn by their children, never by stand-ins. */
+LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
+                                            uint32_t ray_classes);
+/* Gives a group of more than most_children (8 or more; usual 64) groups of at most so many in their
+   place, to any depth: neighbors together. Occurrences stay exactly where they are; something added
+   later changes only the groups around it. Call it when the group is complete. out_added may be
+   null. */
+LDS_API lds_status lds_model_group_by_position(lds_model* model, lds_object group,
+                                               uint32_t most_children, size_t* out_added);
 LDS_API lds_status lds_model_set_root(lds_model* model, lds_object root);
 LDS_API lds_status lds_model_add_light(lds_model* model, const lds_light* light);
 LDS_API lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera);
@@ -356,6 +393,9 @@ LDS_API lds_status lds_model_occurrence_count(lds_model* model, size_t* out_coun
 /* Copies the first min(capacity, count). */
 LDS_API lds_status lds_model_occurrence_copy(lds_model* model, lds_occurrence* out_occurrences,
                                              size_t capacity);
+/* The ray classes (lds_ray_class bits) that do not see them, in the same order. */
+LDS_API lds_status lds_model_occurrence_hidden(lds_model* model, uint32_t* out_ray_classes,
+                                               size_t capacity);
 
 /* Cameras and lights that were added, or that a store or file holds. */
 LDS_API size_t lds_model_camera_count(const lds_model* model);

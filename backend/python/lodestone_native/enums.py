@@ -38,6 +38,15 @@ class Role(IntEnum):
     ENVIRONMENT = 1
 
 
+class RayClass(IntEnum):
+    """Bits; what is seen through glass is seen by the camera."""
+
+    CAMERA = 1
+    REFLECTION = 2
+    SHADOW = 4
+    RADIOSITY = 8
+
+
 class Kind(IntEnum):
     MESH = 1
     BOX = 3

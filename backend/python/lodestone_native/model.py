@@ -66,6 +66,38 @@ class MeshBuffers:
         )
 
 
+@dataclass
+class StrandBuffers:
+    """Hair or grass in flat buffers of 4-byte items: points [point][3] and radii [point] of all
+    strands in a row, each strand's root first; counts [strand] points of each."""
+
+    points: array
+    radii: array
+    counts: array
+    slots: array | None = None  # [strand]
+    uvs: array | None = None  # [strand][2], of the surface at the root
+
+    def struct(self) -> structs.StrandsView:
+        """As MeshBuffers.struct()."""
+        points = _count("points", self.points, 3)
+        strands = _count("counts", self.counts, 1)
+        if _count("radii", self.radii, 1) != points:
+            raise ValueError("points and radii differ in length")
+        if self.slots is not None and _count("slots", self.slots, 1) != strands:
+            raise ValueError("slots and counts differ in length")
+        if self.uvs is not None and _count("uvs", self.uvs, 2) != strands:
+            raise ValueError("uvs and counts differ in length")
+        return structs.StrandsView(
+            points=_address(self.points),
+            radii=_address(self.radii),
+            point_count=points,
+            counts=_address(self.counts),
+            strand_count=strands,
+            slots=_address(self.slots),
+            uvs=_address(self.uvs),
+        )
+
+
 IDENTITY_MAPPING = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
@@ -197,6 +229,25 @@ class Model(Handle):
         )
         return out
 
+    def add_strands(
+        self,
+        uid: str,
+        name: str,
+        strands: StrandBuffers,
+        materials: Sequence[int] = (),
+        role: int = Role.ORDINARY,
+    ) -> Object:
+        """One mesh of a tapered tube for each strand."""
+        out = Object()
+        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        slots = (ctypes.c_uint32 * len(materials))(*materials)
+        check(
+            library().lds_model_add_strands(
+                self.handle, info, strands.struct(), slots, len(materials), ctypes.byref(out)
+            )
+        )
+        return out
+
     def add_group(self, uid: str, name: str, role: int = Role.ORDINARY) -> Object:
         out = Object()
         info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
@@ -204,11 +255,28 @@ class Model(Handle):
         return out
 
     def add_placement(
-        self, group: Object, child: Object, transform: Sequence[float], name: str
+        self,
+        group: Object,
+        child: Object,
+        transform: Sequence[float],
+        name: str,
+        hidden: int = 0,
     ) -> None:
-        """transform: row-major 3x4, child to group."""
+        """transform: row-major 3x4, child to group; hidden: bits of RayClass that do not see it."""
         rows = (ctypes.c_double * 12)(*transform)
         check(library().lds_model_add_placement(self.handle, group, child, rows, text_in(name)))
+        if hidden:
+            check(library().lds_model_hide_placement(self.handle, group, hidden))
+
+    def group_by_position(self, group: Object, most_children: int = 64) -> int:
+        """Gives a group of more children groups of neighbors; returns how many were added."""
+        added = ctypes.c_size_t()
+        check(
+            library().lds_model_group_by_position(
+                self.handle, group, most_children, ctypes.byref(added)
+            )
+        )
+        return added.value
 
     def set_root(self, root: Object) -> None:
         check(library().lds_model_set_root(self.handle, root))
@@ -272,6 +340,14 @@ class Model(Handle):
         buffer = (structs.Occurrence * count.value)()
         check(library().lds_model_occurrence_copy(self.handle, buffer, count.value))
         return [(Object(*item.object.key), tuple(item.world)) for item in buffer]
+
+    def occurrences_hidden(self) -> list[int]:
+        """In the order of occurrences(): bits of the RayClasses that do not see them."""
+        count = ctypes.c_size_t()
+        check(library().lds_model_occurrence_count(self.handle, ctypes.byref(count)))
+        buffer = (ctypes.c_uint32 * count.value)()
+        check(library().lds_model_occurrence_hidden(self.handle, buffer, count.value))
+        return list(buffer)
 
     def cameras(self) -> list[Camera]:
         found = []

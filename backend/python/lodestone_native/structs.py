@@ -131,6 +131,19 @@ class MeshView(Sized):
     ]
 
 
+class StrandsView(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("points", c_void_p),
+        ("radii", c_void_p),
+        ("point_count", c_size_t),
+        ("counts", c_void_p),
+        ("strand_count", c_size_t),
+        ("slots", c_void_p),
+        ("uvs", c_void_p),
+    ]
+
+
 class Light(Sized):
     _fields_ = [
         ("struct_size", c_uint32),

@@ -25,6 +25,7 @@ double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most,
 struct Surroundings {
     std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
     std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
+    std::vector<uint8_t> hidden;       // whether it hides anything from some rays (with_hidden)
 };
 
 /// How often each object is drawn: the number of paths to it from the root.

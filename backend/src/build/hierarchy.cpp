@@ -156,7 +156,7 @@ public:
         const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
-        surroundings_ = {uses_of(model_), with_environment(model_)};
+        surroundings_ = {uses_of(model_), with_environment(model_), with_hidden(model_)};
         const std::vector<bool> inside = within(settings_.scope, model_, order);
         const std::vector<uint8_t> deforming = with_deforming(model_);
 

@@ -220,6 +220,8 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
                             const Settings& settings, const MeshSource& source, const Job& job) {
     StandIns out;
+    if (surroundings.hidden[group] != 0)
+        return out;  // always opened: rays of one class see other parts of it than those of another
     const Object& object = model.objects[group];
     const Summary& finest = object.representations.at(0).summary;
     const std::vector<uint64_t>& uses = surroundings.uses;

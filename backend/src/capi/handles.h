@@ -19,6 +19,8 @@ struct lds_model {
     lodestone::Problems problems;
     std::optional<lodestone::segment::Store> store;  // where meshes that are not resident lie
     std::unordered_map<std::string, uint32_t> by_uid;
+    /// Finest meshes by content, for those that are added next.
+    std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
 
     /// Index of an id; throws Error(StaleId) for another model's.
@@ -50,5 +52,7 @@ void copy(const glm::dvec3& from, double to[3]);
 std::string name_of(const char* text);
 View view_of(const lds_view* view);
 lds_model* new_model();
+/// Adds an object of that uid; throws when the uid is empty or taken.
+ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);
 
 }  // namespace lodestone::capi

@@ -3,6 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "format/format.h"
+#include "model/strands.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,30 +13,6 @@ using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
-
-/// Adds an object of that uid; throws when the uid is empty or taken.
-ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest) {
-    const lds_object_info& given = checked(info, "info");
-    Object object;
-    object.uid = name_of(given.uid);
-    object.name = name_of(given.name);
-    if (object.uid.empty())
-        fail(Status::InvalidArgument, "object '", object.name, "' has no uid");
-    if (model.by_uid.count(object.uid) != 0)
-        fail(Status::InvalidArgument, "uid '", object.uid, "' of object '", object.name,
-             "' is taken");
-    if (given.role != LDS_ROLE_ORDINARY && given.role != LDS_ROLE_ENVIRONMENT)
-        fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
-             "' is unknown");
-    object.deforms = given.deforms != 0;
-    object.role = given.role == LDS_ROLE_ENVIRONMENT ? Role::Environment : Role::Ordinary;
-    object.representations.push_back(std::move(finest));
-    const auto index = static_cast<ObjectIndex>(model.model.objects.size());
-    model.by_uid.emplace(object.uid, index);
-    model.model.objects.push_back(std::move(object));
-    model.summarized = false;
-    return index;
-}
 
 bool same(const float* a, const float* b, int count) {
     return std::equal(a, a + count, b);
@@ -126,7 +103,87 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
     return mesh;
 }
 
+/// One object with one mesh. Content-equal meshes share their memory; a build works once for all.
+lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&& mesh,
+                           const uint32_t* materials, size_t material_count) {
+    Representation finest;
+    finest.summary.kind = Kind::Mesh;
+    for (size_t i = 0; i < material_count; ++i) {
+        if (materials[i] >= model.model.materials.size())
+            fail(Status::InvalidArgument, "slot ", i, " uses material ", materials[i], " of ",
+                 model.model.materials.size());
+        finest.materials.push_back(materials[i]);
+    }
+    repair(mesh, name_of(checked(info, "info").name), model.problems);
+    if (finest.materials.empty()) {
+        finest.materials.push_back(static_cast<uint32_t>(model.model.materials.size()));
+        model.model.materials.emplace_back();
+    }
+    auto& held = model.meshes[hash_of(mesh)];
+    std::shared_ptr<const Mesh> made = held.lock();
+    if (made == nullptr)
+        held = made = std::make_shared<const Mesh>(std::move(mesh));
+    finest.payload = std::move(made);
+    summarize(finest, model.model);
+    return model.id_of(add_object(model, info, std::move(finest)));
+}
+
+Mesh mesh_of(const lds_strands_view& view, size_t material_count) {
+    if (view.point_count > 0) {
+        require(view.points, "strands.points");
+        require(view.radii, "strands.radii");
+    }
+    if (view.strand_count > 0)
+        require(view.counts, "strands.counts");
+    constexpr size_t kMost = size_t{1} << 31u;
+    if (view.point_count > kMost || view.strand_count > kMost)
+        fail(Status::InvalidArgument, view.strand_count, " strands of ", view.point_count,
+             " points are more than 2^31");
+    std::vector<glm::vec3> points(view.point_count);
+    for (size_t i = 0; i < view.point_count; ++i)
+        points[i] = {view.points[3 * i], view.points[3 * i + 1], view.points[3 * i + 2]};
+    std::vector<uint16_t> slots;
+    if (view.slots != nullptr && material_count > 1) {
+        const auto last = static_cast<int32_t>(std::min<size_t>(material_count, 65535)) - 1;
+        slots.reserve(view.strand_count);
+        for (size_t i = 0; i < view.strand_count; ++i)
+            slots.push_back(static_cast<uint16_t>(std::clamp(view.slots[i], 0, last)));
+    }
+    std::vector<glm::vec2> uvs;
+    if (view.uvs != nullptr) {
+        uvs.reserve(view.strand_count);
+        for (size_t i = 0; i < view.strand_count; ++i)
+            uvs.emplace_back(view.uvs[2 * i], view.uvs[2 * i + 1]);
+    }
+    return tubes_of(
+        {points, {view.radii, view.point_count}, {view.counts, view.strand_count}, slots, uvs});
+}
+
 }  // namespace
+
+ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info* info,
+                                        Representation finest) {
+    const lds_object_info& given = checked(info, "info");
+    Object object;
+    object.uid = name_of(given.uid);
+    object.name = name_of(given.name);
+    if (object.uid.empty())
+        fail(Status::InvalidArgument, "object '", object.name, "' has no uid");
+    if (model.by_uid.count(object.uid) != 0)
+        fail(Status::InvalidArgument, "uid '", object.uid, "' of object '", object.name,
+             "' is taken");
+    if (given.role != LDS_ROLE_ORDINARY && given.role != LDS_ROLE_ENVIRONMENT)
+        fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
+             "' is unknown");
+    object.deforms = given.deforms != 0;
+    object.role = given.role == LDS_ROLE_ENVIRONMENT ? Role::Environment : Role::Ordinary;
+    object.representations.push_back(std::move(finest));
+    const auto index = static_cast<ObjectIndex>(model.model.objects.size());
+    model.by_uid.emplace(object.uid, index);
+    model.model.objects.push_back(std::move(object));
+    model.summarized = false;
+    return index;
+}
 
 lds_status lds_model_create(lds_model** out_model) {
     return guard([&] {
@@ -175,59 +232,22 @@ lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
         require(out_object, "out_object");
         if (material_count > 0)
             require(materials, "materials");
-        Representation finest;
-        finest.summary.kind = Kind::Mesh;
-        for (size_t i = 0; i < material_count; ++i) {
-            if (materials[i] >= model->model.materials.size())
-                fail(Status::InvalidArgument, "slot ", i, " uses material ", materials[i], " of ",
-                     model->model.materials.size());
-            finest.materials.push_back(materials[i]);
-        }
-        auto made = std::make_shared<Mesh>(mesh_of(checked(mesh, "mesh"), material_count));
-        repair(*made, name_of(checked(info, "info").name), model->problems);
-        if (finest.materials.empty()) {
-            finest.materials.push_back(static_cast<uint32_t>(model->model.materials.size()));
-            model->model.materials.emplace_back();
-        }
-        finest.payload = std::move(made);
-        summarize(finest, model->model);
-        *out_object = model->id_of(add_object(*model, info, std::move(finest)));
+        *out_object = add_mesh_object(*model, info, mesh_of(checked(mesh, "mesh"), material_count),
+                                      materials, material_count);
     });
 }
 
-lds_status lds_model_add_group(lds_model* model, const lds_object_info* info,
-                               lds_object* out_object) {
+lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
+                                 const lds_strands_view* strands, const uint32_t* materials,
+                                 size_t material_count, lds_object* out_object) {
     return guard([&] {
         require(model, "model");
         require(out_object, "out_object");
-        Representation finest;
-        finest.summary.kind = Kind::Assembly;
-        finest.payload = std::shared_ptr<const Assembly>(std::make_shared<Assembly>());
-        *out_object = model->id_of(add_object(*model, info, std::move(finest)));
-    });
-}
-
-lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
-                                   const double transform[12], const char* name) {
-    return guard([&] {
-        require(model, "model");
-        require(transform, "transform");
-        Object& into = model->at(group);
-        Placement placement;
-        placement.object = model->index_of(child);
-        placement.transform = Affine::from_rows(transform);
-        placement.name = name_of(name);
-        if (!into.group())
-            fail(Status::InvalidArgument, "'", into.name, "' is not a group");
-        if (!placement.transform.finite())
-            fail(Status::InvalidArgument, "the transform of '", placement.name,
-                 "' holds numbers that are not finite");
-        // Assemblies are const to guard sharing; this one was made as Assembly and is ours alone.
-        auto& held = std::get<std::shared_ptr<const Assembly>>(into.representations[0].payload);
-        if (held.use_count() != 1)
-            held = std::make_shared<Assembly>(*held);
-        const_cast<Assembly&>(*held).placements.push_back(std::move(placement));
-        model->summarized = false;
+        if (material_count > 0)
+            require(materials, "materials");
+        *out_object =
+            add_mesh_object(*model, info, mesh_of(checked(strands, "strands"), material_count),
+                            materials, material_count);
     });
 }
 

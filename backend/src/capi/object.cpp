@@ -120,6 +120,20 @@ lds_status lds_model_occurrence_copy(lds_model* model, lds_occurrence* out_occur
     });
 }
 
+lds_status lds_model_occurrence_hidden(lds_model* model, uint32_t* out_ray_classes,
+                                       size_t capacity) {
+    return guard([&] {
+        require(model, "model");
+        if (capacity > 0)
+            require(out_ray_classes, "out_ray_classes");
+        size_t count = 0;
+        for_each_occurrence(model->model, [&](const Occurrence& occurrence) {
+            if (count < capacity)
+                out_ray_classes[count++] = occurrence.hidden;
+        });
+    });
+}
+
 size_t lds_model_problem_count(const lds_model* model) {
     return model == nullptr ? 0 : model->problems.size();
 }

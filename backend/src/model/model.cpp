@@ -84,6 +84,20 @@ std::vector<uint8_t> with_deforming(const Model& model) {
     return that_hold(model, [](const Object& object) { return object.deforms; });
 }
 
+std::vector<uint8_t> with_hidden(const Model& model) {
+    std::vector<uint8_t> out(model.objects.size(), 0);
+    for (const ObjectIndex index : bottom_up(model)) {
+        const Object& object = model.objects[index];
+        if (!object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements) {
+            if (placement.hidden != 0 || out[placement.object] != 0)
+                out[index] = 1;
+        }
+    }
+    return out;
+}
+
 void summarize(Representation& representation, const Model& model) {
     Summary& summary = representation.summary;
     Hasher hasher;
@@ -124,6 +138,8 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
                 double rows[12];
                 placement.transform.to_rows(rows);
                 content.bytes(rows, sizeof rows).value(child.source_hash);
+                if (placement.hidden != 0)
+                    content.value(placement.hidden);
                 if (child.representations.empty())
                     continue;
                 const Summary& part = child.representations[0].summary;
@@ -168,15 +184,16 @@ void for_each_occurrence(const Model& model, const std::function<void(const Occu
         ObjectIndex object;
         Affine world;
         std::string path;
+        RayMask hidden;
     };
-    std::vector<Entry> stack{{model.root, Affine{}, ""}};
+    std::vector<Entry> stack{{model.root, Affine{}, "", 0}};
     while (!stack.empty()) {
         const Entry entry = std::move(stack.back());
         stack.pop_back();
         const Object& object = model.objects[entry.object];
         if (!object.group()) {
             if (!object.representations.empty())
-                visit({entry.object, entry.world, entry.path});
+                visit({entry.object, entry.world, entry.path, entry.hidden});
             continue;
         }
         const auto& placements = object.representations[0].assembly().placements;
@@ -184,7 +201,8 @@ void for_each_occurrence(const Model& model, const std::function<void(const Occu
             const Placement& placement = placements[i];
             stack.push_back(
                 {placement.object, entry.world * placement.transform,
-                 entry.path.empty() ? placement.name : entry.path + '/' + placement.name});
+                 entry.path.empty() ? placement.name : entry.path + '/' + placement.name,
+                 static_cast<RayMask>(entry.hidden | placement.hidden)});
         }
     }
 }

@@ -30,6 +30,10 @@ std::vector<uint8_t> with_environment(const Model& model);
 /// For every object 1 when it deforms or places such an object at any depth.
 std::vector<uint8_t> with_deforming(const Model& model);
 
+/// For every object 1 when something it places, at any depth, is hidden from some rays: one stand-in
+/// for all of it would be seen by rays that must not see a part. Such a group has none.
+std::vector<uint8_t> with_hidden(const Model& model);
+
 /// Fills summaries of every assembly (bound, cost, hash) and source hashes from its children.
 /// `order` is bottom_up's.
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
@@ -49,7 +53,8 @@ Totals totals(const Model& model);
 struct Occurrence {
     ObjectIndex object = kNoObject;
     Affine world;
-    std::string path;  // placement names joined by '/'
+    std::string path;    // placement names joined by '/'
+    RayMask hidden = 0;  // ray classes that do not see it
 };
 void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit);
 

@@ -70,7 +70,9 @@ Cut choose_below(const Model& model, ObjectIndex root_object, const View& view, 
                 child.parent = index;
                 child.placement = static_cast<uint32_t>(i);
                 child.world = node.world * placements[i].transform;
-                stack.push_back(child);
+                child.hidden = static_cast<RayMask>(node.hidden | placements[i].hidden);
+                if (child.hidden != kAllRays)  // else nothing would show it
+                    stack.push_back(child);
             }
             continue;
         }

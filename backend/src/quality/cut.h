@@ -22,6 +22,7 @@ struct Node {
     Kind kind = Kind::Assembly;   // of the choice
     bool opened = false;
     double error_px = 0;  // on screen; 0 when opened
+    RayMask hidden = 0;   // ray classes that do not see it: its placements' together
     Affine world;
 };
 

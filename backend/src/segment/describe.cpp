@@ -138,10 +138,13 @@ Json out(const Representation& r) {
             {"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
     } else if (s.kind == Kind::Assembly) {
         Json placements = Json::array();
-        for (const Placement& placement : r.assembly().placements)
+        for (const Placement& placement : r.assembly().placements) {
             placements.push_back({{"object", placement.object},
                                   {"transform", out(placement.transform)},
                                   {"name", placement.name}});
+            if (placement.hidden != 0)
+                placements.back()["hidden"] = placement.hidden;
+        }
         json["placements"] = std::move(placements);
     }
     return json;

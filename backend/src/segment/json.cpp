@@ -171,6 +171,12 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
                  object_count);
         placement.transform = Affine::from_rows(numbers(one, "transform", 12).data());
         placement.name = one.at("name").get<std::string>();
+        if (one.contains("hidden")) {
+            const auto hidden = one.at("hidden").get<uint32_t>();
+            if (hidden > kAllRays)
+                fail(Status::BadFile, "'", placement.name, "' is hidden from ray classes ", hidden);
+            placement.hidden = static_cast<RayMask>(hidden);
+        }
         out->placements.push_back(std::move(placement));
     }
     return out;

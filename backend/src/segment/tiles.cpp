@@ -66,6 +66,11 @@ public:
     bool drawable(ObjectIndex index) const { return !chains_[index].bound.empty(); }
 
 private:
+    /// Viewers of tiles have camera rays only.
+    bool shown(const Placement& placement) const {
+        return drawable(placement.object) && (placement.hidden & kCameraRays) == 0;
+    }
+
     double top_error(ObjectIndex index) const {
         const std::vector<double>& errors = chains_[index].geometric_errors;
         return errors.empty() ? 0 : errors.back();
@@ -80,7 +85,7 @@ private:
             double error = representation.summary.error;
             if (representation.summary.kind == Kind::Assembly) {
                 for (const Placement& placement : representation.assembly().placements) {
-                    if (!drawable(placement.object))
+                    if (!shown(placement))
                         continue;
                     const double enlarged =
                         top_error(placement.object) * stretch(placement.transform);
@@ -146,7 +151,7 @@ private:
             return;
         bool first = true;
         for (const Placement& placement : assembly.placements) {
-            if (!drawable(placement.object))
+            if (!shown(placement))
                 continue;
             text += first ? ",\"children\":[" : ",";
             first = false;

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Guards what a C program does with strands and groups: tubes of known size, grouping by position,
+   placements that some rays do not see. */
+#include "cube.h"
+
+enum { MANY = 200 };
+
+static void test_strands_become_tubes(void) {
+    const float points[4][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}};
+    const float radii[4] = {0.1f, 0.1f, 0.1f, 0};
+    const uint32_t counts[2] = {2, 2};
+    const int32_t slots[2] = {0, 99};
+    lds_strands_view view;
+    memset(&view, 0, sizeof view);
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_object_info info = info_of("hair", "Hair");
+    lds_object hair = {7, 7};
+    EXPECT(lds_model_add_strands(model, &info, &view, NULL, 0, &hair) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    view.struct_size = sizeof view;
+    view.points = &points[0][0];
+    view.radii = radii;
+    view.counts = counts;
+    view.point_count = 3;
+    view.strand_count = 2;
+    view.slots = slots;
+    EXPECT(lds_model_add_strands(model, &info, &view, NULL, 0, &hair) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(hair.index == 7);
+    view.point_count = 4;
+    view.radii = NULL;
+    EXPECT(lds_model_add_strands(model, &info, &view, NULL, 0, &hair) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    view.radii = radii;
+    EXPECT(lds_model_add_strands(model, &info, &view, NULL, 0, &hair) == LDS_OK);
+    lds_representation finest;
+    memset(&finest, 0, sizeof finest);
+    finest.struct_size = sizeof finest;
+    EXPECT(lds_model_representation(model, hair, 0, &finest) == LDS_OK);
+    EXPECT(finest.kind == LDS_KIND_MESH && finest.triangles == 8 + 4);
+    lds_model_destroy(model);
+}
+
+static void test_equal_meshes_are_one_content(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_object_info info = info_of("twin", "Twin");
+    const lds_mesh_view view = cube_view();
+    lds_object twin;
+    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, &twin) == LDS_OK);
+    lds_representation a, b;
+    memset(&a, 0, sizeof a);
+    a.struct_size = sizeof a;
+    b = a;
+    EXPECT(lds_model_representation(model, cube, 0, &a) == LDS_OK);
+    EXPECT(lds_model_representation(model, twin, 0, &b) == LDS_OK);
+    EXPECT(a.hash == b.hash && a.triangles == b.triangles);
+    lds_model_destroy(model);
+}
+
+static void test_grouping_keeps_every_occurrence(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_object_info info = info_of("many", "Many");
+    lds_object many;
+    EXPECT(lds_model_add_group(model, &info, &many) == LDS_OK);
+    double moved[12];
+    memcpy(moved, kIdentity, sizeof moved);
+    for (int i = 0; i < MANY; ++i) {
+        moved[3] = i;
+        EXPECT(lds_model_add_placement(model, many, cube, moved, "one of many") == LDS_OK);
+    }
+    EXPECT(lds_model_set_root(model, many) == LDS_OK);
+    size_t added = 9;
+    EXPECT(lds_model_group_by_position(model, cube, 8, &added) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_group_by_position(model, many, 7, &added) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(added == 9);
+    EXPECT(lds_model_group_by_position(model, many, 256, &added) == LDS_OK && added == 0);
+    EXPECT(lds_model_group_by_position(model, many, 8, &added) == LDS_OK && added >= MANY / 8);
+    EXPECT(lds_model_group_by_position(model, many, 8, NULL) == LDS_OK);
+    lds_object_summary summary;
+    memset(&summary, 0, sizeof summary);
+    summary.struct_size = sizeof summary;
+    EXPECT(lds_model_object_summary(model, many, &summary) == LDS_OK);
+    EXPECT(summary.child_count <= 8);
+    static lds_occurrence found[MANY];
+    size_t count = 0;
+    EXPECT(lds_model_occurrence_count(model, &count) == LDS_OK && count == MANY);
+    EXPECT(lds_model_occurrence_copy(model, found, MANY) == LDS_OK);
+    int seen[MANY] = {0};
+    for (int i = 0; i < MANY; ++i)
+        ++seen[(int)found[i].world[3]];
+    for (int i = 0; i < MANY; ++i)
+        EXPECT(seen[i] == 1);
+    const size_t last = lds_model_object_count(model) - 1;
+    lds_object part, again;
+    EXPECT(lds_model_object_at(model, last, &part) == LDS_OK);
+    EXPECT(lds_model_object_summary(model, part, &summary) == LDS_OK && summary.group == 1);
+    EXPECT(lds_model_find_object(model, summary.uid, &again) == LDS_OK);
+    EXPECT(again.index == part.index && again.generation == part.generation);
+    lds_model_destroy(model);
+}
+
+static void test_hidden_placements_hide_all_below(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_object pair;
+    EXPECT(lds_model_find_object(model, "pair", &pair) == LDS_OK);
+    const lds_object_info info = info_of("top", "Top");
+    lds_object top;
+    EXPECT(lds_model_add_group(model, &info, &top) == LDS_OK);
+    EXPECT(lds_model_hide_placement(model, top, LDS_RAY_CAMERA) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_add_placement(model, top, pair, kIdentity, "pair") == LDS_OK);
+    EXPECT(lds_model_hide_placement(model, cube, LDS_RAY_CAMERA) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_hide_placement(model, top, 16) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_hide_placement(model, top, LDS_RAY_CAMERA) == LDS_OK);
+    EXPECT(lds_model_hide_placement(model, pair, LDS_RAY_SHADOW | LDS_RAY_REFLECTION) == LDS_OK);
+    EXPECT(lds_model_set_root(model, top) == LDS_OK);
+    uint32_t hidden[3] = {9, 9, 9};
+    EXPECT(lds_model_occurrence_hidden(model, NULL, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_occurrence_hidden(model, hidden, 3) == LDS_OK);
+    EXPECT(hidden[0] == LDS_RAY_CAMERA && hidden[2] == 9);
+    EXPECT(hidden[1] == (LDS_RAY_CAMERA | LDS_RAY_SHADOW | LDS_RAY_REFLECTION));
+    lds_model_destroy(model);
+}
+
+int main(void) {
+    test_strands_become_tubes();
+    test_equal_meshes_are_one_content();
+    test_grouping_keeps_every_occurrence();
+    test_hidden_placements_hide_all_below();
+    return failures == 0 ? 0 : 1;
+}
