@@ -25,6 +25,7 @@ _MODULES = (
     "operators.update_levels",
     "operators.clear_levels",
     "operators.select_object",
+    "operators.linked_role",
     "operators.check_scene",
     "operators.problems",
     "panels",

@@ -46,6 +46,15 @@ class LODESTONE_PG_ignored(bpy.types.PropertyGroup):
     text: StringProperty(options={"HIDDEN"})
 
 
+class LODESTONE_PG_linked(bpy.types.PropertyGroup):
+    """A decision on a collection or object linked from a library, which this file cannot hold: by
+    its kind, its library's path and its name (the group's own)."""
+
+    kind: StringProperty(options={"HIDDEN"})  # "collection" or "object"
+    library: StringProperty(options={"HIDDEN"})
+    role: EnumProperty(items=ROLES, default="ORDINARY", options={"HIDDEN"})
+
+
 class LODESTONE_PG_scene(bpy.types.PropertyGroup):
     pixel_error_render: FloatProperty(
         name="Pixel Error",
@@ -78,6 +87,7 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         default="FAILED",
     )
     ignored: CollectionProperty(type=LODESTONE_PG_ignored, options={"HIDDEN"})
+    linked: CollectionProperty(type=LODESTONE_PG_linked, options={"HIDDEN"})
 
 
 class _Identified:
@@ -108,7 +118,7 @@ class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
 
 _GROUPS = (LODESTONE_PG_scene, LODESTONE_PG_collection, LODESTONE_PG_object)
 _OWNERS = (bpy.types.Scene, bpy.types.Collection, bpy.types.Object)
-_CLASSES = (LODESTONE_PG_ignored, *_GROUPS)
+_CLASSES = (LODESTONE_PG_ignored, LODESTONE_PG_linked, *_GROUPS)
 _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
 

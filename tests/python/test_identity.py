@@ -87,5 +87,22 @@ class AssignUids(unittest.TestCase):
             self.assertEqual(len(known), 10000)
 
 
+class SameLibrary(unittest.TestCase):
+    def test_equal_paths_and_a_relative_one_with_its_absolute_one(self):
+        same = identity.same_library
+        self.assertTrue(same("/work/kit.blend", "/work/kit.blend"))
+        self.assertTrue(same("//kit.blend", "/work/kit.blend"))
+        self.assertTrue(same("C:\\work\\lib\\kit.blend", "//..\\lib\\kit.blend"))
+        self.assertTrue(same("//../lib/kit.blend", "//lib/kit.blend"))
+
+    def test_other_files_folders_and_nothing_differ(self):
+        same = identity.same_library
+        self.assertFalse(same("/work/kit.blend", "/home/kit.blend"))
+        self.assertFalse(same("//kit.blend", "/work/toolkit.blend"))
+        self.assertFalse(same("//a/kit.blend", "/work/b/kit.blend"))
+        self.assertFalse(same("", "//kit.blend"))
+        self.assertFalse(same("//", "/work/kit.blend"))
+
+
 if __name__ == "__main__":
     unittest.main()

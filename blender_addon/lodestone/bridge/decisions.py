@@ -126,9 +126,45 @@ def drop_empty(item: Any) -> None:
             pass
 
 
-def levels_uids(item: Any) -> list[str]:
+def linked_role(scene: Any, kind: str, item: Any) -> str | None:
+    """The role decided in this file on a linked thing; None: it has the one of its library."""
+    settings = ids.settings_of(scene)
+    for one in settings.linked if settings is not None else ():
+        if ids.same_linked((one.kind, one.library, one.name), ids.key_of(kind, item)):
+            return one.role
+    return None
+
+
+def decide_linked(scene: Any, kind: str, item: Any, role: str | None) -> None:
+    """Decides it, or with None takes the decision back."""
+    entries = scene.lodestone.linked
+    key = ids.key_of(kind, item)
+    same = (ids.same_linked((e.kind, e.library, e.name), key) for e in entries)
+    found = next((number for number, hit in enumerate(same) if hit), None)
+    if role is None:
+        if found is not None:
+            entries.remove(found)
+        if not len(entries):
+            scene.lodestone.property_unset("linked")
+        drop_empty(scene)
+        return
+    entry = entries.add() if found is None else entries[found]
+    entry.kind, entry.library, entry.name = key
+    entry.role = role
+
+
+def forget_linked(scene: Any) -> bool:
+    """Takes back all decisions on linked things. True when there were some."""
+    settings = ids.settings_of(scene)
+    if settings is None or not len(settings.linked):
+        return False
+    settings.property_unset("linked")
+    return True
+
+
+def levels_uids(item: Any, roles: ids.Roles | None = None) -> list[str]:
     """The uids under which an object's or collection's levels may be in the store, likeliest
-    first: an unmodified mesh is shared and has its own."""
+    first: an unmodified mesh is shared and has its own. `roles`: of the scene that shows it."""
     if isinstance(item, bpy.types.Collection):
         return [ids.uid_of("collection", item)]
     own = ids.uid_of("object", item)
@@ -138,9 +174,10 @@ def levels_uids(item: Any) -> list[str]:
         slots = [slot.material for slot in item.material_slots]
         linked = identity.stable_id(shared, *(ids.named_id_of(m) for m in slots))
         uids = [shared, linked, own]
-    if ids.is_environment(item) or any(ids.is_environment(c) for c in item.users_collection):
+    is_environment = roles.is_environment if roles else ids.is_environment
+    if any(map(is_environment, (item, *item.users_collection))):
         uids = [identity.stable_id(uid, "environment") for uid in uids] + uids
     if item.instance_collection is not None:
         uids.append(ids.uid_of("collection", item.instance_collection))
-    uids.append(identity.stable_id(own, "instances"))
+    uids += [identity.stable_id(own, "instances"), identity.stable_id(own, "hair")]
     return uids

@@ -58,6 +58,30 @@ def is_environment(datablock: Any) -> bool:
     return settings is not None and settings.role == "ENVIRONMENT"
 
 
+class Roles:
+    """Roles as one scene sees them: what is linked has the one decided here, if any."""
+
+    def __init__(self, scene: Any) -> None:
+        settings = settings_of(scene)
+        decided = settings.linked if settings is not None else ()
+        self._linked = [((item.kind, item.library, item.name), item.role) for item in decided]
+
+    def is_environment(self, datablock: Any) -> bool:
+        if datablock.library and self._linked:
+            kind = "collection" if datablock.bl_rna.identifier == "Collection" else "object"
+            key = key_of(kind, datablock)
+            for decided, role in self._linked:
+                if same_linked(decided, key):
+                    return role == "ENVIRONMENT"
+        return is_environment(datablock)
+
+
+def same_linked(a: Key, b: Key) -> bool:
+    """Whether two keys of linked things mean one: Blender makes a library's path relative or
+    absolute as files are saved and moved."""
+    return a[0] == b[0] and a[2] == b[2] and identity.same_library(a[1], b[1])
+
+
 def role(environment: bool) -> int:
     return native.Role.ENVIRONMENT if environment else native.Role.ORDINARY
 

@@ -27,6 +27,22 @@ def named_id(kind: str, library: str, name: str) -> str:
     return stable_id(kind, library, name)
 
 
+def same_library(a: str, b: str) -> bool:
+    """Whether two paths may name one library: equal, or one of them relative ("//" as in Blender)
+    and the other ending with it."""
+    if a == b:
+        return True
+    if not (a.startswith("//") or b.startswith("//")):
+        return False
+    short, long = sorted((_steps(a), _steps(b)), key=len)
+    return bool(short) and long[-len(short) :] == short
+
+
+def _steps(path: str) -> list[str]:
+    steps = path.replace("\\", "/").split("/")
+    return [step for step in steps if step not in ("", ".", "..")]
+
+
 def is_uid(text: str) -> bool:
     return len(text) == DIGITS and all(c in "0123456789abcdef" for c in text)
 

@@ -16,6 +16,8 @@ def clear_levels(with_decisions):
     cleared = sum(decisions.forget(item, with_decisions) for item in local)
     for scene in bpy.data.scenes:
         if not scene.library:
+            if with_decisions:
+                cleared += decisions.forget_linked(scene)
             decisions.drop_empty(scene)
     last_render.clear()
     return cleared, removed

@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..bridge import decisions
+from ..bridge import decisions, ids
 from ..core import last_render, progress, store_levels, store_path
 from ..core.native import lodestone_native as native
 from . import EnginePanel, presets
@@ -74,15 +74,18 @@ def draw_levels(layout, context, item):
     layout.use_property_split = True
     layout.use_property_decorate = False
     if item.library is not None:
-        layout.label(text=f"Linked from {item.library.name}: its role is set there", icon="LINKED")
-    column = layout.column()
-    column.enabled = item.library is None
-    column.prop(item.lodestone, "role")
+        layout.label(text=f"Linked from {item.library.name}", icon="LINKED")
+        kind = "collection" if isinstance(item, bpy.types.Collection) else "object"
+        decided = decisions.linked_role(context.scene, kind, item)
+        shown = "As in Library" if decided is None else decided.title()
+        layout.operator_menu_enum("lodestone.linked_role", "role", text=f"Role Here: {shown}")
+    else:
+        layout.column().prop(item.lodestone, "role")
     store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
     if store.problem:
         layout.label(text=f"Levels cannot be read: {store.problem}", icon="ERROR")
         return
-    uids = decisions.levels_uids(item)
+    uids = decisions.levels_uids(item, ids.Roles(context.scene))
     uid = next((uid for uid in uids if store.levels(uid)), None)
     if uid is None:
         layout.label(text="No levels yet: Update Levels builds them")
