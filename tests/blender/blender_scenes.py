@@ -97,3 +97,56 @@ def extract(compare=True, cameras=()):
     request = extract_engine.Request(cameras=cameras, compare=compare)
     extraction = extract_engine.extract_now(bpy.context.scene, request)
     return extraction, request
+
+
+def particles(emitter, count, **settings):
+    """A particle system on an object; see it from frame 2 on. `instance_object` or
+    `instance_collection` say what each particle shows."""
+    emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    made = emitter.particle_systems[-1]
+    made.settings.count = count
+    made.settings.frame_start = made.settings.frame_end = 1
+    if "instance_object" in settings:
+        made.settings.render_type = "OBJECT"
+    elif "instance_collection" in settings:
+        made.settings.render_type = "COLLECTION"
+    for name, value in settings.items():
+        setattr(made.settings, name, value)
+    return made
+
+
+def node_group(name):
+    """(geometry nodes with one geometry in and one out, the input node, the output node)."""
+    group = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    group.inputs.new("NodeSocketGeometry", "Geometry")
+    group.outputs.new("NodeSocketGeometry", "Geometry")
+    return group, group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+
+
+def scatter_nodes(collection=None, separate=False, primitive=False, realize=False, join=False):
+    """Geometry nodes: an instance on each vertex, of a collection (or its children in turn) or of
+    a cube made by a node; `join` keeps the geometry itself."""
+    group, first, last = node_group("Scatter")
+    nodes, links = group.nodes, group.links
+    if primitive:
+        source = nodes.new("GeometryNodeMeshCube")
+    else:
+        source = nodes.new("GeometryNodeCollectionInfo")
+        source.inputs["Collection"].default_value = collection
+        source.inputs["Separate Children"].default_value = separate
+    on = nodes.new("GeometryNodeInstanceOnPoints")
+    on.inputs["Pick Instance"].default_value = separate
+    links.new(first.outputs[0], on.inputs["Points"])
+    links.new(source.outputs[0], on.inputs["Instance"])
+    made = on.outputs[0]
+    if realize:
+        real = nodes.new("GeometryNodeRealizeInstances")
+        links.new(made, real.inputs[0])
+        made = real.outputs[0]
+    if join:
+        both = nodes.new("GeometryNodeJoinGeometry")
+        links.new(first.outputs[0], both.inputs[0])
+        links.new(made, both.inputs[0])
+        made = both.outputs[0]
+    links.new(made, last.inputs[0])
+    return group

@@ -4,16 +4,20 @@
 from collections import defaultdict
 from typing import Any
 
+from mathutils import Matrix
+
 from .leaves import DRAWN, material_slots
 from .scene import Extraction
 
 TOLERANCE = 1e-5  # of the largest number in a transform
 
-Key = tuple[str, tuple[str, ...], int]  # data, materials by slot, triangles
+# Data, materials by slot, size: triangles of a mesh, strands of hair, 1 of a point
+Key = tuple[str, tuple[str, ...], int]
 
 
 def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
-    """World transforms of everything with faces that the depsgraph shows, by what it shows.
+    """World transforms of everything with faces, hairs or points that the depsgraph shows, by what
+    it shows.
 
     Written without the extraction's code: Blender's own list, meshes as to_mesh() gives them.
     Curves and their like are listed twice by Blender, themselves and their mesh; one counts.
@@ -22,17 +26,52 @@ def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
     triangles: dict[int, int] = {}
     for instance in depsgraph.object_instances:
         shown = instance.object
-        if not instance.show_self or shown.type not in DRAWN or shown.type != "MESH":
+        if shown.type not in DRAWN:
             continue
-        pointer = shown.data.as_pointer()
-        if pointer not in triangles:
-            triangles[pointer] = sum(len(p.vertices) - 2 for p in shown.data.polygons)
-        if triangles[pointer]:
-            names = tuple(m.name if m else "" for m in material_slots(shown))
-            matrix = instance.matrix_world
-            rows = (*matrix[0], *matrix[1], *matrix[2])
-            found[(shown.data.name, names, triangles[pointer])].append(rows)
+        names = tuple(m.name if m else "" for m in material_slots(shown))
+        matrix = instance.matrix_world
+        if instance.show_particles and shown.type == "MESH":
+            hairs = _hairs(shown)
+            if hairs:
+                found[(f"{shown.name} hair", names, hairs)].append(_rows(matrix))
+        if not instance.show_self:
+            continue
+        if shown.type == "POINTCLOUD":
+            for point in shown.data.points:
+                if point.radius > 0.0:
+                    place = matrix @ Matrix.Translation(point.co) @ Matrix.Scale(point.radius, 4)
+                    found[(f"{shown.data.name} point", names, 1)].append(_rows(place))
+            continue
+        size = 0
+        if shown.type == "CURVES":
+            size = len(shown.data.curves)
+        elif shown.type == "MESH":
+            pointer = shown.data.as_pointer()
+            if pointer not in triangles:
+                triangles[pointer] = sum(len(p.vertices) - 2 for p in shown.data.polygons)
+            size = triangles[pointer]
+        if size:
+            found[(shown.data.name, names, size)].append(_rows(matrix))
     return found
+
+
+def _hairs(shown: Any) -> int:
+    """Hairs that render: of each system its children, or else its particles."""
+    count = 0
+    for system in shown.particle_systems:
+        settings = system.settings
+        rendered = any(
+            m.type == "PARTICLE_SYSTEM" and m.show_render and m.particle_system.name == system.name
+            for m in shown.modifiers
+        )
+        if rendered and settings.type == "HAIR" and settings.render_type == "PATH":
+            grown = len(system.child_particles) if settings.child_type != "NONE" else 0
+            count += grown or len(system.particles)
+    return count
+
+
+def _rows(matrix: Matrix) -> tuple[float, ...]:
+    return (*matrix[0], *matrix[1], *matrix[2])
 
 
 def compare_occurrences(depsgraph: Any, extraction: Extraction) -> list[str]:
@@ -46,14 +85,14 @@ def compare_occurrences(depsgraph: Any, extraction: Extraction) -> list[str]:
         if leaf is None:
             differences.append(f"an occurrence of an unknown object {item}")
             continue
-        actual[(leaf.data, leaf.materials, leaf.triangles)].append(world)
+        actual[(leaf.data, leaf.materials, leaf.size)].append(world)
     for key in sorted(set(expected) | set(actual)):
         differences += _compare(key, expected.get(key, []), actual.get(key, []))
     return differences
 
 
 def _compare(key: Key, expected: list, actual: list) -> list[str]:
-    name = f'"{key[0]}" ({key[2]} triangles, materials {list(key[1])})'
+    name = f'"{key[0]}" (size {key[2]}, materials {list(key[1])})'
     if len(expected) != len(actual):
         return [f"{name}: Blender shows {len(expected)}, the model has {len(actual)}"]
     left: dict[tuple, list] = defaultdict(list)

@@ -7,12 +7,13 @@ from typing import Any
 
 from ..core import identity
 from . import ids
-from .instances import Context, Entry, Rows, offset, rows
-from .leaves import Leaf
+from .instances import Context, Emitted, Entry, Rows, offset, rows
+from .leaves import HAIR
 
 IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
-Placement = tuple[Any, Rows, str]  # object, transform, name
+MOST_CHILDREN = 64  # of an emitter's group: more are grouped by position
+Placement = tuple[Any, Rows, str, int]  # object, transform, name, hidden from which ray classes
 
 
 @dataclass
@@ -27,14 +28,14 @@ class Branch:
     objects: list[int] = field(default_factory=list)  # original pointers
 
 
-def scene_branch(scene: Any, view_layer: Any) -> Branch:
+def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
     """Of what a view layer includes: render-hidden collections are left out, excluded ones lend
     nothing but their included children."""
     claimed: set[int] = set()
 
     def branch(layer: Any, inherited: bool) -> Branch:
         collection = layer.collection
-        environment = inherited or ids.is_environment(collection)
+        environment = inherited or roles.is_environment(collection)
         made = Branch(collection, collection.name, environment)
         for child in layer.children:
             if child.collection.hide_render:
@@ -52,12 +53,12 @@ def scene_branch(scene: Any, view_layer: Any) -> Branch:
     return root
 
 
-def collection_branch(collection: Any) -> Branch:
+def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
     """Of an evaluated collection as its instances show it: layers play no part."""
     claimed: set[int] = {collection.original.as_pointer()}
 
     def branch(item: Any, inherited: bool) -> Branch:
-        environment = inherited or ids.is_environment(item)
+        environment = inherited or roles.is_environment(item)
         made = Branch(item, item.name, environment)
         for child in item.children:
             if not child.hide_render and _claim(claimed, child):
@@ -95,11 +96,11 @@ def environment_objects(branch: Branch) -> set[int]:
     return found
 
 
-def _same_but_for_rounding(a: list[tuple[Leaf, Rows]], b: list[tuple[Leaf, Rows]]) -> bool:
+def _same_but_for_rounding(a: list[Emitted], b: list[Emitted]) -> bool:
     if len(a) != len(b):
         return False
-    for (leaf, place), (other, other_place) in zip(a, b):
-        if leaf is not other:
+    for (leaf, place, hidden), (other, other_place, other_hidden) in zip(a, b):
+        if leaf is not other or hidden != other_hidden:
             return False
         limit = ROUNDING * max(1.0, *map(abs, place))
         if any(abs(x - y) > limit for x, y in zip(place, other_place)):
@@ -110,12 +111,13 @@ def _same_but_for_rounding(a: list[tuple[Leaf, Rows]], b: list[tuple[Leaf, Rows]
 class Groups:
     """Adds groups to a model; equal contents become one group."""
 
-    def __init__(self, model: Any, uids: ids.Uids) -> None:
+    def __init__(self, model: Any, uids: ids.Uids, roles: ids.Roles) -> None:
         self._model = model
         self._uids = uids
+        self._roles = roles
         self._made: dict[tuple, Any] = {}
         self._branches: dict[int, Branch] = {}
-        self._emitters: dict[int, list[tuple[list[tuple[Leaf, Rows]], Any]]] = {}
+        self._emitters: dict[int, list[tuple[list[Emitted], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
         self.parts: dict[ids.Key, set[Any]] = defaultdict(set)  # what a datablock became
 
@@ -135,7 +137,7 @@ class Groups:
         for child in branch.children:
             group = self._group(child, self._members(context, child, rest))
             if group is not None:
-                placements.append((group, IDENTITY, child.name))
+                placements.append((group, IDENTITY, child.name, 0))
         for key in branch.objects:
             entry = rest.pop(key, None)
             if entry is not None:
@@ -145,19 +147,24 @@ class Groups:
     def _entry(self, entry: Entry) -> list[Placement]:
         placements: list[Placement] = []
         if entry.leaf is not None:
-            placements.append((entry.leaf.object, rows(entry.matrix), entry.name))
+            placements.append((entry.leaf.object, rows(entry.matrix), entry.name, entry.hidden))
+        if entry.hair is not None:
+            name = f"{entry.name} {HAIR}"
+            placements.append((entry.hair.object, rows(entry.matrix), name, entry.hidden))
         if entry.content is not None:
             collection = entry.content.collection
             pointer = collection.as_pointer()
             if pointer not in self._branches:
-                self._branches[pointer] = collection_branch(collection)
+                self._branches[pointer] = collection_branch(collection, self._roles)
             group = self.build(entry.content, self._branches[pointer])
             if group is not None:
                 place = rows(entry.matrix @ offset(collection))
-                placements.append((group, place, entry.name))
+                placements.append((group, place, entry.name, entry.hidden))
         if entry.emitted:
-            placements.append((self._emitter(entry), IDENTITY, f"{entry.name} instances"))
-        self.parts[ids.key_of("object", entry.object)].update(item for item, _, _ in placements)
+            name = f"{entry.name} instances"
+            placements.append((self._emitter(entry), IDENTITY, name, entry.hidden))
+        made = (placement[0] for placement in placements)
+        self.parts[ids.key_of("object", entry.object)].update(made)
         return placements
 
     def _emitter(self, entry: Entry) -> Any:
@@ -168,9 +175,11 @@ class Groups:
             if _same_but_for_rounding(emitted, entry.emitted):
                 return group
         uid = identity.stable_id(ids.uid_of("object", entry.object), "instances")
-        children = [(leaf.object, place, leaf.data) for leaf, place in entry.emitted]
-        environment = ids.is_environment(entry.object)
+        children = [(leaf.object, place, leaf.data, hid) for leaf, place, hid in entry.emitted]
+        environment = self._roles.is_environment(entry.object)
         group = self._intern(uid, f"{entry.name} instances", environment, children)
+        if len(children) > MOST_CHILDREN:
+            self._model.group_by_position(group, MOST_CHILDREN)
         known.append((entry.emitted, group))
         return group
 
@@ -187,12 +196,12 @@ class Groups:
         return group
 
     def _intern(self, uid: str, name: str, environment: bool, placements: list[Placement]) -> Any:
-        key = (uid, environment, tuple((item.key, place, n) for item, place, n in placements))
+        key = (uid, environment, tuple((p[0].key, *p[1:]) for p in placements))
         group = self._made.get(key)
         if group is None:
             claimed = self._uids.claim(uid)
             group = self._model.add_group(claimed, name, ids.role(environment))
-            for item, place, child_name in placements:
-                self._model.add_placement(group, item, place, child_name)
+            for item, place, child_name, hidden in placements:
+                self._model.add_placement(group, item, place, child_name, hidden)
             self._made[key] = group
         return group

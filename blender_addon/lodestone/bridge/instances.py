@@ -15,11 +15,13 @@ from typing import Any
 from mathutils import Matrix
 
 from ..core.problems import ERROR, WARNING, Problems
-from . import ids
-from .leaves import DRAWN, UNDRAWN, Leaf, Leaves
+from . import ids, strands
+from .leaves import DRAWN, UNDRAWN, Leaf, Leaves, Look
+from .visibility import Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
 Rows = tuple[float, ...]  # 12: row-major 3x4
+Emitted = tuple[Leaf, Rows, int]  # what, where, hidden from which ray classes
 
 
 def rows(matrix: Matrix) -> Rows:
@@ -33,9 +35,12 @@ class Entry:
     object: Any  # evaluated
     name: str
     matrix: Matrix  # in the context's frame
+    hidden: int  # from these ray classes
+    holdout: bool
     leaf: Leaf | None = None
+    hair: Leaf | None = None  # of its particle systems
     content: "Context | None" = None  # of the collection it instances
-    emitted: list[tuple[Leaf, Rows]] = field(default_factory=list)
+    emitted: list[Emitted] = field(default_factory=list)
     pending: bool = False  # shown, but no mesh: converted when nothing else shows it
 
 
@@ -47,6 +52,7 @@ class Context:
     frame: Matrix  # to the world
     members: list[Any]  # all_objects, evaluated
     environment: set[int]  # original pointers of objects whose collections are environment
+    holdout: bool = False  # all of it
     entries: dict[int, Entry] = field(default_factory=dict)  # by original pointer
     inverse: Matrix | None = None
 
@@ -54,15 +60,25 @@ class Context:
 class Instances:
     """Walks the depsgraph once. `tick()` is called often and may raise to stop."""
 
-    def __init__(self, leaves: Leaves, problems: Problems, tick: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        leaves: Leaves,
+        visibility: Visibility,
+        roles: ids.Roles,
+        problems: Problems,
+        tick: Callable[[], None],
+    ) -> None:
         self.scene = Context(None, Matrix(), [], set())
         self.lights: list[tuple[Any, Matrix, str]] = []
         self.shown = 0
         self._leaves = leaves
+        self._visibility = visibility
+        self._roles = roles
         self._problems = problems
         self._tick = tick
         self._paths: dict[tuple, Entry | None] = {}
         self._collections: dict[int, tuple[list[Any], set[int]]] = {}
+        self._hidden: dict[int, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
 
     def walk(self, depsgraph: Any, environment: set[int]) -> None:
         """`environment`: original pointers of the objects that an environment collection holds."""
@@ -70,7 +86,7 @@ class Instances:
         for number, instance in enumerate(depsgraph.object_instances):
             if number % 256 == 0:
                 self._tick()
-            if instance.show_self:
+            if instance.show_self or instance.show_particles:
                 self._take(instance)
         self._convert_pending()
 
@@ -82,50 +98,94 @@ class Instances:
             return
         if kind not in DRAWN:
             if kind in UNDRAWN:
-                text = f'Object "{shown.name}" is left out: {kind.lower()} is not drawn yet'
+                text = f'Object "{shown.name}" is left out: {UNDRAWN[kind]} cannot be drawn'
                 self._problems.add(shown.name, ERROR, "object_kind", text)
             return
         matrix = instance.matrix_world
-        values = rows(matrix)
-        if not math.isfinite(sum(values)):
+        if not math.isfinite(sum(rows(matrix))):
             text = f'Object "{shown.name}" is left out: its transform is not a number'
             self._problems.add(shown.name, ERROR, "bad_transform", text)
             return
-        if not instance.is_instance:
-            entry = self._entry(self.scene, shown)
-            if kind == "MESH":
-                entry.leaf = self._leaf(self.scene, shown, shown)
-            else:
-                entry.pending = True
-            self.shown += entry.leaf is not None
-            return
-        self._take_instance(instance, shown, kind, matrix, values)
+        if instance.is_instance:
+            owner = instance.instance_object
+            path = [number for number in instance.persistent_id if number != END]
+            found = self._find(instance.parent, tuple(reversed(path)), owner)
+        else:
+            owner, found = shown, (self.scene, self._entry(self.scene, shown), True)
+        if instance.show_self:
+            self._take_data(shown, owner, matrix, instance.is_instance, *found)
+        if instance.show_particles and kind == "MESH":
+            self._take_hair(shown, owner, matrix, *found)
 
-    def _take_instance(
-        self, instance: Any, shown: Any, kind: str, matrix: Matrix, values: Rows
+    def _take_data(
+        self,
+        shown: Any,
+        owner: Any,
+        matrix: Matrix,
+        is_instance: bool,
+        context: Context,
+        entry: Entry,
+        direct: bool,
     ) -> None:
-        owner = instance.instance_object
-        path = [number for number in instance.persistent_id if number != END]
-        context, entry, direct = self._find(instance.parent, tuple(reversed(path)), owner)
-        if kind != "MESH":  # its mesh follows as an instance of itself
-            if direct:
-                entry.pending = True
+        kind = shown.type
+        if kind == "POINTCLOUD":
+            self._take_points(shown, owner, matrix, context, entry)
             return
-        leaf = self._leaf(context, shown, owner)
+        if kind not in ("MESH", "CURVES"):  # its mesh follows as an instance of itself
+            entry.pending = entry.pending or direct
+            return
+        leaf = self._leaves.leaf(shown, owner, self._look(context, entry, owner))
+        if leaf is None:
+            return
+        self.shown += 1
+        own = is_instance and owner.type != "MESH" and _is_self(entry, owner)
+        if direct and entry.leaf is None or own and entry.leaf is None:
+            entry.leaf = leaf
+        else:
+            self._emit(leaf, owner, matrix, context, entry)
+
+    def _take_hair(
+        self, shown: Any, owner: Any, matrix: Matrix, context: Context, entry: Entry, direct: bool
+    ) -> None:
+        self._tick()
+        leaf = self._leaves.hair(shown, owner, self._look(context, entry, owner))
         if leaf is None:
             return
         self.shown += 1
         if direct:
-            entry.leaf = leaf
-        elif owner.type != "MESH" and entry.leaf is None and _is_self(entry, owner):
-            entry.leaf = leaf
+            entry.hair = leaf
         else:
-            entry.emitted.append((leaf, self._relative(context, matrix, values)))
+            self._emit(leaf, owner, matrix, context, entry)
 
-    def _leaf(self, context: Context, shown: Any, owner: Any) -> Leaf | None:
-        self_marked = ids.is_environment(owner)
-        marked = self_marked or owner.original.as_pointer() in context.environment
-        return self._leaves.leaf(shown, owner, marked)
+    def _take_points(
+        self, shown: Any, owner: Any, matrix: Matrix, context: Context, entry: Entry
+    ) -> None:
+        points = strands.point_cloud(shown.data)
+        if not points:
+            return
+        leaf = self._leaves.point(shown, owner, self._look(context, entry, owner))
+        for center, radius in points:
+            place = matrix @ Matrix.Translation(center) @ Matrix.Scale(radius, 4)
+            self._emit(leaf, owner, place, context, entry)
+        self.shown += len(points)
+
+    def _emit(self, leaf: Leaf, owner: Any, matrix: Matrix, context: Context, entry: Entry) -> None:
+        hidden = 0 if _is_self(entry, owner) else self._seen(owner)[0]
+        entry.emitted.append((leaf, self._relative(context, matrix), hidden))
+
+    def _look(self, context: Context, entry: Entry, owner: Any) -> Look:
+        pointer = owner.original.as_pointer()
+        marked = pointer in context.environment or self._roles.is_environment(owner)
+        holdout = entry.holdout or (not _is_self(entry, owner) and self._seen(owner)[1])
+        return Look(marked, holdout)
+
+    def _seen(self, owner: Any) -> tuple[int, bool]:
+        """Ray classes that an emitted object is hidden from, and whether it is a holdout."""
+        key = owner.original.as_pointer()
+        if key not in self._hidden:
+            visibility = self._visibility
+            self._hidden[key] = (visibility.hidden(owner, False), visibility.holdout(owner, False))
+        return self._hidden[key]
 
     # ---- Paths ----
 
@@ -155,7 +215,12 @@ class Instances:
         key = item.original.as_pointer()
         entry = context.entries.get(key)
         if entry is None:
-            entry = Entry(item, item.name, item.matrix_world.copy())
+            in_scene = context.collection is None
+            hidden = self._visibility.hidden(item, in_scene)
+            holdout = context.holdout or self._visibility.holdout(item, in_scene)
+            if holdout and not context.holdout:
+                self._visibility.name_holdout(item.name)
+            entry = Entry(item, item.name, item.matrix_world.copy(), hidden, holdout)
             context.entries[key] = entry
             if item.instance_type == "COLLECTION" and item.instance_collection is not None:
                 entry.content = self._content(context, entry)
@@ -166,15 +231,15 @@ class Instances:
         pointer = collection.as_pointer()
         if pointer not in self._collections:
             marked: set[int] = set()
-            _mark(collection, False, marked)
+            _mark(collection, False, marked, self._roles)
             self._collections[pointer] = (list(collection.all_objects), marked)
         members, marked = self._collections[pointer]
         frame = context.frame @ entry.matrix @ offset(collection)
-        return Context(collection, frame, members, marked)
+        return Context(collection, frame, members, marked, entry.holdout)
 
-    def _relative(self, context: Context, world: Matrix, values: Rows) -> Rows:
+    def _relative(self, context: Context, world: Matrix) -> Rows:
         if context.collection is None:
-            return values
+            return rows(world)
         if context.inverse is None:
             try:
                 context.inverse = context.frame.inverted()
@@ -193,7 +258,8 @@ class Instances:
                     waiting.append(entry.content)
                 if entry.pending and entry.leaf is None and not entry.emitted:
                     self._tick()
-                    entry.leaf = self._leaf(context, entry.object, entry.object)
+                    look = self._look(context, entry, entry.object)
+                    entry.leaf = self._leaves.leaf(entry.object, entry.object, look)
                     self.shown += entry.leaf is not None
 
 
@@ -206,12 +272,12 @@ def _is_self(entry: Entry, owner: Any) -> bool:
     return entry.object.original.as_pointer() == owner.original.as_pointer()
 
 
-def _mark(collection: Any, inherited: bool, marked: set[int]) -> None:
-    environment = inherited or ids.is_environment(collection)
+def _mark(collection: Any, inherited: bool, marked: set[int], roles: ids.Roles) -> None:
+    environment = inherited or roles.is_environment(collection)
     if environment:
         marked.update(item.original.as_pointer() for item in collection.objects)
     for child in collection.children:
-        _mark(child, environment, marked)
+        _mark(child, environment, marked, roles)
 
 
 def report_outside(problems: Problems, name: str) -> None:

@@ -6,11 +6,14 @@ from typing import Any
 
 from ..core import identity
 from ..core.problems import ERROR, Problems
-from . import ids, mesh
+from . import ids, mesh, strands
 from .materials import Materials
 
-DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-UNDRAWN = {"CURVES", "POINTCLOUD", "VOLUME", "GPENCIL"}
+DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
+UNDRAWN = {"VOLUME": "volumes", "GPENCIL": "grease pencil"}
+HAIR = "hair"  # of particles; also in the names of leaves
+POINT = "point"
+Color = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,15 @@ class Leaf:
     uid: str
     data: str
     materials: tuple[str, ...]
-    triangles: int
+    size: int  # triangles of a mesh, strands of hair, 1 of a point
+
+
+@dataclass(frozen=True)
+class Look:
+    """What decides how an object's data are drawn, besides the data and its materials."""
+
+    environment: bool = False
+    holdout: bool = False  # all its materials are black
 
 
 class Leaves:
@@ -31,60 +42,141 @@ class Leaves:
         self._uids = uids
         self._problems = problems
         self._materials = Materials(model, problems)
+        self._colored: dict[int, bool] = {}  # materials that show their object's color
+        self._black: int | None = None
         self._found: dict[tuple, Leaf | None] = {}
-        self._emitted: dict[str, int] = {}
 
     def __iter__(self) -> Any:
         return (leaf for leaf in self._found.values() if leaf is not None)
 
-    def leaf(self, shown: Any, owner: Any, environment: bool) -> Leaf | None:
+    def leaf(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
         """Of an evaluated object as a depsgraph instance shows it; `owner` is the evaluated object
-        that shows it (they differ in their data where nodes make a mesh). None: it has no faces.
-        """
+        that shows it (they differ in their data where nodes make a mesh). None: it has no faces
+        and no hairs."""
+        return self._get(shown.data.as_pointer(), shown, owner, look, self._add_data)
+
+    def hair(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
+        """Of an evaluated object's particle hair."""
+        key = (HAIR, shown.original.as_pointer())
+        return self._get(key, shown, owner, look, self._add_hair)
+
+    def point(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
+        """The ball of radius 1 that every point of this point cloud shows."""
+        return self._get((POINT, shown.data.as_pointer()), shown, owner, look, self._add_point)
+
+    def _get(self, data: Any, shown: Any, owner: Any, look: Look, add: Any) -> Leaf | None:
         slots = material_slots(shown)
-        key = (
-            shown.data.as_pointer(),
-            tuple(m.as_pointer() if m else 0 for m in slots),
-            environment,
-        )
+        color = self._color(shown, slots)
+        key = (data, tuple(m.as_pointer() if m else 0 for m in slots), color, look)
         if key not in self._found:
-            self._found[key] = self._extract(shown, owner, slots, environment)
+            self._found[key] = add(shown, owner, slots, color, look)
         return self._found[key]
 
-    def _extract(self, shown: Any, owner: Any, slots: list, environment: bool) -> Leaf | None:
-        indices = [self._materials.index(material) for material in slots]
-        textured = any(self._materials.textured(material) for material in slots)
+    # ---- What they are made of ----
+
+    def _add_data(
+        self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
+    ) -> Leaf | None:
+        indices = self._indices(slots, color, look)
         try:
-            buffers = mesh.extract(shown, len(slots), textured)
+            if shown.type == "CURVES":
+                buffers = strands.curves(shown.data)
+                size = 0 if buffers is None else len(buffers.counts)
+            else:
+                textured = any(self._materials.textured(material) for material in slots)
+                buffers = mesh.extract(shown, len(slots), textured)
+                size = 0 if buffers is None else len(buffers.triangles) // 3
         except RuntimeError as error:
             text = f'Object "{owner.name}" cannot be read and is left out: {error}'
             self._problems.add(owner.name, ERROR, "mesh_unreadable", text)
             return None
         if buffers is None:
             return None
-        uid, name = self._name(shown, owner, slots, environment)
-        item = self._model.add_mesh(uid, name, buffers, indices, ids.role(environment))
-        names = tuple(material.name if material else "" for material in slots)
-        return Leaf(item, uid, shown.data.name, names, len(buffers.triangles) // 3)
+        base, name = self._name(shown, owner, slots)
+        uid = self._uid(base, color, look)
+        add = self._model.add_strands if shown.type == "CURVES" else self._model.add_mesh
+        item = add(uid, name, buffers, indices, ids.role(look.environment))
+        return Leaf(item, uid, shown.data.name, _names(slots), size)
 
-    def _name(self, shown: Any, owner: Any, slots: list, environment: bool) -> tuple[str, str]:
+    def _add_hair(
+        self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
+    ) -> Leaf | None:
+        indices = self._indices(slots, color, look)
+        textured = any(self._materials.textured(material) for material in slots)
+        buffers = strands.hair(shown, len(slots), textured)
+        if buffers is None:
+            return None
+        uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
+        name, role = f"{owner.name} {HAIR}", ids.role(look.environment)
+        item = self._model.add_strands(uid, name, buffers, indices, role)
+        return Leaf(item, uid, f"{shown.name} {HAIR}", _names(slots), len(buffers.counts))
+
+    def _add_point(
+        self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
+    ) -> Leaf:
+        # A point shows its first material only
+        indices = self._indices(slots[:1], color, look)
+        uid = self._uid(identity.stable_id(ids.uid_of("object", owner), POINT), color, look)
+        name, role = f"{owner.name} {POINT}", ids.role(look.environment)
+        item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
+        return Leaf(item, uid, f"{shown.data.name} {POINT}", _names(slots), 1)
+
+    # ---- Materials ----
+
+    def _indices(self, slots: list, color: Color | None, look: Look) -> list[int]:
+        if look.holdout:
+            if self._black is None:
+                black = (0.0, 0.0, 0.0)
+                self._black = self._model.add_material(
+                    "Holdout", base_color=black, roughness=1.0, specular=0.0
+                )
+            return [self._black] * max(1, len(slots))
+        if color is None:
+            return [self._materials.index(material) for material in slots]
+        return [
+            self._materials.index(m, color) if self._is_colored(m) else self._materials.index(m)
+            for m in slots
+        ]
+
+    def _color(self, shown: Any, slots: list) -> Color | None:
+        """The object's color, when one of its materials shows it."""
+        if any(self._is_colored(material) for material in slots):
+            return tuple(shown.color)
+        return None
+
+    def _is_colored(self, material: Any | None) -> bool:
+        if material is None or not material.use_nodes or material.node_tree is None:
+            return False
+        key = material.as_pointer()
+        if key not in self._colored:
+            self._colored[key] = _shows_object_color(material.node_tree, set())
+        return self._colored[key]
+
+    # ---- Names ----
+
+    def _uid(self, base: str, color: Color | None, look: Look) -> str:
+        if color is not None:
+            base = identity.stable_id(base, "color", *color)
+        if look.environment:
+            base = identity.stable_id(base, "environment")
+        if look.holdout:
+            base = identity.stable_id(base, "holdout")
+        return self._uids.claim(base)
+
+    def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:
         """Its uid and name: a shared mesh's own, else those of the object that shows it."""
         if shown.type != "MESH" or owner.type != "MESH":
-            base, name = ids.uid_of("object", owner), owner.name
-        elif shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes
+            return ids.uid_of("object", owner), owner.name
+        if shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes
             base = identity.stable_id(ids.uid_of("object", owner), "nodes", shown.data.name)
-            name = f"{owner.name}: {shown.data.name}"
-        elif owner.is_modified(self._scene, "RENDER"):
-            base, name = ids.uid_of("object", owner), owner.name
-        else:
-            base = ids.uid_of("mesh", shown.data)
-            name = shown.data.name
-            own = [ids.named_id_of(m) for m in shown.data.materials]
-            if own != [ids.named_id_of(m) for m in slots]:  # materials linked to the object
-                base = identity.stable_id(base, *(ids.named_id_of(m) for m in slots))
-        if environment:
-            base = identity.stable_id(base, "environment")
-        return self._uids.claim(base), name
+            return base, f"{owner.name}: {shown.data.name}"
+        if owner.is_modified(self._scene, "RENDER"):
+            return ids.uid_of("object", owner), owner.name
+        base = ids.uid_of("mesh", shown.data)
+        own = [ids.named_id_of(m) for m in shown.data.materials]
+        if own != [ids.named_id_of(m) for m in slots]:  # materials linked to the object
+            base = identity.stable_id(base, *(ids.named_id_of(m) for m in slots))
+        return base, shown.data.name
 
 
 def material_slots(shown: Any) -> list[Any]:
@@ -92,3 +184,21 @@ def material_slots(shown: Any) -> list[Any]:
     if shown.data is None:  # material_slots of an evaluated empty crash Blender 3.4
         return []
     return [slot.material for slot in shown.material_slots]
+
+
+def _names(slots: list) -> tuple[str, ...]:
+    return tuple(material.name if material else "" for material in slots)
+
+
+def _shows_object_color(tree: Any, seen: set[int]) -> bool:
+    """Whether an Object Info node's Color is used in a tree or a group within it."""
+    if tree.as_pointer() in seen:
+        return False
+    seen.add(tree.as_pointer())
+    for node in tree.nodes:
+        if node.type == "OBJECT_INFO" and node.outputs["Color"].is_linked:
+            return True
+        if node.type == "GROUP" and node.node_tree is not None:
+            if _shows_object_color(node.node_tree, seen):
+                return True
+    return False

@@ -49,14 +49,15 @@ class Materials:
         self._model = model
         self._problems = problems
         self._images = images or ImageMeans()
-        self._indices: dict[int, int] = {}
+        self._indices: dict[tuple, int] = {}
         self._textured: set[int] = set()
 
-    def index(self, material: Any | None) -> int:
-        """The model's index of an evaluated material, or of Blender's default for None."""
-        key = 0 if material is None else material.as_pointer()
+    def index(self, material: Any | None, object_color: tuple | None = None) -> int:
+        """The model's index of an evaluated material, or of Blender's default for None.
+        `object_color`: of the objects it is drawn on, when its nodes ask for it."""
+        key = (0 if material is None else material.as_pointer(), object_color)
         if key not in self._indices:
-            surface = DEFAULT if material is None else self.translate(material)
+            surface = DEFAULT if material is None else self.translate(material, object_color)
             self._indices[key] = self._model.add_material(
                 "" if material is None else material.name, **asdict(surface)
             )
@@ -66,8 +67,9 @@ class Materials:
         """True when index() found an image behind it: its meshes keep their uvs."""
         return material is not None and material.as_pointer() in self._textured
 
-    def translate(self, material: Any) -> Surface:
+    def translate(self, material: Any, object_color: tuple | None = None) -> Surface:
         translator = _Translator(material, self._problems, self._images)
+        translator.values.object_color = object_color
         surface = translator.surface()
         if translator.values.saw_image:
             self._textured.add(material.as_pointer())

@@ -20,6 +20,7 @@ class NodeValues:
         self._images = images
         self._note = note
         self.saw_image = False
+        self.object_color: tuple | None = None  # of the object the material is drawn on
 
     def color(self, socket: Any, groups: tuple = (), depth: int = 0) -> Color:
         """The socket's linear color; `groups` are the group nodes around it, outermost first."""
@@ -66,6 +67,8 @@ class NodeValues:
         node, kind, step = link.from_node, link.from_node.type, depth + 1
         if kind == "TEX_IMAGE":
             return self._image(node, link.from_socket)
+        if kind == "OBJECT_INFO" and link.from_socket.name == "Color" and self.object_color:
+            return self.object_color[:3]
         if kind == "RGB":
             return _as_color(node.outputs[0])
         if kind == "VALUE":

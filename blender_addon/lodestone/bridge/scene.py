@@ -17,6 +17,7 @@ from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves
 from .users import Users
+from .visibility import Visibility
 
 
 @dataclass
@@ -47,7 +48,7 @@ def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extracti
     try:
         leaves = Leaves(model, depsgraph.scene, uids, problems)
         walk = walked(depsgraph, leaves, problems, tick)
-        tree = groups.Groups(model, uids)
+        tree = groups.Groups(model, uids, walk.roles)
         root = tree.build(walk.found.scene, walk.branch)
         if root is None:
             root = model.add_group(uids.claim(ids.scene_uid(scene.name)), scene.name)
@@ -78,15 +79,18 @@ class Walk:
     found: Instances
     branch: groups.Branch
     users: Users
+    roles: ids.Roles
 
 
 def walked(depsgraph: Any, leaves: Any, problems: Problems, tick: Callable[[], None]) -> Walk:
     """`leaves` are Leaves, or what takes their place where nothing is to be extracted."""
-    branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval)
+    roles = ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
+    branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
-    found = Instances(users, problems, tick)
+    visibility = Visibility(depsgraph.view_layer_eval, problems)
+    found = Instances(users, visibility, roles, problems, tick)
     found.walk(depsgraph, groups.environment_objects(branch))
-    return Walk(found, branch, users)
+    return Walk(found, branch, users, roles)
 
 
 def surroundings(

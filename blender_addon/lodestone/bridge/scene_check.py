@@ -12,7 +12,7 @@ from typing import Any
 
 from ..core.last_check import Check
 from ..core.problems import ERROR, Problems
-from . import camera, requirements, scene
+from . import camera, requirements, scene, strands
 from .images import ImageHeads
 from .leaves import material_slots
 from .materials import Materials
@@ -74,8 +74,25 @@ class Glances:
             self._found[key] = self._look(shown, slots)
         return self._found[key]
 
+    def hair(self, shown: Any, owner: Any, *how: Any) -> Any | None:
+        """As Leaves.hair(). The viewport may show fewer hairs, but none where there are some."""
+        drawn = any(
+            strands.drawn_particles(m.particle_system) for m in strands.hair_modifiers(shown)
+        )
+        return self._of_materials(shown) if drawn else None
+
+    def point(self, shown: Any, owner: Any, *how: Any) -> Any:
+        return self._of_materials(shown)
+
+    def _of_materials(self, shown: Any) -> Any:
+        for material in material_slots(shown):
+            self._materials.index(material)
+        return SimpleNamespace(object=None)
+
     def _look(self, shown: Any, slots: list[Any]) -> Any | None:
         if shown.type == "MESH" and not _has_faces(shown):
+            return None
+        if shown.type == "CURVES" and not len(shown.data.curves):
             return None
         for material in slots:
             self._materials.index(material)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of an object rays see: Blender's ray visibility, indirect-only and holdout, as POV-Ray can
+do it."""
+
+from typing import Any
+
+from ..core.native import lodestone_native as native
+from ..core.problems import INFO, WARNING, Problems
+
+RayClass = native.RayClass
+_SWITCHES = (  # Blender's names, the ray class of ours
+    ("visible_camera", RayClass.CAMERA),
+    ("visible_glossy", RayClass.REFLECTION),
+    ("visible_shadow", RayClass.SHADOW),
+    ("visible_diffuse", RayClass.RADIOSITY),
+)
+
+
+class Visibility:
+    """Of evaluated objects as one view layer shows them."""
+
+    def __init__(self, view_layer: Any, problems: Problems) -> None:
+        self._view_layer = view_layer
+        self._problems = problems
+
+    def hidden(self, item: Any, in_scene: bool) -> int:
+        """The ray classes that do not see it. `in_scene`: it is an object of the scene itself, not
+        of a collection that is instanced (only then does its place in the view layer count)."""
+        hidden = 0
+        for name, ray_class in _SWITCHES:
+            if not getattr(item, name, True):
+                hidden |= ray_class
+        if getattr(item, "visible_transmission", True) != getattr(item, "visible_camera", True):
+            text = f'Object "{item.name}" is seen through glass just as the camera sees it'
+            self._problems.add(item.name, INFO, "visible_transmission", text)
+        if getattr(item, "is_shadow_catcher", False):
+            hidden |= RayClass.CAMERA | RayClass.REFLECTION
+            text = f'Object "{item.name}" is a shadow catcher: left out with the shadows on it'
+            self._problems.add(item.name, WARNING, "shadow_catcher", text)
+        if in_scene and self._in_layer(item, "indirect_only_get"):
+            hidden |= RayClass.CAMERA
+        return int(hidden)
+
+    def holdout(self, item: Any, in_scene: bool) -> bool:
+        """Whether it cuts a hole into the picture."""
+        if getattr(item, "is_holdout", False):
+            return True
+        return in_scene and self._in_layer(item, "holdout_get")
+
+    def name_holdout(self, name: str) -> None:
+        text = f'Object "{name}" is a holdout: drawn black, which is right but for its alpha of 1'
+        self._problems.add(name, WARNING, "holdout", text)
+
+    def _in_layer(self, item: Any, question: str) -> bool:
+        try:
+            return bool(getattr(item, question)(view_layer=self._view_layer))
+        except RuntimeError:  # it is in no collection of this layer
+            return False
