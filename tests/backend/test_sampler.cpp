@@ -112,6 +112,59 @@ TEST(Sampler, CoordinatesThatAreNoNumbersAreHarmless) {
     }
 }
 
+TEST(Texels, ThinThingsThatAreCutKeepTheirShare) {
+    // Needles one texel wide, every fourth column: a quarter is there, though no block's mean is.
+    image::Image image;
+    image.width = image.height = 64;
+    for (int i = 0; i < 64 * 64; ++i)
+        image.pixels.insert(image.pixels.end(), {1, 1, 1, i % 4 == 0 ? 1.0f : 0.0f});
+    Texture texture =
+        closest(image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "needles"));
+    texture.channel = Channel::Alpha;
+    EXPECT_NEAR(image::texels_of(*texture.picture, 16)->least.w, 0.25, 1e-6);
+    const image::TexelsPtr cut = image::texels_at_least(texture, 0.5, 16);
+    EXPECT_EQ(cut->width, 16);
+    EXPECT_TRUE(cut->reduced);
+    EXPECT_NEAR(image::Sampler(texture, {}, cut).number({0.4, 0.6}), 0.25, 1e-6);
+    EXPECT_FALSE(image::texels_of(*texture.picture, 64)->reduced);
+}
+
+TEST(Texels, CacheSharesWhatIsTheSameAndForgetsTheLeastUsed) {
+    const auto one_of = [](float gray) {
+        image::Image image;
+        image.width = image.height = 8;
+        for (int i = 0; i < 64; ++i)
+            image.pixels.insert(image.pixels.end(), {gray, gray, gray, 1});
+        return closest(image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "gray"));
+    };
+    const size_t each = 8 * 8 * 4 * sizeof(float);
+    image::TexelCache cache(256, 2 * each);
+    const Texture first = one_of(0);
+    const image::TexelsPtr kept = cache.of(first);
+    EXPECT_EQ(cache.of(first), kept);
+    Texture moved = first;  // another mapping of the same picture
+    moved.to_picture[2] = 0.5;
+    EXPECT_EQ(cache.of(moved), kept);
+    EXPECT_EQ(cache.bytes(), each);
+    cache.of(one_of(0.2f));
+    cache.of(first);
+    cache.of(one_of(0.4f));  // the second one goes
+    EXPECT_EQ(cache.bytes(), 2 * each);
+    EXPECT_EQ(cache.of(first), kept);
+    cache.of(one_of(0.6f));
+    cache.of(one_of(0.8f));
+    EXPECT_LE(cache.bytes(), 2 * each);
+    EXPECT_NE(cache.of(first), kept);
+    EXPECT_EQ(cache.of(Texture{}), nullptr);
+}
+
+TEST(Texels, BytesThatAreNotResidentGiveNone) {
+    auto absent = std::make_shared<Picture>(*four_texels());
+    absent->bytes.clear();
+    image::TexelCache cache;
+    EXPECT_EQ(cache.of(closest(absent)), nullptr);
+}
+
 TEST(Picture, AnUnknownKindIsRefusedByName) {
     try {
         image::make_picture("GIF89a, or so", ColorSpace::Srgb, "Bark");

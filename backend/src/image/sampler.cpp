@@ -13,42 +13,6 @@
 namespace lodestone::image {
 namespace {
 
-/// Averages blocks of `step` x `step` texels, colors weighted by alpha.
-void reduce(Image& image, int step) {
-    Image small;
-    small.width = (image.width + step - 1) / step;
-    small.height = (image.height + step - 1) / step;
-    small.linear = image.linear;
-    small.pixels.resize(4 * small.size());
-    for (int y = 0; y < small.height; ++y) {
-        for (int x = 0; x < small.width; ++x) {
-            glm::dvec4 sum(0.0);
-            glm::dvec3 plain(0.0);
-            int count = 0;
-            for (int j = y * step; j < std::min((y + 1) * step, image.height); ++j) {
-                for (int i = x * step; i < std::min((x + 1) * step, image.width); ++i, ++count) {
-                    const float* from =
-                        image.pixels.data() +
-                        4 * (static_cast<size_t>(j) * static_cast<size_t>(image.width) +
-                             static_cast<size_t>(i));
-                    const glm::dvec3 color(from[0], from[1], from[2]);
-                    const auto alpha = static_cast<double>(from[3]);
-                    sum += glm::dvec4(alpha * color, alpha);
-                    plain += color;
-                }
-            }
-            const glm::dvec3 color = sum.w > 0 ? glm::dvec3(sum) / sum.w : plain / double(count);
-            float* to = small.pixels.data() +
-                        4 * (static_cast<size_t>(y) * static_cast<size_t>(small.width) +
-                             static_cast<size_t>(x));
-            for (int c = 0; c < 3; ++c)
-                to[c] = static_cast<float>(color[c]);
-            to[3] = static_cast<float>(sum.w / count);
-        }
-    }
-    image = std::move(small);
-}
-
 glm::dvec4 mean_of(const float* texels, size_t count) {
     glm::dvec4 sum(0.0);
     glm::dvec3 plain(0.0);
@@ -182,20 +146,18 @@ double number_of(const Texture& texture, const glm::dvec4& texel) {
     return texture.offset.x + texture.scale.x * pick(texture.channel, texel);
 }
 
-Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise)
-    : texture_(texture), otherwise_(otherwise) {
-    if (!texture)
-        return;
-    Image image = decoded(*texture.picture);
-    const int step = (std::max(image.width, image.height) + kMostSide - 1) / kMostSide;
-    if (step > 1)
-        reduce(image, step);
-    width_ = image.width;
-    height_ = image.height;
-    texels_ = std::move(image.pixels);
+Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise, int most_side)
+    : Sampler(texture, otherwise, texture ? texels_of(*texture.picture, most_side) : nullptr) {}
+
+Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels)
+    : texture_(texture), otherwise_(otherwise), texels_(std::move(texels)) {
+    if (texels_ && texels_->rgba.empty())
+        texels_ = nullptr;
 }
 
 glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
+    const int width = texels_->width;
+    const int height = texels_->height;
     glm::dvec2 at = to_picture(texture_, uv);
     if (!std::isfinite(at.x) || !std::isfinite(at.y))
         at = glm::dvec2(0);
@@ -203,8 +165,8 @@ glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
     at = glm::clamp(at, -1e6, 1e6);
     const bool closest = texture_.interpolation == Interpolation::Closest;
     const double shift = closest ? 0 : 0.5;
-    const double x = at.x * width_ - shift;
-    const double y = (1 - at.y) * height_ - shift;
+    const double x = at.x * width - shift;
+    const double y = (1 - at.y) * height - shift;
     const double left = std::floor(x);
     const double top = std::floor(y);
     glm::dvec4 sum(0.0);
@@ -215,24 +177,24 @@ glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
             closest ? 1.0
                     : (right != 0 ? x - left : left + 1 - x) * (low != 0 ? y - top : top + 1 - y);
         const int64_t column =
-            wrapped(static_cast<int64_t>(left) + right, width_, texture_.extension);
-        const int64_t row = wrapped(static_cast<int64_t>(top) + low, height_, texture_.extension);
+            wrapped(static_cast<int64_t>(left) + right, width, texture_.extension);
+        const int64_t row = wrapped(static_cast<int64_t>(top) + low, height, texture_.extension);
         if (column < 0 || row < 0)
             continue;
         const float* from =
-            texels_.data() + 4 * (static_cast<size_t>(row) * static_cast<size_t>(width_) +
-                                  static_cast<size_t>(column));
+            texels_->rgba.data() + 4 * (static_cast<size_t>(row) * static_cast<size_t>(width) +
+                                        static_cast<size_t>(column));
         sum += weight * glm::dvec4(from[0], from[1], from[2], from[3]);
     }
     return sum;
 }
 
 glm::dvec3 Sampler::color(glm::dvec2 uv) const {
-    return texels_.empty() ? otherwise_ : color_of(texture_, texel(uv));
+    return texels_ ? color_of(texture_, texel(uv)) : otherwise_;
 }
 
 double Sampler::number(glm::dvec2 uv) const {
-    return texels_.empty() ? otherwise_.x : number_of(texture_, texel(uv));
+    return texels_ ? number_of(texture_, texel(uv)) : otherwise_.x;
 }
 
 }  // namespace lodestone::image

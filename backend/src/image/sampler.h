@@ -3,7 +3,7 @@
 #pragma once
 
 #include "image/image.h"
-#include "model/texture.h"
+#include "image/texels.h"
 
 #include <glm/vec4.hpp>
 
@@ -22,15 +22,18 @@ PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& 
 glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel);
 double number_of(const Texture& texture, const glm::dvec4& texel);
 
-/// Holds the texels of one texture, reduced to at most kMostSide a side by averaging: for measuring,
-/// not for pictures. Threads may share it.
+/// Looks up the texels of one texture, reduced to at most `most_side` a side by averaging: for
+/// measuring, not for pictures. Threads may share it.
 class Sampler {
 public:
     static constexpr int kMostSide = 1024;
 
     /// Without a picture every value is `otherwise`.
-    Sampler(const Texture& texture, const glm::dvec3& otherwise);
+    Sampler(const Texture& texture, const glm::dvec3& otherwise, int most_side = kMostSide);
+    /// With texels of its picture that others may share; null: as without a picture.
+    Sampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels);
 
+    explicit operator bool() const { return texels_ != nullptr; }
     glm::dvec3 color(glm::dvec2 uv) const;
     double number(glm::dvec2 uv) const;
 
@@ -39,9 +42,7 @@ private:
 
     Texture texture_;
     glm::dvec3 otherwise_;
-    int width_ = 0;
-    int height_ = 0;
-    std::vector<float> texels_;  // RGBA, top row first
+    TexelsPtr texels_;  // null: none
 };
 
 }  // namespace lodestone::image

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texels: decoded pictures, made small by averaging and shared, for measuring.
+#pragma once
+
+#include "model/texture.h"
+
+#include <glm/vec4.hpp>
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace lodestone::image {
+
+struct Texels {
+    int width = 0;
+    int height = 0;
+    std::vector<float> rgba;  // linear, straight alpha, top row first
+    glm::dvec4 least{0.0};    // of each channel
+    bool reduced = false;     // fewer than the picture has
+};
+
+/// Never changed once made; shared by all that look things up.
+using TexelsPtr = std::shared_ptr<const Texels>;
+
+/// A picture with at most `most_side` texels a side, each the mean of a block (colors weighted by
+/// alpha). Throws Error(BadFile).
+TexelsPtr texels_of(const Picture& picture, int most_side);
+
+/// Where a texture's number is at least `cutoff`: every channel is the share of the block that is.
+/// Means of the number itself would lose what is thinner than a block.
+TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side);
+
+/// Decodes every picture once, as long as all fit into `most_bytes`; the least used go first. What
+/// is in use elsewhere stays alive there. Any thread; nothing depends on their order.
+class TexelCache {
+public:
+    explicit TexelCache(int most_side = 256, size_t most_bytes = size_t{256} << 20u)
+        : most_side_(most_side), most_bytes_(most_bytes) {}
+
+    /// Null where there is no picture or its bytes are not resident. Throws Error(BadFile).
+    TexelsPtr of(const Texture& texture);
+    TexelsPtr at_least(const Texture& texture, double cutoff);
+
+    /// Bytes it holds now.
+    size_t bytes() const;
+
+private:
+    struct Entry {
+        std::mutex making;
+        TexelsPtr texels;
+        std::list<Hash>::iterator place;
+    };
+    template <typename Make>
+    TexelsPtr find_or_make(Hash key, const Picture& picture, const Make& make);
+
+    int most_side_;
+    size_t most_bytes_;
+    mutable std::mutex mutex_;
+    std::mutex one_large_;  // pictures are decoded as floats: not several huge ones at a time
+    std::unordered_map<Hash, std::shared_ptr<Entry>> entries_;
+    std::list<Hash> by_use_;  // made ones, the last used first
+    size_t bytes_ = 0;
+};
+
+}  // namespace lodestone::image
