@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards ray::Scene: that Embree is found, answers right at every scale, and never kills us.
+#include "backend/foliage.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -263,4 +264,138 @@ TEST(Ray, MovedScenesKeepWorkingAndManyCanBeBuiltAtOnce) {
         hits[i] = scene.occluded({0.51, 0.52, 1}, {0, 0, -1});
     });
     EXPECT_EQ(std::count(hits.begin(), hits.end(), 1), 64);
+}
+
+namespace {
+
+ray::SkinPtr skin_of(const std::vector<Material>& materials) {
+    image::TexelCache texels;
+    return std::make_shared<const ray::Skin>(materials, texels);
+}
+
+/// Of `count` rays straight down on the unit square, those that hit; occluded() must agree.
+int hits_from_above(const ray::Scene& scene, int count) {
+    Random random(3);
+    int hits = 0;
+    for (int i = 0; i < count; ++i) {
+        const double x = random.uniform();
+        const double y = random.uniform();
+        const bool hit = scene.first_hit({x, y, 1}, {0, 0, -1}).hit;
+        EXPECT_EQ(scene.occluded({x, y, 1}, {0, 0, -1}), hit);
+        hits += hit ? 1 : 0;
+    }
+    return hits;
+}
+
+}  // namespace
+
+TEST(RayAlpha, CardIsHitWhereItsLeafIs) {
+    for (const AlphaMode mode : {AlphaMode::Clip, AlphaMode::Blend}) {
+        const ray::SkinPtr skin = skin_of({foliage::leaf(foliage::left_half(), mode)});
+        const ray::Scene scene(foliage::card(1, 1), skin);
+        EXPECT_TRUE(scene.see_through());
+        EXPECT_TRUE(scene.first_hit({0.3, 0.6, 1}, {0, 0, -1}).hit);
+        EXPECT_TRUE(scene.occluded({0.3, 0.6, 1}, {0, 0, -1}));
+        EXPECT_FALSE(scene.first_hit({0.7, 0.6, 1}, {0, 0, -1}).hit);
+        EXPECT_FALSE(scene.occluded({0.7, 0.6, 1}, {0, 0, -1}));
+        EXPECT_FALSE(scene.first_hit({0.7, 0.6, -1}, {0, 0, 1}).hit);
+    }
+}
+
+TEST(RayAlpha, RayThroughAHoleHitsWhatIsBehind) {
+    Mesh mesh = foliage::card(1, 1);
+    append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, -2}}, 1);
+    const ray::Scene scene(mesh, skin_of({foliage::leaf(foliage::left_half()), Material{}}));
+    EXPECT_NEAR(scene.first_hit({0.25, 0.5, 1}, {0, 0, -1}).t, 1, 1e-6);
+    EXPECT_NEAR(scene.first_hit({0.75, 0.5, 1}, {0, 0, -1}).t, 3, 1e-6);
+    EXPECT_TRUE(scene.occluded({0.75, 0.5, 1}, {0, 0, -1}));
+}
+
+TEST(RayAlpha, BlendedSurfacesStopTheirShareOfRaysAndAlwaysTheSame) {
+    Material glass;
+    glass.alpha_mode = AlphaMode::Blend;
+    glass.alpha = 0.3;
+    const ray::Scene scene(shapes::quad(1, 1), skin_of({glass}));
+    const int hits = hits_from_above(scene, 10000);
+    EXPECT_NEAR(hits, 3000, 150);
+    EXPECT_EQ(hits_from_above(scene, 10000), hits);
+    glass.alpha_mode = AlphaMode::Clip;
+    EXPECT_EQ(hits_from_above(ray::Scene(shapes::quad(1, 1), skin_of({glass})), 100), 0);
+    glass.alpha_cutoff = 0.2;
+    EXPECT_EQ(hits_from_above(ray::Scene(shapes::quad(1, 1), skin_of({glass})), 100), 100);
+}
+
+TEST(RayAlpha, VertexColorsAndMixturesCount) {
+    Material painted;
+    painted.vertex_colors = true;
+    painted.alpha_mode = AlphaMode::Blend;
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.colors.assign(4, glm::vec4(1, 1, 1, 0.25f));
+    EXPECT_NEAR(hits_from_above(ray::Scene(mesh, skin_of({painted})), 10000), 2500, 150);
+    // Half of an opaque material and half of nothing.
+    Material mixed;
+    auto nothing = std::make_shared<Material>();
+    nothing->alpha_mode = AlphaMode::Blend;
+    nothing->alpha = 0;
+    mixed.other = nothing;
+    mixed.mix = 0.5;
+    EXPECT_NEAR(hits_from_above(ray::Scene(mesh, skin_of({mixed})), 10000), 5000, 200);
+}
+
+TEST(RayAlpha, OpaqueMaterialsOfAllKindsPayNothing) {
+    Mesh mesh = foliage::card(1, 1);
+    mesh.colors.assign(4, glm::vec4(1));
+    Material opaque = foliage::leaf(foliage::left_half());
+    opaque.alpha_mode = AlphaMode::Opaque;
+    const PicturePtr full =
+        foliage::picture(4, [](double x, double y) { return glm::dvec4(x, y, 0, 1); });
+    Material painted = foliage::leaf(full, AlphaMode::Blend);
+    painted.vertex_colors = true;
+    for (const Material& material : {Material{}, opaque, foliage::leaf(full), painted})
+        EXPECT_FALSE(ray::Scene(mesh, skin_of({material})).see_through());
+    // A see-through material that no triangle uses.
+    mesh.slots = {0, 0};
+    EXPECT_FALSE(
+        ray::Scene(mesh, skin_of({Material{}, foliage::leaf(foliage::left_half())})).see_through());
+}
+
+TEST(RayAlpha, WithoutCoordinatesTheMeanAlphaCounts) {
+    const ray::SkinPtr skin = skin_of({foliage::leaf(foliage::left_half(), AlphaMode::Blend)});
+    EXPECT_NEAR(hits_from_above(ray::Scene(shapes::quad(1, 1), skin), 10000), 5000, 200);
+}
+
+TEST(RayAlpha, NearestPointIsTheEdgeOfTheLeaf) {
+    const ray::Scene scene(foliage::card(1, 1), skin_of({foliage::leaf(foliage::left_half())}));
+    EXPECT_NEAR(scene.closest_point({0.3, 0.6, 0.4}).distance, 0.4, 1e-6);
+    for (const double x : {0.55, 0.7, 0.95}) {
+        const ray::Closest closest = scene.closest_point({x, 0.5, 0});
+        EXPECT_GE(closest.distance, x - 0.5 - 1e-6) << x;
+        EXPECT_LE(closest.distance, x - 0.5 + 0.05) << x;
+        EXPECT_LE(closest.point.x, 0.5 + 1e-3);
+    }
+    // Nothing is shown at all.
+    Material nothing;
+    nothing.alpha_mode = AlphaMode::Blend;
+    nothing.alpha = 0;
+    EXPECT_EQ(ray::Scene(shapes::quad(1, 1), skin_of({nothing})).closest_point({0, 0, 1}).distance,
+              kInfinity);
+}
+
+TEST(RayAlpha, HostileMaterialsAreHarmless) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Mesh mesh = foliage::card(1, 1);
+    mesh.uvs[1] = glm::vec2(std::numeric_limits<float>::quiet_NaN());
+    mesh.uvs[2] = glm::vec2(std::numeric_limits<float>::infinity());
+    mesh.colors.assign(4, glm::vec4(std::numeric_limits<float>::quiet_NaN()));
+    mesh.slots = {0, 7};  // nobody described the second
+    Material odd = foliage::leaf(foliage::left_half(), AlphaMode::Blend);
+    odd.vertex_colors = true;
+    odd.alpha_texture.scale = glm::dvec3(nan);
+    odd.alpha_texture.to_picture[0] = nan;
+    odd.mix = nan;
+    odd.other = std::make_shared<Material>(odd);
+    const ray::Scene scene(mesh, skin_of({odd}));
+    EXPECT_NO_THROW(hits_from_above(scene, 100));
+    EXPECT_TRUE(scene.first_hit({0.3, 0.6, 1}, {0, 0, -1}).hit) << "slot 7 is opaque";
+    EXPECT_NO_THROW((void)scene.closest_point({0.7, 0.2, 1}));
 }

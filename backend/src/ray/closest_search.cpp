@@ -51,14 +51,66 @@ OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const g
     return edges[best];
 }
 
+bool ClosestSearch::find_shown(uint32_t index, OnTriangle& hidden) const {
+    constexpr int kCells = 8;  // a side: 64 small triangles, looked up at their middles
+    constexpr int kHalvings = 6;
+    const Triangle& t = triangles[index];
+    const glm::dvec3 a(positions[t.x]);
+    const glm::dvec3 ab = glm::dvec3(positions[t.y]) - a;
+    const glm::dvec3 ac = glm::dvec3(positions[t.z]) - a;
+    const auto at = [&](double u, double v) { return OnTriangle{a + u * ab + v * ac, u, v}; };
+    const auto square_to = [&](const OnTriangle& there) {
+        const glm::dvec3 arm = point - there.point;
+        return glm::dot(arm, arm);
+    };
+    double best_square = std::numeric_limits<double>::infinity();
+    OnTriangle best;
+    for (int i = 0; i < kCells; ++i) {
+        for (int j = 0; j + i < kCells; ++j) {
+            for (int half = 1; half <= (i + j < kCells - 1 ? 2 : 1); ++half) {
+                const OnTriangle cell = at((i + half / 3.0) / kCells, (j + half / 3.0) / kCells);
+                const double cell_square = square_to(cell);
+                if (cell_square < best_square && (*shows)(index, cell.u, cell.v)) {
+                    best_square = cell_square;
+                    best = cell;
+                }
+            }
+        }
+    }
+    if (!std::isfinite(best_square))
+        return false;
+    // The edge of the hole lies between what is hidden and what is shown.
+    glm::dvec2 out(hidden.u, hidden.v);
+    glm::dvec2 in(best.u, best.v);
+    for (int i = 0; i < kHalvings; ++i) {
+        const glm::dvec2 middle = 0.5 * (out + in);
+        ((*shows)(index, middle.x, middle.y) ? in : out) = middle;
+    }
+    hidden = at(in.x, in.y);
+    return true;
+}
+
 bool ClosestSearch::visit(uint32_t index) {
     const Triangle& t = triangles[index];
-    const OnTriangle next = closest_on_triangle(
-        point, glm::dvec3(positions[t.x]), glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z]));
-    const glm::dvec3 arm = point - next.point;
-    const double next_square = glm::dot(arm, arm);
-    if (!(next_square < square || (next_square == square && index < triangle)))
+    OnTriangle next = closest_on_triangle(point, glm::dvec3(positions[t.x]),
+                                          glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z]));
+    const auto wins = [&](double next_square) {
+        return next_square < square || (next_square == square && index < triangle);
+    };
+    const auto square_to = [&](const OnTriangle& there) {
+        const glm::dvec3 arm = point - there.point;
+        return glm::dot(arm, arm);
+    };
+    double next_square = square_to(next);
+    if (!wins(next_square))
         return false;
+    if (shows != nullptr && !(*shows)(index, next.u, next.v)) {
+        if (!find_shown(index, next))
+            return false;
+        next_square = square_to(next);
+        if (!wins(next_square))
+            return false;
+    }
     square = next_square;
     triangle = index;
     where = next;

@@ -4,6 +4,7 @@
 
 #include "ray/scene.h"
 
+#include <functional>
 #include <span>
 
 namespace lodestone::ray {
@@ -24,6 +25,8 @@ struct ClosestSearch {
     std::span<const glm::vec3> positions;
     std::span<const Triangle> triangles;
     glm::dvec3 point;
+    /// Whether there is anything at a point of a triangle; null: everywhere.
+    const std::function<bool(uint32_t triangle, double u, double v)>* shows = nullptr;
     double square = std::numeric_limits<double>::infinity();  // of the distance
     uint32_t triangle = kNoTriangle;
     OnTriangle where{};
@@ -34,6 +37,12 @@ struct ClosestSearch {
     /// The radius that a search in single precision has to cover so that no triangle within
     /// `distance` is missed.
     float reach(double distance) const;
+
+private:
+    /// The nearest point of a triangle where something is, found to an eighth of its size and
+    /// better at the edge of the hole that `hidden` lies in. False when there is nothing nearer
+    /// than before.
+    bool find_shown(uint32_t index, OnTriangle& hidden) const;
 };
 
 }  // namespace lodestone::ray

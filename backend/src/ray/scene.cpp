@@ -2,6 +2,7 @@
 #include "ray/scene.h"
 
 #include "ray/closest_search.h"
+#include "ray/cover.h"
 
 #include <embree3/rtcore.h>
 
@@ -64,6 +65,8 @@ struct Embree {
     decltype(&rtcCommitGeometry) commit_geometry = nullptr;
     decltype(&rtcSetSharedGeometryBuffer) set_shared_buffer = nullptr;
     decltype(&rtcSetGeometryIntersectFilterFunction) set_intersect_filter = nullptr;
+    decltype(&rtcSetGeometryOccludedFilterFunction) set_occluded_filter = nullptr;
+    decltype(&rtcSetGeometryUserData) set_user_data = nullptr;
     decltype(&rtcIntersect1) intersect = nullptr;
     decltype(&rtcOccluded1) occluded = nullptr;
     decltype(&rtcPointQuery) point_query = nullptr;
@@ -104,9 +107,27 @@ void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
     best->triangle = hit->primID;
 }
 
+bool stops(const RTCFilterFunctionNArguments* arguments) {
+    const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+    return static_cast<const Cover*>(arguments->geometryUserPtr)
+        ->stops(hit->primID, static_cast<double>(hit->u), static_cast<double>(hit->v));
+}
+
+void keep_lowest_that_stops(const RTCFilterFunctionNArguments* arguments) {
+    if (stops(arguments))
+        keep_lowest(arguments);
+    else
+        arguments->valid[0] = 0;
+}
+
+void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
+    if (!stops(arguments))
+        arguments->valid[0] = 0;
+}
+
 /// Vertices need one readable element more than there are: Embree loads 16 bytes at a time.
 RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
-                   const std::vector<Triangle>& triangles) {
+                   const std::vector<Triangle>& triangles, Cover* cover) {
     RTCScene scene = embree.new_scene(embree.device);
     RTCGeometry geometry = embree.new_geometry(embree.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (scene != nullptr && geometry != nullptr) {
@@ -116,7 +137,13 @@ RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
                                  padded.data(), 0, sizeof(glm::vec3), padded.size() - 1);
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                  triangles.data(), 0, sizeof(Triangle), triangles.size());
-        embree.set_intersect_filter(geometry, keep_lowest);
+        if (cover != nullptr) {
+            embree.set_user_data(geometry, cover);
+            embree.set_intersect_filter(geometry, keep_lowest_that_stops);
+            embree.set_occluded_filter(geometry, keep_what_stops);
+        } else {
+            embree.set_intersect_filter(geometry, keep_lowest);
+        }
         embree.commit_geometry(geometry);
         embree.attach_geometry(scene, geometry);
         embree.commit_scene(scene);
@@ -183,7 +210,7 @@ std::string test(const Embree& embree) {
     const std::vector<glm::vec3> padded{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
     const std::vector<Triangle> triangles{{0, 1, 2}};
     const FlushDenormals flush;
-    RTCScene scene = new_scene(embree, padded, triangles);
+    RTCScene scene = new_scene(embree, padded, triangles, nullptr);
     const RTCRayHit hit = trace(embree, scene, {0.25, 0.5, 2}, {0, 0, -1}, 4);
     const RTCRayHit miss = trace(embree, scene, {0.75, 0.5, 2}, {0, 0, -1}, 4);
     ClosestSearch search{padded, triangles, {0.25, 0.25, 0.5}};
@@ -224,6 +251,8 @@ Embree open(const std::string& path) {
     look_up(library, "rtcCommitGeometry", embree.commit_geometry, missing);
     look_up(library, "rtcSetSharedGeometryBuffer", embree.set_shared_buffer, missing);
     look_up(library, "rtcSetGeometryIntersectFilterFunction", embree.set_intersect_filter, missing);
+    look_up(library, "rtcSetGeometryOccludedFilterFunction", embree.set_occluded_filter, missing);
+    look_up(library, "rtcSetGeometryUserData", embree.set_user_data, missing);
     look_up(library, "rtcIntersect1", embree.intersect, missing);
     look_up(library, "rtcOccluded1", embree.occluded, missing);
     look_up(library, "rtcPointQuery", embree.point_query, missing);
@@ -316,6 +345,7 @@ struct Scene::Data {
     double scale = 1;
     std::vector<glm::vec3> positions;  // local, and one more for Embree's wide loads
     std::vector<Triangle> triangles;
+    std::unique_ptr<Cover> cover;  // null: opaque
     RTCScene scene = nullptr;
 
     Data() = default;
@@ -366,7 +396,7 @@ struct Scene::Data {
     }
 };
 
-Scene::Scene(const Mesh& mesh) : data_(std::make_unique<Data>()) {
+Scene::Scene(const Mesh& mesh, SkinPtr skin) : data_(std::make_unique<Data>()) {
     check(mesh);
     Data& data = *data_;
     data.triangles = mesh.triangles;
@@ -397,7 +427,10 @@ Scene::Scene(const Mesh& mesh) : data_(std::make_unique<Data>()) {
             data.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
     }
     data.positions.emplace_back(0.0f);
-    data.scene = new_scene(data.embree, data.positions, data.triangles);
+    if (skin && skin->see_through(mesh)) {
+        data.cover = std::make_unique<Cover>(mesh, std::move(skin));
+    }
+    data.scene = new_scene(data.embree, data.positions, data.triangles, data.cover.get());
 }
 
 Scene::~Scene() = default;
@@ -406,6 +439,18 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 size_t Scene::triangles() const {
     return data_->triangles.size();
+}
+
+bool Scene::see_through() const {
+    return data_->cover != nullptr;
+}
+
+bool Scene::stops(uint32_t triangle, double u, double v) const {
+    return !data_->cover || data_->cover->stops(triangle, u, v);
+}
+
+bool Scene::shows(uint32_t triangle, double u, double v) const {
+    return !data_->cover || data_->cover->shows(triangle, u, v);
 }
 
 Hit Scene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
@@ -456,7 +501,13 @@ Closest Scene::closest_point(const glm::dvec3& point, double radius) const {
     Closest out;
     if (data.scene == nullptr || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
         return out;
-    ClosestSearch search{data.positions, data.triangles, (point - data.center) * data.scale};
+    std::function<bool(uint32_t, double, double)> shown;
+    if (data.cover)
+        shown = [&](uint32_t triangle, double u, double v) {
+            return data.cover->shows(triangle, u, v);
+        };
+    ClosestSearch search{data.positions, data.triangles, (point - data.center) * data.scale,
+                         data.cover ? &shown : nullptr};
     const double far =
         std::max({std::abs(search.point.x), std::abs(search.point.y), std::abs(search.point.z)});
     // Squares of larger coordinates do not fit single precision; Embree would find nothing.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "model/mesh.h"
+#include "ray/skin.h"
 
 #include <limits>
 #include <memory>
@@ -42,8 +43,10 @@ struct Closest {
 class Scene {
 public:
     /// Triangles with a non-finite vertex are never hit. An empty mesh is never hit either. Throws
-    /// Error(InvalidArgument) when an index is out of range.
-    explicit Scene(const Mesh& mesh);
+    /// Error(InvalidArgument) when an index is out of range. With a skin rays pass through what it
+    /// shows as transparent, as often as that covers nothing, and the nearest point is one where
+    /// there is something; a mesh that is opaque costs nothing more for it.
+    explicit Scene(const Mesh& mesh, SkinPtr skin = nullptr);
     ~Scene();
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;
@@ -52,6 +55,15 @@ public:
 
     /// How many triangles the mesh had.
     size_t triangles() const;
+
+    /// Whether rays may pass through some of its points. Then both sides of every triangle can be
+    /// seen, whether or not the mesh is closed.
+    bool see_through() const;
+    /// Whether a ray that meets a point of a triangle ends there: the same answer at every time,
+    /// and over many points as often as their alpha says.
+    bool stops(uint32_t triangle, double u, double v) const;
+    /// Whether there is anything to see at all.
+    bool shows(uint32_t triangle, double u, double v) const;
 
     /// The nearest hit with 0 <= t <= far, from either side. Direction need not have unit length;
     /// a zero or non-finite one hits nothing. An origin may be arbitrarily far away.
@@ -63,6 +75,8 @@ public:
                   double far = std::numeric_limits<double>::infinity()) const;
 
     /// The nearest point of any triangle within `radius`. A good guess of the radius is faster.
+    /// Where something transparent is nearest, the edge of what is not is found to an eighth of its
+    /// triangle's size.
     Closest closest_point(const glm::dvec3& point,
                           double radius = std::numeric_limits<double>::infinity()) const;
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cover: where a see-through mesh is there, and where rays pass.
+#pragma once
+
+#include "ray/skin.h"
+
+namespace lodestone::ray {
+
+/// Keeps of the mesh what it needs. Any thread.
+class Cover {
+public:
+    Cover(const Mesh& mesh, SkinPtr skin);
+
+    /// As Scene::stops and Scene::shows.
+    bool stops(uint32_t triangle, double u, double v) const;
+    bool shows(uint32_t triangle, double u, double v) const;
+
+private:
+    Mesh mesh_;  // without positions
+    SkinPtr skin_;
+};
+
+}  // namespace lodestone::ray
