@@ -23,13 +23,14 @@ public:
     OutputVertices(Mesh& out, size_t vertices) : out_(out), heads_(vertices, kNone) {}
 
     uint32_t at(uint32_t vertex, const glm::vec3& position, const glm::vec3* normal,
-                const glm::vec2* uv) {
+                const glm::vec2* uv, const glm::vec4* color) {
         constexpr int kMostCompared = 64;
         int compared = 0;
         for (uint32_t i = heads_[vertex]; i != kNone && compared < kMostCompared;
              i = next_[i], ++compared) {
             if ((normal == nullptr || out_.normals[i] == *normal) &&
-                (uv == nullptr || out_.uvs[i] == *uv))
+                (uv == nullptr || out_.uvs[i] == *uv) &&
+                (color == nullptr || out_.colors[i] == *color))
                 return i;
         }
         const auto fresh = static_cast<uint32_t>(out_.positions.size());
@@ -38,6 +39,8 @@ public:
             out_.normals.push_back(*normal);
         if (uv != nullptr)
             out_.uvs.push_back(*uv);
+        if (color != nullptr)
+            out_.colors.push_back(*color);
         next_.push_back(heads_[vertex]);
         heads_[vertex] = fresh;
         return fresh;
@@ -167,7 +170,8 @@ Mesh extract(const CollapseMesh& mesh) {
             const glm::dvec3 place =
                 glm::clamp(mesh.center + mesh.points[vertex] * mesh.scale, -kMost, kMost);
             t[corner] = vertices.at(vertex, glm::vec3(place), normal,
-                                    mesh.uvs.empty() ? nullptr : &mesh.uvs[wedge]);
+                                    mesh.uvs.empty() ? nullptr : &mesh.uvs[wedge],
+                                    mesh.colors.empty() ? nullptr : &mesh.colors[wedge]);
         }
         out.triangles.push_back(t);
         if (!mesh.slots.empty())

@@ -22,6 +22,7 @@ struct CollapseMesh {
     std::vector<uint16_t> slots;      // empty or one a triangle
     std::vector<glm::vec3> normals;   // empty or one a wedge
     std::vector<glm::vec2> uvs;       // empty or one a wedge
+    std::vector<glm::vec4> colors;    // empty or one a wedge
     uint32_t part_count = 0;
     size_t live = 0;  // triangles not dead
     glm::dvec3 center{0.0};

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/edges.h"
 
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +31,40 @@ void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet
     quadric.yy += weight * square;
     quadric.zz += weight * square;
     quadric.add(edge, -weight);
+}
+
+/// By how much the colors on both sides of an edge miss being one linear ramp, where the nearer of
+/// the two opposite corners is: 0 inside a smooth ramp, up to 1 where paint ends. As a picture
+/// encodes colors, roughly.
+double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& w0,
+                  const Triangle& t1, const Triangle& w1, uint32_t a, uint32_t b) {
+    const auto color = [&](uint32_t wedge) {
+        return glm::sqrt(glm::clamp(mesh.colors[wedge], 0.0f, 1.0f));
+    };
+    const glm::dvec3 edge = mesh.points[b] - mesh.points[a];
+    const double square = glm::dot(edge, edge);
+    if (!(square > 0))
+        return 0;
+    glm::vec4 slopes[2];
+    double heights[2] = {0, 0};
+    for (int side = 0; side < 2; ++side) {
+        const Triangle& t = side == 0 ? t0 : t1;
+        const Triangle& w = side == 0 ? w0 : w1;
+        const int at_a = corner_of(t, a);
+        const int at_b = corner_of(t, b);
+        const int opposite = 3 - at_a - at_b;
+        const glm::dvec3 arm = mesh.points[t[opposite]] - mesh.points[a];
+        const double along = glm::dot(arm, edge) / square;
+        heights[side] = glm::length(arm - along * edge);
+        const auto s = static_cast<float>(along);
+        slopes[side] = color(w[opposite]) - (1 - s) * color(w[at_a]) - s * color(w[at_b]);
+    }
+    const double least = std::min(heights[0], heights[1]);
+    if (!(least > 1e-9 * std::sqrt(square)))
+        return 0;
+    const glm::vec4 kink = glm::abs(slopes[0] * static_cast<float>(least / heights[0]) +
+                                    slopes[1] * static_cast<float>(least / heights[1]));
+    return std::min(1.0, static_cast<double>(std::max({kink.x, kink.y, kink.z, kink.w})));
 }
 
 }  // namespace
@@ -79,6 +116,14 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
             }
             if (crease)
                 weight = options.seam_weight;
+        }
+        if (two && !mesh.colors.empty() && weight < options.boundary_weight) {
+            constexpr double kLeastKink = 0.1;
+            const double kink =
+                color_kink(mesh, mesh.triangles[n.t0], mesh.wedges[n.t0], mesh.triangles[n.t1],
+                           mesh.wedges[n.t1], vertex, n.vertex);
+            if (kink > kLeastKink)
+                weight = std::max(weight, kink * options.boundary_weight);
         }
         if (weight > 0) {
             const glm::dvec3 edge = mesh.points[n.vertex] - mesh.points[vertex];

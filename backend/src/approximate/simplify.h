@@ -29,12 +29,12 @@ struct SimplifyOptions {
 /// Simplifies in one pass and returns the mesh at each of `targets` (triangle counts, strictly
 /// falling, > 0). A target not below the input's count returns the input itself; else a result has
 /// at most its target, and at least one triangle if the input has any. Fewer results come back when
-/// nothing more can be collapsed. Results keep slots, and have normals and uvs if the input has.
-/// Separate parts too small for a target disappear whole, smallest first. Any input is accepted:
-/// non-manifold edges are kept as curves, triangles with non-finite vertices are left out.
-/// Throws Error(InvalidArgument) as check(mesh) does, or for targets not falling, or for options
-/// out of range. Uses one thread; same input, same bits. 250 bytes a triangle above the input.
-/// source: Lindstrom & Turk 1999 (memoryless quadrics, volume constraint), in batches.
+/// nothing more can be collapsed. Results keep slots, and have normals, uvs and colors if the input
+/// has. Separate parts too small for a target disappear whole, smallest first. Any input is
+/// accepted: non-manifold edges are kept as curves, triangles with non-finite vertices are left
+/// out. Throws Error(InvalidArgument) as check(mesh) does, or for targets not falling, or for
+/// options out of range. Uses one thread; same input, same bits. 250 bytes a triangle above the
+/// input. source: Lindstrom & Turk 1999 (memoryless quadrics, volume constraint), in batches.
 std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
                                  const SimplifyOptions& options = {}, const Job& job = {});
 

@@ -55,6 +55,13 @@ bool finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// Nobody sees the difference, whatever light falls on them.
+bool alike(const glm::vec4& a, const glm::vec4& b) {
+    constexpr float kStep = 1.0f / 1024;
+    return std::abs(a.x - b.x) <= kStep && std::abs(a.y - b.y) <= kStep &&
+           std::abs(a.z - b.z) <= kStep && std::abs(a.w - b.w) <= kStep;
+}
+
 }  // namespace
 
 bool shows_faces(const CollapseMesh& mesh, const Mesh& source) {
@@ -97,7 +104,8 @@ bool shows_faces(const CollapseMesh& mesh, const Mesh& source) {
 void make_wedges(CollapseMesh& mesh, const Mesh& source) {
     const bool normals = mesh.has_normals && !mesh.flat_normals;
     const bool uvs = !source.uvs.empty();
-    if (!normals && !uvs) {
+    const bool colors = !source.colors.empty();
+    if (!normals && !uvs && !colors) {
         mesh.wedges.clear();
         return;
     }
@@ -114,6 +122,9 @@ void make_wedges(CollapseMesh& mesh, const Mesh& source) {
                 normal = glm::vec3(0, 0, 1);
             if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
                 uv = glm::vec2(0);
+            glm::vec4 color = colors ? source.colors[origin] : glm::vec4(1);
+            if (!std::isfinite(color.x + color.y + color.z + color.w))
+                color = glm::vec4(1);
             uint32_t wedge = head[vertex];
             for (int n = 0; wedge != kNone; wedge = next[wedge], ++n) {
                 if (n == kMostCompared) {
@@ -122,7 +133,8 @@ void make_wedges(CollapseMesh& mesh, const Mesh& source) {
                 }
                 if ((!normals || glm::dot(mesh.normals[wedge], normal) > 0.99985f) &&
                     (!uvs || (std::abs(mesh.uvs[wedge].x - uv.x) <= 1e-5f &&
-                              std::abs(mesh.uvs[wedge].y - uv.y) <= 1e-5f)))
+                              std::abs(mesh.uvs[wedge].y - uv.y) <= 1e-5f)) &&
+                    (!colors || alike(mesh.colors[wedge], color)))
                     break;
             }
             if (wedge == kNone) {
@@ -133,6 +145,8 @@ void make_wedges(CollapseMesh& mesh, const Mesh& source) {
                     mesh.normals.push_back(normal);
                 if (uvs)
                     mesh.uvs.push_back(uv);
+                if (colors)
+                    mesh.colors.push_back(color);
             }
             mesh.wedges[i][corner] = wedge;
         }
@@ -216,12 +230,15 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
                 value.square = square;
                 value.normal = glm::dvec3(0.0);
                 value.uv = glm::dvec2(0.0);
+                value.color = glm::dvec4(0.0);
                 for (int k = 0; k < 3; ++k) {
                     const uint32_t wedge = mesh.wedges[t][k];
                     if (!mesh.normals.empty())
                         value.normal += weights[k] * glm::dvec3(mesh.normals[wedge]);
                     if (!mesh.uvs.empty())
                         value.uv += weights[k] * glm::dvec2(mesh.uvs[wedge]);
+                    if (!mesh.colors.empty())
+                        value.color += weights[k] * glm::dvec4(mesh.colors[wedge]);
                 }
             }
         }
@@ -242,6 +259,8 @@ void WedgeMerge::apply(CollapseMesh& mesh) {
         }
         if (!mesh.uvs.empty())
             mesh.uvs[wedge] = glm::vec2(value.uv);
+        if (!mesh.colors.empty())
+            mesh.colors[wedge] = glm::vec4(value.color);
     }
 }
 

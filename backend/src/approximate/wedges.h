@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wedges: normals and texture coordinates of corners, carried through collapses.
+// Wedges: normals, texture coordinates and colors of corners, carried through collapses.
 #pragma once
 
 #include "approximate/adjacency.h"
@@ -37,6 +37,7 @@ private:
     struct Value {
         glm::dvec3 normal{0.0};
         glm::dvec2 uv{0.0};
+        glm::dvec4 color{0.0};
         double square = 0;
     };
     uint32_t find_or_add(uint32_t wedge, bool at_a);
