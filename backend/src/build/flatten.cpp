@@ -38,17 +38,29 @@ uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
     return triangles;
 }
 
+/// What a material shows on a mesh without texture coordinates: joined with one that has them, the
+/// mesh gets some too, but they mean nothing.
+Material without_textures(Material material) {
+    for_own_textures(material, [](Texture& texture) { texture = Texture{}; });
+    if (material.other)
+        material.other = std::make_shared<const Material>(without_textures(*material.other));
+    return material;
+}
+
 }  // namespace
 
 Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
              const Job& job) {
     Flat flat;
     const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
-    std::map<uint32_t, uint16_t> slots;
-    const auto slot_of = [&](uint32_t material) {
-        const auto [at, fresh] = slots.try_emplace(material, static_cast<uint16_t>(slots.size()));
+    std::map<std::pair<uint32_t, bool>, uint16_t> slots;  // by material, and whether it is plain
+    const auto slot_of = [&](uint32_t index, bool has_uvs) {
+        const Material& material = model.materials.at(index);
+        const bool plain = !has_uvs && textured(material);
+        const auto [at, fresh] =
+            slots.try_emplace({index, plain}, static_cast<uint16_t>(slots.size()));
         if (fresh)
-            flat.materials.push_back(model.materials.at(material));
+            flat.materials.push_back(plain ? without_textures(material) : material);
         return at->second;
     };
     for (const uint32_t index : cut.chosen) {
@@ -75,7 +87,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
             if (slots.size() >= std::numeric_limits<uint16_t>::max())
                 fail(Status::InvalidArgument, "group '", model.objects[group].name,
                      "' uses more than 65535 materials");
-            moved.push_back(slot_of(material));
+            moved.push_back(slot_of(material, !part.uvs.empty()));
         }
         for (uint16_t& slot : part.slots)
             slot = slot < moved.size() ? moved[slot] : uint16_t{0};

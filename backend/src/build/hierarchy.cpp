@@ -243,9 +243,10 @@ private:
             const bool group = object.group();
             job_.stage(group ? Stage::Group : Stage::Simplify);
             try {
-                made[i] = group ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
-                                                     source, job_)
-                                : stand_ins_of_leaf(model_, object, settings_, source, job_);
+                made[i] = group
+                              ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
+                                                   source, texels_, job_)
+                              : stand_ins_of_leaf(model_, object, settings_, source, texels_, job_);
             } catch (const Error& error) {
                 if (error.status == Status::Cancelled || error.status == Status::RaysUnavailable)
                     throw;
@@ -273,6 +274,7 @@ private:
     const Job& job_;
     Palette palette_;
     Surroundings surroundings_;
+    image::TexelCache texels_;
     double total_ = 0;
     std::atomic<double> done_{0};
 };

@@ -7,6 +7,7 @@
 #include "build/flatten.h"
 #include "measure/deviation.h"
 #include "measure/looks.h"
+#include "measure/opacity.h"
 #include "measure/visible.h"
 #include "quality/cut.h"
 
@@ -24,11 +25,13 @@ constexpr size_t kFewestTriangles = 8;
 // An error below this fraction of the size is float noise; the finest alone has error 0.
 constexpr double kLeastRelativeError = 1e-7;
 // Roads, pavements and lawns lie on the ground in thin layers. A level that sinks by a little more
-// than the layer is thick hides it, which shows from as far as the layer is wide: environment counts
-// as this many times wider than it is off.
+// than the layer is thick hides it, which shows from as far as the layer is wide: environment
+// counts as this many times wider than it is off.
 constexpr double kLayerWidth = 16;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 24;
+// Below this mean opacity nothing solid stands for it: it would hide what shines through.
+constexpr double kLeastOpacity = 0.9;
 constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 
 uint64_t bytes_of(const Candidate& candidate) {
@@ -56,36 +59,46 @@ uint32_t samples_of(bool environment, const Settings& settings) {
 /// Measures candidates against one finest mesh.
 class Judge {
 public:
-    Judge(const Mesh& finest, std::span<const Material> materials, const Settings& settings,
-          bool environment, uint64_t seed, double child_error, const Job& job)
+    Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
+          const Settings& settings, bool environment, uint64_t seed, double child_error,
+          const Job& job)
         : size_(bound_of(finest.positions).radius),
           child_error_(child_error),
           layer_width_(environment ? kLayerWidth : 1),
           seed_(seed),
           rays_(settings.rays),
+          skin_(std::make_shared<const ray::Skin>(materials, texels)),
           finest_looks_(looks_.of(finest, materials)),
           reference_(finest, {samples_of(environment, settings), settings.samples, seed},
-                     {finest_looks_, &looks_}, job) {
+                     {finest_looks_, &looks_, skin_}, job),
+          opacity_(measure::mean_opacity(finest, *skin_, seed)) {
         measure::VisibleOptions options;
         options.rays = settings.rays;
         options.seed = seed;
-        attributes_ = measure::measure_visible(finest, materials, options, {}, job).attributes;
+        attributes_ =
+            measure::measure_visible(finest, ray::Scene(finest, skin_), skin_, options, {}, job)
+                .attributes;
     }
 
     const Attributes& attributes() const { return attributes_; }
+    /// Whether something solid may stand for it.
+    bool solid() const { return opacity_ >= kLeastOpacity; }
+    /// Of the finest's materials, which levels share.
+    const ray::SkinPtr& skin() const { return skin_; }
 
-    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, job); }
+    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
 
-    /// False when the mesh shows another amount of surface than the finest.
+    /// Of a level with the finest's materials. False when it shows another amount of surface.
     bool measure_mesh(Candidate& candidate, const Job& job) {
+        const Mesh& mesh = *candidate.mesh;
         measure::VisibleOptions options;
         options.rays = rays_ / 2;
         options.seed = seed_;
         const double visible =
-            measure::measure_visible(*candidate.mesh, candidate.materials, options, {}, job)
+            measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, {}, job)
                 .attributes.visible_area;
-        set_error(candidate, reference_.of(*candidate.mesh,
-                                           looks_.of(*candidate.mesh, candidate.materials), job));
+        const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
+        set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job));
         return std::abs(visible - attributes_.visible_area) <=
                kMostAreaChange * attributes_.visible_area;
     }
@@ -94,7 +107,8 @@ public:
         const Mesh mesh = candidate.kind == Kind::Box
                               ? tessellate_box(candidate.primitive)
                               : tessellate_ellipsoid(candidate.primitive, kSubdivisions);
-        set_error(candidate, reference_.of(mesh, looks_.of(mesh, candidate.materials), job));
+        const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
+        set_error(candidate, reference_.of(mesh, {looks, &looks_, nullptr}, job));
     }
 
 private:
@@ -111,17 +125,30 @@ private:
     double layer_width_;
     uint64_t seed_;
     uint64_t rays_;
+    ray::SkinPtr skin_;
     std::vector<uint16_t> finest_looks_;
     measure::DeviationReference reference_;
+    double opacity_;
     Attributes attributes_;
 };
+
+bool shows_vertex_colors(const Material& material) {
+    return material.vertex_colors || (material.other && shows_vertex_colors(*material.other));
+}
 
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
                 Judge& judge, const Job& job) {
     if (targets.empty())
         return;
-    for (Mesh& level : approximate::simplify_chain(mesh, targets, {}, job)) {
+    Mesh plain;  // colors that no material shows would only be in the way
+    const bool uncolored = !mesh.colors.empty() &&
+                           std::none_of(materials.begin(), materials.end(), shows_vertex_colors);
+    if (uncolored) {
+        plain = mesh;
+        plain.colors.clear();
+    }
+    for (Mesh& level : approximate::simplify_chain(uncolored ? plain : mesh, targets, {}, job)) {
         if (level.empty())
             continue;
         judge.repaint(level, job);
@@ -151,9 +178,9 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, Judg
 }
 
 /// What no ray from outside reaches is left out; everything stays when nothing would.
-Mesh without_hidden(const Mesh& mesh, uint64_t seed, const Job& job) {
-    Mesh shell = subset(
-        mesh, measure::seen_from_outside(mesh, ray::Scene(mesh), kRaysPerTriangle, seed, job));
+Mesh without_hidden(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed, const Job& job) {
+    const ray::Scene scene(mesh, skin);
+    Mesh shell = subset(mesh, measure::seen_from_outside(mesh, scene, kRaysPerTriangle, seed, job));
     return shell.empty() ? mesh : shell;
 }
 
@@ -164,7 +191,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 10;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 11;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -191,7 +218,7 @@ void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes) {
 }
 
 StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Settings& settings,
-                           const MeshSource& source, const Job& job) {
+                           const MeshSource& source, image::TexelCache& texels, const Job& job) {
     StandIns out;
     const Representation& finest = object.representations.at(0);
     const std::shared_ptr<const Mesh> mesh = source(finest);
@@ -202,7 +229,7 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
         materials.push_back(model.materials.at(material));
     if (materials.empty())
         materials.emplace_back();
-    Judge judge(*mesh, materials, settings, object.role == Role::Environment,
+    Judge judge(*mesh, materials, texels, settings, object.role == Role::Environment,
                 seed_of(object, settings), 0, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
@@ -211,14 +238,15 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
     const auto first = static_cast<size_t>(static_cast<double>(count) * settings.level_ratio);
     add_levels(out.candidates, *mesh, materials, targets_of(count, first, settings.level_ratio),
                judge, job);
-    if (object.role != Role::Environment)
+    if (object.role != Role::Environment && judge.solid())
         add_primitives(out.candidates, finest.summary.bound, judge, job);
     keep_useful(out.candidates, finest.summary.cost.bytes);
     return out;
 }
 
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
-                            const Settings& settings, const MeshSource& source, const Job& job) {
+                            const Settings& settings, const MeshSource& source,
+                            image::TexelCache& texels, const Job& job) {
     StandIns out;
     if (surroundings.hidden[group] != 0)
         return out;  // always opened: rays of one class see other parts of it than those of another
@@ -233,17 +261,17 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     if (reference.mesh.empty())
         return out;
     const uint64_t seed = seed_of(object, settings);
-    Judge judge(reference.mesh, reference.materials, settings, environment, seed,
+    Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
 
-    Mesh shell = without_hidden(reference.mesh, seed, job);
+    Mesh shell = without_hidden(reference.mesh, judge.skin(), seed, job);
     const size_t count = shell.triangles.size();
     add_levels(out.candidates, shell, reference.materials,
                targets_of(count + 1, count, settings.level_ratio), judge, job);
-    if (!environment)
+    if (!environment && judge.solid())
         add_primitives(out.candidates, finest.bound, judge, job);
 
     // A stand-in that costs more than what the children would use at its error is none: parts that

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "build/settings.h"
+#include "image/texels.h"
 #include "model/model.h"
 
 #include <functional>
@@ -30,15 +31,18 @@ struct Surroundings;  // build/flatten.h
 /// Gives the mesh of a representation, resident or not. Called from several threads.
 using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
 
-/// Levels and primitives of an object whose finest representation is a mesh.
+/// Levels and primitives of an object whose finest representation is a mesh. Something see-through
+/// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
+/// all objects of a build.
 StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Settings& settings,
-                           const MeshSource& source, const Job& job);
+                           const MeshSource& source, image::TexelCache& texels, const Job& job);
 
 /// Of a group whose children have theirs: flattened at a quarter of its finest stand-in's error,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
 /// below can be drawn.
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
-                            const Settings& settings, const MeshSource& source, const Job& job);
+                            const Settings& settings, const MeshSource& source,
+                            image::TexelCache& texels, const Job& job);
 
 /// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
 /// bytes and error), and those that cost no less than `finest_bytes`.

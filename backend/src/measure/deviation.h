@@ -2,20 +2,19 @@
 // Deviation: how far a solid stand-in is from the finest surface, as far as that can be seen.
 #pragma once
 
-#include "base/job.h"
-#include "measure/look_scenes.h"
-#include "measure/looks.h"
+#include "measure/surface_samples.h"
 
 namespace lodestone::measure {
 
 /// Distances in metres, of both directions together: from the visible surface of the finest to the
-/// stand-in, and from the stand-in (all of it) to the finest (all of it). Where the nearest surface of
-/// the stand-in has another look than a visible point, it also counts by how much the looks were
+/// stand-in, and from the stand-in (all of it) to the finest (all of it). Where the nearest surface
+/// of the stand-in has another look than a visible point, it also counts by how much the looks were
 /// moved, the least of: the distance to the look that is missed; to where the finest shows the look
 /// that is there instead; and, for a look that the finest has nowhere (a mean color), the radius
 /// within which the finest's own colors mix to it. So a road that is gone is as wrong as half its
-/// width, however large the field around it: every look that at least .2 % of the area shows has its
-/// own quantile (99 %).
+/// width, however large the field around it: every look that at least .2 % of the area shows has
+/// its own quantile (99 %). Where the same textured material shows another color it counts by how
+/// far its texture slid. What is transparent is not there: it is neither sampled nor matched.
 struct Deviation {
     double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
     double max = 0;    // the largest distance that was seen
@@ -27,53 +26,36 @@ struct DeviationOptions {
     uint64_t seed = 1;
 };
 
-/// What the finest looks like: one look a triangle, and what their numbers mean. Stand-ins must be
-/// numbered by the same Looks, which must outlive the reference.
-struct Surface {
-    std::span<const uint16_t> looks;
-    const Looks* palette = nullptr;
-};
-
 /// The finest surface made ready to be compared with. A direction's quantile is over two sets of
 /// equal weight: points uniform in (visible) area, which share it equally, and (visible) vertices,
 /// each with a third of its triangles' area. A point of the finest is visible when a ray from
 /// outside its bound hits it; a vertex when one of 16 rays from beside it sees infinity.
 class DeviationReference {
 public:
-    /// Keeps what it needs of the mesh and of the looks, and a reference to their palette. Without
-    /// looks everything looks alike.
-    /// Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+    /// Keeps what it needs of the mesh, of the looks and of the skin, and a reference to their
+    /// palette. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
                        const Surface& surface = {}, const Job& job = {});
 
-    /// Same bits on any number of threads. Where one of the two meshes has nothing to measure to,
-    /// both numbers are the diameter of the other's bounding sphere; two empty ones agree. May be
-    /// called from any thread.
-    Deviation of(const Mesh& stand_in, std::span<const uint16_t> looks = {},
-                 const Job& job = {}) const;
+    /// `surface` is numbered by the same palette. Same bits on any number of threads. Where one of
+    /// the two meshes has nothing to measure to, both numbers are the diameter of the other's
+    /// bounding sphere; two empty ones agree. May be called from any thread.
+    Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {}) const;
 
-    /// Gives each triangle of a level (of the finest's slots) the slot that most of the visible points
-    /// nearest to it show, where enough of them agree: boards look like the tiles that lay on them.
-    void repaint(Mesh& level, const Job& job = {}) const;
+    /// Gives each triangle of a level (of the finest's slots and skin) the slot that most of the
+    /// visible points nearest to it show, where enough of them agree: boards look like the tiles
+    /// that lay on them. A slot with textures comes with texture coordinates that show what those
+    /// points show, or not at all.
+    void repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {}) const;
 
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return visible_.size(); }
-
-    /// A point, its share of a direction's weight, and what it looks like.
-    struct Sample {
-        glm::dvec3 point;
-        double weight;
-        uint16_t look;         // kAnyLook: only its place counts (vertices lie on borders of looks)
-        glm::dvec3 side{0.0};  // unit normal towards whoever sees it; 0: not known
-        uint16_t slot = 0;     // the material slot it shows
-    };
-    static constexpr uint16_t kAnyLook = 0xffff;
 
 private:
     DeviationOptions options_;
     LookScenes scenes_;
     const Looks* palette_;
-    std::vector<Sample> visible_;  // neighbors in the list are mostly neighbors in space
+    std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
     double diameter_ = 0;
 };
 

@@ -3,8 +3,8 @@
 
 namespace lodestone::measure {
 
-LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks)
-    : whole_(mesh), looks_(looks.begin(), looks.end()) {
+LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin)
+    : whole_(mesh, skin), looks_(looks.begin(), looks.end()) {
     if (!looks_.empty() && looks_.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, looks_.size(), " looks for ", mesh.triangles.size(),
              " triangles");
@@ -13,7 +13,7 @@ LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks)
         keep.try_emplace(looks_[i], looks_.size(), uint8_t{0}).first->second[i] = 1;
     for (const auto& [look, triangles] : keep) {
         if (keep.size() > 1)
-            by_look_.emplace(look, ray::Scene(subset(mesh, triangles)));
+            by_look_.emplace(look, ray::Scene(subset(mesh, triangles), skin));
         else
             by_look_.emplace(look, ray::Scene(Mesh{}));  // the whole serves
     }

@@ -12,8 +12,9 @@ namespace lodestone::measure {
 
 class LookScenes {
 public:
-    /// `looks` is empty (all alike) or one a triangle. Throws as ray::Scene does.
-    LookScenes(const Mesh& mesh, std::span<const uint16_t> looks);
+    /// `looks` is empty (all alike) or one a triangle; the skin may be null. Throws as ray::Scene
+    /// does.
+    LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin = {});
 
     const ray::Scene& whole() const { return whole_; }
     /// Of a triangle of the whole.

@@ -10,30 +10,98 @@
 namespace lodestone::measure {
 namespace {
 
-double encoded(double linear) {
+double encode(double linear) {
     const double x = std::clamp(linear, 0.0, 1.0);
     return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
+double decode(double encoded) {
+    const double x = std::clamp(encoded, 0.0, 1.0);
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
+/// What a material shows where nothing is looked up: what it mixes is mixed.
+struct Mean {
+    glm::dvec3 light;  // color and emission
+    double alpha;
+
+    explicit Mean(const Material& material)
+        : light(material.base_color + material.emission), alpha(1) {
+        if (material.alpha_mode == AlphaMode::Blend)
+            alpha = material.alpha;
+        else if (material.alpha_mode == AlphaMode::Clip)
+            alpha = material.alpha_texture || material.alpha >= material.alpha_cutoff ? 1 : 0;
+        if (material.other) {
+            const Mean second(*material.other);
+            light = glm::mix(light, second.light, material.mix);
+            alpha = glm::mix(alpha, second.alpha, material.mix);
+        }
+    }
+};
+
+bool varies_by_texture(const Material& material) {
+    return material.base_color_texture || material.emission_texture ||
+           (material.other && (material.mix_texture || varies_by_texture(*material.other)));
+}
+
+bool varies_by_vertex(const Material& material) {
+    return material.vertex_colors || (material.other && varies_by_vertex(*material.other));
+}
+
 }  // namespace
 
+glm::dvec3 Looks::color_of(const ray::Shown& shown) {
+    return encoded(shown.color + shown.emission);
+}
+
+glm::dvec3 Looks::encoded(const glm::dvec3& light) {
+    return {encode(light.x), encode(light.y), encode(light.z)};
+}
+
+glm::dvec3 Looks::light_of(const glm::dvec3& color) {
+    return {decode(color.x), decode(color.y), decode(color.z)};
+}
+
+bool Looks::alike(const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 off = glm::abs(a - b);
+    return std::max({off.x, off.y, off.z}) <= kSameLook;
+}
+
+uint16_t Looks::add(const glm::dvec3& color, double alpha, bool varies) {
+    if (colors_.size() < std::numeric_limits<uint16_t>::max()) {
+        colors_.push_back(color);
+        alphas_.push_back(alpha);
+        varying_.push_back(varies ? 1 : 0);
+    }
+    return static_cast<uint16_t>(colors_.size() - 1);
+}
+
 uint16_t Looks::of(const Material& material) {
-    const glm::dvec3 sum = material.base_color + material.emission;
-    const glm::dvec3 color(encoded(sum.x), encoded(sum.y), encoded(sum.z));
+    const Mean mean(material);
+    const glm::dvec3 color = encoded(mean.light);
     for (size_t i = 0; i < colors_.size(); ++i) {
-        const glm::dvec3 off = glm::abs(color - colors_[i]);
-        if (std::max({off.x, off.y, off.z}) <= kSameLook)
+        if (varying_[i] == 0 && alike(color, colors_[i]) &&
+            std::abs(mean.alpha - alphas_[i]) <= kSameLook)
             return static_cast<uint16_t>(i);
     }
-    if (colors_.size() < std::numeric_limits<uint16_t>::max())
-        colors_.push_back(color);
-    return static_cast<uint16_t>(colors_.size() - 1);
+    return add(color, mean.alpha, false);
 }
 
 std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> materials) {
     std::vector<uint16_t> by_slot;
-    for (const Material& material : materials)
-        by_slot.push_back(of(material));
+    for (const Material& material : materials) {
+        if (!(varies_by_texture(material) && !mesh.uvs.empty()) &&
+            !(varies_by_vertex(material) && !mesh.colors.empty())) {
+            by_slot.push_back(of(material));
+            continue;
+        }
+        const auto [at, fresh] = by_texture_.try_emplace(hash_of(material), uint16_t{0});
+        if (fresh) {
+            const Mean mean(material);
+            at->second = add(encoded(mean.light), mean.alpha, true);
+        }
+        by_slot.push_back(at->second);
+    }
     const uint16_t otherwise = of(Material{});
     std::vector<uint16_t> looks(mesh.triangles.size());
     for (size_t i = 0; i < looks.size(); ++i) {

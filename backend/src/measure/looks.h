@@ -2,18 +2,27 @@
 // Looks: which materials a picture can tell apart.
 #pragma once
 
-#include "model/material.h"
-#include "model/mesh.h"
+#include "ray/skin.h"
 
+#include <map>
 #include <span>
 
 namespace lodestone::measure {
 
-/// Numbers for materials; those whose display-encoded colors differ by at most kSameLook in every
-/// channel share one (the first seen decides, so ask for the finest's materials first).
+/// Numbers for materials; those whose display-encoded colors, and alphas, differ by at most
+/// kSameLook share one (the first seen decides, so ask for the finest's materials first). What
+/// varies by texture or vertex color has a look of its own, as long as the mesh has what it varies
+/// by; its color is the mean.
 class Looks {
 public:
     static constexpr double kSameLook = 0.1;
+
+    /// Display-encoded, of a point.
+    static glm::dvec3 color_of(const ray::Shown& shown);
+    /// The light of a display-encoded color: what mixes where a pixel shows several.
+    static glm::dvec3 light_of(const glm::dvec3& color);
+    static glm::dvec3 encoded(const glm::dvec3& light);
+    static bool alike(const glm::dvec3& a, const glm::dvec3& b);
 
     uint16_t of(const Material& material);
     /// One a triangle; a slot without a material looks like Material{}.
@@ -23,7 +32,12 @@ public:
     const glm::dvec3& color(uint16_t look) const { return colors_[look]; }
 
 private:
+    uint16_t add(const glm::dvec3& color, double alpha, bool varies);
+
     std::vector<glm::dvec3> colors_;  // display-encoded
+    std::vector<double> alphas_;
+    std::vector<uint8_t> varying_;  // those look like nothing else
+    std::map<Hash, uint16_t> by_texture_;
 };
 
 }  // namespace lodestone::measure

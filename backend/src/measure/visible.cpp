@@ -19,6 +19,47 @@ constexpr uint64_t kFirstBatch = 512;
 constexpr uint64_t kFewestHits = 64;  // before the estimated error is believed
 constexpr uint32_t kMostTags = uint32_t{1} << 24u;
 
+/// Sums of what is shown.
+struct ShownSums {
+    glm::dvec3 color{0.0};
+    glm::dvec3 emission{0.0};
+    double roughness = 0;
+    double metallic = 0;
+    double specular = 0;
+
+    void add(const ray::Shown& shown, double weight) {
+        color += weight * shown.color;
+        emission += weight * shown.emission;
+        roughness += weight * shown.roughness;
+        metallic += weight * shown.metallic;
+        specular += weight * shown.specular;
+    }
+};
+
+/// A mesh's skin where triangles show more than one thing.
+class Varied {
+public:
+    Varied(const Mesh& mesh, const ray::Skin* skin) : mesh_(mesh), skin_(skin) {
+        uint16_t most = 0;
+        for (const uint16_t slot : mesh.slots)
+            most = std::max(most, slot);
+        varies_.resize(size_t{most} + 1, 0);
+        for (size_t slot = 0; skin != nullptr && slot < varies_.size(); ++slot)
+            varies_[slot] = skin->varies(mesh, static_cast<uint16_t>(slot)) ? 1 : 0;
+    }
+
+    bool slot(size_t index) const { return varies_[index] != 0; }
+    void add(const VisiblePoint& at, ShownSums& sums) const {
+        if (slot(mesh_.slot(at.triangle)))
+            sums.add(skin_->at(mesh_, at.triangle, at.u, at.v), 1);
+    }
+
+private:
+    const Mesh& mesh_;
+    const ray::Skin* skin_;
+    std::vector<uint8_t> varies_;  // by slot
+};
+
 /// Sums over visible points, about a fixed point near them.
 struct Tally {
     glm::dvec3 origin{0.0};
@@ -28,6 +69,7 @@ struct Tally {
     glm::dvec3 first{0.0};
     glm::dmat3 second{0.0};
     std::vector<uint32_t> by_triangle;
+    ShownSums varied;  // of the points in slots that vary
 
     void add(const VisiblePoint& at) {
         const glm::dvec3 arm = at.point - origin;
@@ -47,8 +89,8 @@ struct Tally {
 };
 
 /// Casts rays [first, first + count) on all threads and adds what they found in their order.
-void cast(const VisibleSampler& sampler, uint64_t first, uint64_t count, Tally& tally,
-          const Job& job) {
+void cast(const VisibleSampler& sampler, const Varied& varied, uint64_t first, uint64_t count,
+          Tally& tally, const Job& job) {
     struct Found {
         std::array<VisiblePoint, 2> points;
         int count = 0;
@@ -61,15 +103,17 @@ void cast(const VisibleSampler& sampler, uint64_t first, uint64_t count, Tally& 
             found[i].count = sampler.cast(static_cast<uint32_t>(first + i), found[i].points);
     });
     for (const Found& ray : found) {
-        for (int i = 0; i < ray.count; ++i)
+        for (int i = 0; i < ray.count; ++i) {
             tally.add(ray.points[static_cast<size_t>(i)]);
+            varied.add(ray.points[static_cast<size_t>(i)], tally.varied);
+        }
         tally.hits += ray.count > 0 ? 1 : 0;
     }
     tally.rays += count;
 }
 
-Tally sample(const Mesh& mesh, const VisibleSampler& sampler, const VisibleOptions& options,
-             const Job& job) {
+Tally sample(const Mesh& mesh, const VisibleSampler& sampler, const Varied& varied,
+             const VisibleOptions& options, const Job& job) {
     Tally tally;
     tally.origin = glm::dvec3(mesh.positions[mesh.triangles[0].x]);
     tally.by_triangle.resize(mesh.triangles.size(), 0);
@@ -79,7 +123,7 @@ Tally sample(const Mesh& mesh, const VisibleSampler& sampler, const VisibleOptio
     uint64_t next = adaptive ? kFirstBatch : most;
     while (tally.rays < most) {
         next = std::min({next, kBatch, most - tally.rays});
-        cast(sampler, tally.rays, next, tally, job);
+        cast(sampler, varied, tally.rays, next, tally, job);
         job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
         if (adaptive && tally.hits >= kFewestHits &&
             tally.relative_error() <= options.relative_error)
@@ -89,7 +133,7 @@ Tally sample(const Mesh& mesh, const VisibleSampler& sampler, const VisibleOptio
     return tally;
 }
 
-void add_surface(const Mesh& mesh, std::span<const Material> materials, const Tally& tally,
+void add_surface(const Mesh& mesh, const ray::Skin* skin, const Varied& varied, const Tally& tally,
                  Attributes& out) {
     std::vector<uint64_t> by_slot;
     for (size_t i = 0; i < tally.by_triangle.size(); ++i) {
@@ -98,19 +142,19 @@ void add_surface(const Mesh& mesh, std::span<const Material> materials, const Ta
             by_slot.resize(slot + 1, 0);
         by_slot[slot] += tally.by_triangle[i];
     }
-    out.color = out.emission = glm::dvec3(0.0);
-    out.roughness = out.metallic = out.specular = 0;
+    const auto points = static_cast<double>(tally.points);
+    ShownSums sums;
     for (size_t slot = 0; slot < by_slot.size(); ++slot) {
-        const double share = static_cast<double>(by_slot[slot]) / static_cast<double>(tally.points);
-        if (by_slot[slot] == 0)
+        if (by_slot[slot] == 0 || varied.slot(slot))
             continue;
-        const Material material = slot < materials.size() ? materials[slot] : Material{};
-        out.color += share * material.base_color;
-        out.roughness += share * material.roughness;
-        out.metallic += share * material.metallic;
-        out.specular += share * material.specular;
-        out.emission += share * material.emission;
+        const double share = static_cast<double>(by_slot[slot]) / points;
+        sums.add(skin != nullptr ? skin->mean(static_cast<uint16_t>(slot)) : ray::Shown{}, share);
     }
+    out.color = sums.color + tally.varied.color / points;
+    out.emission = sums.emission + tally.varied.emission / points;
+    out.roughness = sums.roughness + tally.varied.roughness / points;
+    out.metallic = sums.metallic + tally.varied.metallic / points;
+    out.specular = sums.specular + tally.varied.specular / points;
 }
 
 }  // namespace
@@ -118,12 +162,14 @@ void add_surface(const Mesh& mesh, std::span<const Material> materials, const Ta
 Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
                         const VisibleOptions& options, std::span<const uint32_t> tags,
                         const Job& job) {
-    return measure_visible(mesh, ray::Scene(mesh), materials, options, tags, job);
+    image::TexelCache texels;
+    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
+    return measure_visible(mesh, ray::Scene(mesh, skin), skin, options, tags, job);
 }
 
-Visible measure_visible(const Mesh& mesh, const ray::Scene& scene,
-                        std::span<const Material> materials, const VisibleOptions& options,
-                        std::span<const uint32_t> tags, const Job& job) {
+Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
+                        const VisibleOptions& options, std::span<const uint32_t> tags,
+                        const Job& job) {
     if (!tags.empty() && tags.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, tags.size(), " tags for ", mesh.triangles.size(),
              " triangles");
@@ -139,7 +185,8 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene,
     attributes.surface_area = sampler.possible_area();
     if (sampler.empty())
         return out;
-    const Tally tally = sample(mesh, sampler, options, job);
+    const Varied varied(mesh, skin.get());
+    const Tally tally = sample(mesh, sampler, varied, options, job);
     attributes.rays = tally.rays;
     attributes.relative_error = tally.relative_error();
     if (tally.points == 0)
@@ -160,7 +207,7 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene,
     }
     attributes.axes = principal_axes(attributes.moments, normals);
     attributes.normal_moment = normals.in_frame(attributes.axes);
-    add_surface(mesh, materials, tally, attributes);
+    add_surface(mesh, skin.get(), varied, tally, attributes);
     for (size_t i = 0; i < tags.size(); ++i)
         out.hits_by_tag[tags[i]] += tally.by_triangle[i];
     return out;
@@ -174,7 +221,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
     std::vector<uint8_t> seen(mesh.triangles.size(), 0);
     if (mesh.empty())
         return seen;
-    const Sides sides = sides_of(mesh);
+    const Sides sides = sides_of(mesh, scene);
     const double lift = ray_lift(radius_of(mesh));
     const auto see = [&](size_t index) {
         const glm::dvec3 area = area_vector(mesh, index);

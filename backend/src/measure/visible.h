@@ -24,23 +24,24 @@ struct Visible {
 };
 
 /// Attributes of the visible surface in the mesh's frame. `materials` by slot (a slot without one
-/// looks like Material{}); surface properties are means over the visible area. `tags` is empty or
+/// looks like Material{}), with their textures: what is transparent is not there, and surface
+/// properties are means over the visible area, each point showing its own texel. `tags` is empty or
 /// one a triangle, each < 2^24: for instance which child the triangle came from. A mesh without
 /// area, or of which no ray hit anything, gives empty attributes. Same bits on any number of
-/// threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+/// threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled, BadFile (a picture).
 Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         const Job& job = {});
 
-/// The same with a scene made from this mesh before.
-Visible measure_visible(const Mesh& mesh, const ray::Scene& scene,
-                        std::span<const Material> materials, const VisibleOptions& options,
-                        std::span<const uint32_t> tags = {}, const Job& job = {});
+/// The same with a scene made from this mesh, and this skin, before; null: all like Material{}.
+Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
+                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
+                        const Job& job = {});
 
 /// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
 /// dropped before simplifying. Rays leave random points in random directions (cosine), on both
-/// sides unless the mesh is closed. Triangles without area count as seen: nobody knows. Same bits
-/// on any number of threads.
+/// sides unless the mesh is closed and opaque. Triangles without area count as seen: nobody knows.
+/// Same bits on any number of threads.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});
 

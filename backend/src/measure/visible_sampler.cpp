@@ -60,9 +60,9 @@ double relative_variance(double hits, double rays) {
 
 }  // namespace
 
-Sides sides_of(const Mesh& mesh) {
+Sides sides_of(const Mesh& mesh, const ray::Scene& scene) {
     Sides out;
-    out.open = !closed(mesh);
+    out.open = scene.see_through() || !closed(mesh);
     if (out.open)
         return out;
     const std::vector<uint32_t> welded = weld(mesh);
@@ -104,7 +104,7 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
     const SurfaceInertia inertia = of_mesh(mesh);
     if (inertia.empty())
         return;
-    sides_ = sides_of(mesh);
+    sides_ = sides_of(mesh, scene);
     possible_area_ = inertia.area * (sides_.open ? 2 : 1);
     const std::vector<glm::dvec3> points = used_points(mesh);
     lift_ = ray_lift(radius_around(points));
@@ -147,14 +147,14 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
     const ray::Hit near = scene_->first_hit(line.origin, line.direction);
     if (!near.hit)
         return 0;
-    points[0] = {near.point, near.triangle, -line.direction};
+    points[0] = {near.point, near.triangle, -line.direction, near.u, near.v};
     // The same line from its other end: past everything, looking back.
     const glm::dvec3 arm = near.point - line.origin;
     const double beyond = std::abs(glm::dot(arm, line.direction)) + 4e5 * lift_;
     const ray::Hit far = scene_->first_hit(line.origin + beyond * line.direction, -line.direction);
     if (!far.hit)
         return 1;
-    points[1] = {far.point, far.triangle, line.direction};
+    points[1] = {far.point, far.triangle, line.direction, far.u, far.v};
     return 2;
 }
 
@@ -182,11 +182,13 @@ int VisibleSampler::cast_from_surface(const std::array<double, 4>& u,
     const Triangle& t = mesh_->triangles[index];
     const glm::dvec3 a(mesh_->positions[t.x]);
     const glm::dvec2 weights = uniform_in_triangle(rest, u[1]);
+    if (!scene_->stops(static_cast<uint32_t>(index), weights.x, weights.y))
+        return 0;
     const glm::dvec3 point = a + weights.x * (glm::dvec3(mesh_->positions[t.y]) - a) +
                              weights.y * (glm::dvec3(mesh_->positions[t.z]) - a);
     if (scene_->occluded(point + lift_ * normal, cosine_direction(normal, u[2], u[3])))
         return 0;
-    points[0] = {point, static_cast<uint32_t>(index), normal};
+    points[0] = {point, static_cast<uint32_t>(index), normal, weights.x, weights.y};
     return 1;
 }
 

@@ -13,14 +13,17 @@ struct Sides {
     bool open = true;             // both sides of every triangle
     std::vector<uint8_t> turned;  // closed: 1 where the outer side is not the one its corners say
 };
-/// A mesh that is closed() has one side, per connected part the one away from its volume.
-Sides sides_of(const Mesh& mesh);
+/// A mesh that is closed() has one side, per connected part the one away from its volume; one that
+/// rays pass through is open.
+Sides sides_of(const Mesh& mesh, const ray::Scene& scene);
 
 /// A point of the mesh that a ray from outside hit.
 struct VisiblePoint {
     glm::dvec3 point{0.0};
     uint32_t triangle = 0;
     glm::dvec3 seen_from{0.0};  // direction towards whoever sees it, any length
+    double u = 0;               // where on the triangle, as ray::Hit
+    double v = 0;
 };
 
 /// Draws visible points by one of two kinds of rays, whichever hits more surely on this mesh:
@@ -34,7 +37,8 @@ public:
 
     /// True when the mesh has no area: then nothing may be cast.
     bool empty() const { return !(possible_area_ > 0); }
-    /// Area of all sides that could be seen: the mesh's, twice that when it is open.
+    /// Area of all sides that could be seen: the mesh's, twice that when it is open; what is
+    /// transparent counts.
     double possible_area() const { return possible_area_; }
     /// Visible area (4.6) = reference_area() * rays that hit / rays cast.
     double reference_area() const { return from_surface_ ? possible_area_ : bound_.area(); }

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Repainting: levels whose triangles show the material of what lay on them.
+#include "base/parallel.h"
+#include "measure/deviation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace lodestone::measure {
+namespace {
+
+constexpr uint32_t kLeastVotes = 3;
+// Texture coordinates have six unknowns, and must prove right on more points than make them.
+constexpr size_t kLeastTextured = 8;
+constexpr double kLeastRight = 0.9;
+constexpr size_t kBlock = 256;
+
+/// Texture coordinates as an affine function of the place on a plane.
+struct UvMap {
+    glm::dvec3 origin{0.0};
+    glm::dvec3 x{0.0};  // unit, in the plane
+    glm::dvec3 y{0.0};
+    std::array<glm::dvec3, 2> rows{};  // (u, v) = rows * (along x, along y, 1)
+
+    glm::dvec3 place(const glm::dvec3& point) const {
+        return {glm::dot(point - origin, x), glm::dot(point - origin, y), 1};
+    }
+    glm::dvec2 at(const glm::dvec3& point) const {
+        const glm::dvec3 here = place(point);
+        return {glm::dot(rows[0], here), glm::dot(rows[1], here)};
+    }
+};
+
+using Voters = std::vector<const SurfaceSample*>;
+
+/// The map of a triangle's plane that suits the voters best; none where they lie in a line.
+std::optional<UvMap> fit(const Mesh& level, uint32_t triangle, const Voters& voters) {
+    const Triangle& t = level.triangles[triangle];
+    UvMap map;
+    const glm::dvec3 normal = area_vector(level, triangle);
+    const glm::dvec3 side = glm::dvec3(level.positions[t.y]) - glm::dvec3(level.positions[t.x]);
+    if (!(glm::length(normal) > 0))
+        return std::nullopt;
+    map.x = glm::normalize(side);
+    map.y = glm::normalize(glm::cross(normal, side));
+    for (const SurfaceSample* voter : voters)
+        map.origin += voter->point / static_cast<double>(voters.size());
+    glm::dmat3 square(0.0);
+    std::array<glm::dvec3, 2> right{};
+    for (const SurfaceSample* voter : voters) {
+        const glm::dvec3 place = map.place(voter->point);
+        square += glm::outerProduct(place, place);
+        right[0] += voter->uv.x * place;
+        right[1] += voter->uv.y * place;
+    }
+    // Along the plane about the voters' middle: the last row and column are 0 but for the count.
+    const double spread = square[0][0] + square[1][1];
+    const double determinant = square[0][0] * square[1][1] - square[0][1] * square[0][1];
+    if (!(determinant > 1e-4 * spread * spread))
+        return std::nullopt;
+    const glm::dmat3 inverse = glm::inverse(square);
+    map.rows = {inverse * right[0], inverse * right[1]};
+    return map;
+}
+
+/// Gives a triangle corners of its own with other texture coordinates.
+void set_uvs(Mesh& level, uint32_t triangle, const UvMap& map) {
+    for (int corner = 0; corner < 3; ++corner) {
+        uint32_t& vertex = level.triangles[triangle][corner];
+        const uint32_t from = vertex;
+        vertex = static_cast<uint32_t>(level.positions.size());
+        level.positions.push_back(glm::vec3(level.positions[from]));
+        level.uvs.emplace_back(map.at(glm::dvec3(level.positions[from])));
+        if (!level.normals.empty())
+            level.normals.push_back(glm::vec3(level.normals[from]));
+        if (!level.colors.empty())
+            level.colors.push_back(glm::vec4(level.colors[from]));
+    }
+}
+
+/// Whether the triangle, painted with `slot` and the map, shows what the voters show.
+bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const UvMap& map,
+                    const ray::Skin& skin, const Voters& voters) {
+    // One triangle that is all map: its corners' coordinates are looked up where each voter is.
+    Mesh probe;
+    probe.positions.resize(3);
+    probe.triangles = {{0, 1, 2}};
+    probe.slots = {slot};
+    if (!level.colors.empty()) {
+        for (int corner = 0; corner < 3; ++corner)
+            probe.colors.push_back(level.colors[level.triangles[triangle][corner]]);
+    }
+    size_t right = 0;
+    for (const SurfaceSample* voter : voters) {
+        probe.uvs.assign(3, glm::vec2(map.at(voter->point)));
+        const glm::dvec3 color = Looks::color_of(skin.at(probe, 0, 1.0 / 3, 1.0 / 3));
+        right += Looks::alike(color, voter->color) ? 1 : 0;
+    }
+    return static_cast<double>(right) >= kLeastRight * static_cast<double>(voters.size());
+}
+
+}  // namespace
+
+void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& job) const {
+    if (level.slots.empty())
+        return;
+    const ray::Scene scene(level);
+    std::vector<uint32_t> nearest(visible_.size(), ray::kNoTriangle);
+    parallel_for((visible_.size() + kBlock - 1) / kBlock, [&](size_t block) {
+        job.check();
+        for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
+            if (visible_[i].look != kAnyLook)
+                nearest[i] = scene.closest_point(visible_[i].point).triangle;
+        }
+    });
+    std::map<uint32_t, std::map<uint16_t, Voters>> votes;  // by triangle and slot
+    for (size_t i = 0; i < nearest.size(); ++i) {
+        if (nearest[i] != ray::kNoTriangle)
+            votes[nearest[i]][visible_[i].slot].push_back(&visible_[i]);
+    }
+    for (const auto& [triangle, slots] : votes) {
+        const auto most = std::max_element(
+            slots.begin(), slots.end(),
+            [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+        const auto own = slots.find(level.slots[triangle]);
+        if (most->second.size() < kLeastVotes ||
+            (own != slots.end() && most->second.size() <= own->second.size()))
+            continue;
+        if (skin != nullptr && skin->textured(level, most->first)) {
+            // Its own coordinates belong to another texture.
+            if (most->second.size() < kLeastTextured)
+                continue;
+            const std::optional<UvMap> map = fit(level, triangle, most->second);
+            if (!map || !shows_the_same(level, triangle, most->first, *map, *skin, most->second))
+                continue;
+            set_uvs(level, triangle, *map);
+        }
+        level.slots[triangle] = most->first;
+    }
+}
+
+}  // namespace lodestone::measure

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards hierarchies of things one can see through, and of textured things in one atlas.
+#include "backend/foliage.h"
+#include "backend/models.h"
+#include "base/files.h"
+#include "build/flatten.h"
+#include "build/hierarchy.h"
+#include "build/stand_ins.h"
+#include "measure/visible.h"
+#include "ray/scene.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Foliage : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+    }
+};
+
+void build_in(Model& model, const std::string& name) {
+    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "foliage" / name;
+    fs::remove_all(folder);
+    fs::create_directories(folder.parent_path());
+    Problems problems;
+    build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    EXPECT_TRUE(problems.empty()) << problems[0].message;
+}
+
+/// One leaf picture, half of it there: a disk of the right size.
+PicturePtr disk() {
+    return foliage::picture(64, [](double x, double y) {
+        const double square = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5);
+        return glm::dvec4(0.1, 0.5, 0.1, square < 0.5 / 3.14159265 ? 1 : 0);
+    });
+}
+
+ObjectIndex add_tree(Model& model, int leaves, uint32_t sides) {
+    const ObjectIndex tree = models::add_leaf(model, "tree", foliage::tree(leaves, sides),
+                                              models::colored("bark", {0.2, 0.1, 0.05}));
+    model.objects[tree].representations[0].materials.push_back(
+        static_cast<uint32_t>(model.materials.size()));
+    model.materials.push_back(foliage::leaf(disk()));
+    summarize(model.objects[tree].representations[0], model);
+    return tree;
+}
+
+std::vector<Material> materials_of(const Model& model, const Representation& representation) {
+    std::vector<Material> out;
+    for (const uint32_t index : representation.materials)
+        out.push_back(model.materials[index]);
+    return out;
+}
+
+/// Lists in order, no primitives, every level as visible as the finest to a quarter.
+void expect_see_through_levels(const Model& model, ObjectIndex index) {
+    const Object& object = model.objects[index];
+    ASSERT_TRUE(object.attributes);
+    const double area = object.attributes->visible_area;
+    double last = -1;
+    for (const Representation& level : object.representations) {
+        EXPECT_GT(level.summary.error, last);
+        last = level.summary.error;
+        if (level.summary.kind == Kind::Assembly)
+            continue;
+        ASSERT_EQ(level.summary.kind, Kind::Mesh) << "an opaque blob hides what shines through";
+        const Mesh& mesh = level.mesh();
+        EXPECT_NO_THROW(check(mesh));
+        EXPECT_FALSE(mesh.uvs.empty());
+        const double visible =
+            measure::measure_visible(mesh, materials_of(model, level), {}).attributes.visible_area;
+        EXPECT_NEAR(visible / area, 1, 0.3);
+        std::cout << object.name << ": " << level.summary.cost.triangles << " triangles, error "
+                  << level.summary.error << " m, visible " << visible / area << "\n";
+    }
+}
+
+}  // namespace
+
+TEST_F(Foliage, TreeOfLeafCardsHasSeeThroughLevelsAndNoBlob) {
+    Model model;
+    model.root = add_tree(model, 300, 24);
+    build_in(model, "tree");
+    const Object& tree = model.objects[model.root];
+    EXPECT_GE(tree.representations.size(), 2u) << "the stem at least becomes simpler";
+    expect_see_through_levels(model, model.root);
+    // 300 cards of 0.06 m^2, half of each there, both sides; what hides behind others does not
+    // count.
+    EXPECT_LT(tree.attributes->visible_area, 300 * 0.06 + 2.6);
+    EXPECT_GT(tree.attributes->visible_area, 0.5 * 300 * 0.06);
+}
+
+TEST_F(Foliage, WoodHasAStandInThatOneCanSeeThrough) {
+    Model model;
+    const ObjectIndex tree = add_tree(model, 60, 16);
+    std::vector<Placement> placements;
+    for (int i = 0; i < 9; ++i)
+        placements.push_back({tree, models::moved(3.0 * (i % 3), 3.0 * (i / 3), 0), "tree"});
+    model.root = models::add_group(model, "wood", std::move(placements));
+    summarize_assemblies(model, bottom_up(model));
+    build_in(model, "wood");
+    EXPECT_GE(model.objects[model.root].representations.size(), 2u);
+    expect_see_through_levels(model, model.root);
+}
+
+TEST_F(Foliage, GlassHasNoSolidStandIn) {
+    Model model;
+    Material glass = models::colored("glass", {1, 1, 1});
+    glass.transmission = 1;
+    model.root = models::add_leaf(model, "ball", shapes::sphere(1, 4), glass);
+    build_in(model, "glass");
+    EXPECT_GE(model.objects[model.root].representations.size(), 2u);
+    for (const Representation& level : model.objects[model.root].representations)
+        EXPECT_EQ(level.summary.kind, Kind::Mesh);
+    // The same ball of stone has one.
+    model = {};
+    model.root = models::add_leaf(model, "ball", shapes::sphere(1, 4));
+    build_in(model, "stone");
+    EXPECT_NE(model.objects[model.root].representations.back().summary.kind, Kind::Mesh);
+}
+
+TEST_F(Foliage, ObjectsOfOneAtlasGetTheColorsOfTheirParts) {
+    const PicturePtr atlas = foliage::picture(64, [](double x, double) {
+        return x < 0.5 ? glm::dvec4(0.8, 0.1, 0.1, 1) : glm::dvec4(0.1, 0.1, 0.8, 1);
+    });
+    Material material;
+    material.base_color = glm::dvec3(atlas->mean);
+    material.base_color_texture = foliage::texture(atlas);
+    Model model;
+    for (const bool left : {true, false}) {
+        Mesh ball = shapes::sphere(1, 4);
+        for (const glm::vec3& p : ball.positions)
+            ball.uvs.emplace_back((left ? 0.05f : 0.55f) + 0.2f * (p.x + 1), 0.5f * (p.z + 1));
+        models::add_leaf(model, left ? "red" : "blue", ball, material);
+    }
+    model.root = models::add_group(model, "both",
+                                   {{0, Affine{}, "red"}, {1, models::moved(3, 0, 0), "blue"}});
+    build_in(model, "atlas");
+    for (const ObjectIndex index : {0u, 1u}) {
+        const Representation& coarsest = model.objects[index].representations.back();
+        ASSERT_EQ(coarsest.summary.kind, Kind::Ellipsoid);
+        const Material& mean = model.materials[coarsest.materials[0]];
+        EXPECT_NEAR(mean.base_color.x, index == 0 ? 0.8 : 0.1, 0.02);
+        EXPECT_NEAR(mean.base_color.z, index == 0 ? 0.1 : 0.8, 0.02);
+        EXPECT_FALSE(textured(mean));
+        EXPECT_LT(coarsest.summary.error, 0.1) << "nobody can tell the colors apart";
+        EXPECT_FALSE(model.objects[index].representations[1].mesh().uvs.empty());
+    }
+}
+
+TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
+    const PicturePtr half = foliage::left_half();
+    Material shared = foliage::leaf(half);
+    shared.other = std::make_shared<const Material>(shared);
+    Model model;
+    models::add_leaf(model, "card", foliage::card(1, 1), shared);
+    models::add_leaf(model, "bare", shapes::quad(1, 1));
+    model.objects[1].representations[0].materials = {0};
+    model.root = models::add_group(model, "both",
+                                   {{0, Affine{}, "card"}, {1, models::moved(3, 0, 0), "bare"}});
+    summarize_assemblies(model, bottom_up(model));
+    const build::MeshSource source = [](const Representation& representation) {
+        return std::get<std::shared_ptr<const Mesh>>(representation.payload);
+    };
+    const build::Flat flat = build::flatten(model, model.root, 0, source, {});
+    ASSERT_EQ(flat.materials.size(), 2u);
+    EXPECT_EQ(flat.mesh.slots, (std::vector<uint16_t>{0, 0, 1, 1}));
+    EXPECT_TRUE(textured(flat.materials[0]));
+    EXPECT_FALSE(textured(flat.materials[1]));
+    EXPECT_EQ(flat.materials[1].base_color, flat.materials[0].base_color);
+    EXPECT_EQ(flat.materials[1].alpha, flat.materials[0].alpha);
+    EXPECT_TRUE(flat.materials[1].other);
+}
