@@ -15,7 +15,7 @@ import bpy
 from . import preferences
 from .bridge import camera, ignored, picture, requirements, scene
 from .bridge.settings import SceneSettings
-from .core import last_check, last_render, progress, store_path
+from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
 from .core.picture import SceneFolder, Settings, make_picture
 from .core.problems import ERROR, Problems
@@ -90,7 +90,8 @@ class _Run:
     def render(self):
         camera_object = self._required()
         frame = camera.Frame.of(self.scene.render)
-        extraction = scene.extract(self.depsgraph, self._tick)
+        still = motion_file.read(self.store)
+        extraction = scene.extract(self.depsgraph, self._tick, still)
         self.problems.extend(extraction.problems)
         self.users = extraction.users
         with extraction.model as model:

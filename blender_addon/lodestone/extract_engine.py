@@ -19,13 +19,15 @@ class Request:
     """What to extract; afterwards the result, or why there is none. One at a time.
 
     `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
-    (None for the scene's): their frames are in `frames` in the same order.
+    (None for the scene's): their frames are in `frames` in the same order. `still`: what
+    motion.sample() found.
     """
 
-    def __init__(self, cameras=(), tick=None, compare=False):
+    def __init__(self, cameras=(), tick=None, compare=False, still=None):
         self.cameras = tuple(cameras)
         self.tick = tick or (lambda: None)
         self.compare = compare
+        self.still = still
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
         self.frames = []
@@ -49,7 +51,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             request.tick()
 
         try:
-            extraction = scene.extract(depsgraph, tick)
+            extraction = scene.extract(depsgraph, tick, request.still)
             try:
                 for name, size in request.cameras:
                     if not name and request.without_camera:

@@ -28,6 +28,19 @@ ANTIALIAS = (
     ("FINAL", "Final", "Adaptive: more samples where the picture needs them"),
     ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing"),
 )
+DEFORMING = (
+    (
+        "ORIGINAL",
+        "Original",
+        "What an animation changes the shape of is drawn as it is, in all frames the same way",
+    ),
+    (
+        "FRAME",
+        "Simplify Each Frame",
+        "Levels are made for every frame: fewer triangles, but building takes time in each and levels "
+        "may flicker. For stills",
+    ),
+)
 KEEP = (
     ("NEVER", "Never", "Remove the files of the POV-Ray scene after each render"),
     ("FAILED", "If Failed", "Keep them when POV-Ray fails, to look at what it was given"),
@@ -79,6 +92,12 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         description="What Update Levels and Clear work on",
         items=SCOPES,
         default="SCENE",
+    )
+    deforming: EnumProperty(
+        name="Deforming Objects",
+        description="What becomes of objects that move, grow, wave or are posed in an animation",
+        items=DEFORMING,
+        default="ORIGINAL",
     )
     keep_scene_files: EnumProperty(
         name="Keep Scene Files",

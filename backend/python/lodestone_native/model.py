@@ -218,9 +218,7 @@ class Model(Handle):
         deforms: bool = False,
     ) -> Object:
         out = Object()
-        info = structs.ObjectInfo(
-            uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms)
-        )
+        info = _info(uid, name, role, deforms)
         slots = (ctypes.c_uint32 * len(materials))(*materials)
         check(
             library().lds_model_add_mesh(
@@ -236,10 +234,11 @@ class Model(Handle):
         strands: StrandBuffers,
         materials: Sequence[int] = (),
         role: int = Role.ORDINARY,
+        deforms: bool = False,
     ) -> Object:
         """One mesh of a tapered tube for each strand."""
         out = Object()
-        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        info = _info(uid, name, role, deforms)
         slots = (ctypes.c_uint32 * len(materials))(*materials)
         check(
             library().lds_model_add_strands(
@@ -248,9 +247,11 @@ class Model(Handle):
         )
         return out
 
-    def add_group(self, uid: str, name: str, role: int = Role.ORDINARY) -> Object:
+    def add_group(
+        self, uid: str, name: str, role: int = Role.ORDINARY, deforms: bool = False
+    ) -> Object:
         out = Object()
-        info = structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role)
+        info = _info(uid, name, role, deforms)
         check(library().lds_model_add_group(self.handle, info, ctypes.byref(out)))
         return out
 
@@ -405,6 +406,10 @@ class Model(Handle):
     def _ask(self, function: Any, out: Any) -> Any:
         check(function(self.handle, ctypes.byref(out)))
         return record(out)
+
+
+def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
+    return structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms))
 
 
 def _changed(options: Any, changes: dict[str, Any]) -> Any:

@@ -9,6 +9,7 @@ from ..core import identity
 from . import ids
 from .instances import Context, Emitted, Entry, Rows, offset, rows
 from .leaves import HAIR
+from .motion import Motion
 
 IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
@@ -111,10 +112,12 @@ def _same_but_for_rounding(a: list[Emitted], b: list[Emitted]) -> bool:
 class Groups:
     """Adds groups to a model; equal contents become one group."""
 
-    def __init__(self, model: Any, uids: ids.Uids, roles: ids.Roles) -> None:
+    def __init__(self, model: Any, uids: ids.Uids, roles: ids.Roles, motion: Motion) -> None:
         self._model = model
         self._uids = uids
         self._roles = roles
+        self._motion = motion
+        self._above: list[Branch] = []  # branches around the one at hand, with collections
         self._made: dict[tuple, Any] = {}
         self._branches: dict[int, Branch] = {}
         self._emitters: dict[int, list[tuple[list[Emitted], Any]]] = {}
@@ -124,25 +127,55 @@ class Groups:
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
         rest = dict(context.entries)
-        placements = self._members(context, branch, rest)
+        changing: list[Placement] = []
+        placements, anew = self._members(context, branch, rest, changing)
         for entry in rest.values():  # shown, but in no branch: never lose it
             extra = self._entry(entry)
             if extra:
                 self.unplaced.append(entry.name)
                 placements += extra
-        return self._group(branch, placements)
+        if changing:
+            uid = identity.stable_id(ids.scene_uid(branch.name), "changing")
+            name = f"{branch.name} in motion"
+            placements.append((self._intern(uid, name, False, changing, True), IDENTITY, name, 0))
+        return self._group(branch, placements, anew)
 
-    def _members(self, context: Context, branch: Branch, rest: dict[int, Entry]) -> list[Placement]:
+    def _members(
+        self, context: Context, branch: Branch, rest: dict[int, Entry], changing: list[Placement]
+    ) -> tuple[list[Placement], bool]:
+        """What of a context is in a branch, and whether it changes in an animation. What does in
+        the scene itself goes to `changing`: a group of things that rest keeps its levels in every
+        frame. An instanced collection is drawn as it is while it changes."""
         placements: list[Placement] = []
+        anew = False
+        self._above.append(branch)
         for child in branch.children:
-            group = self._group(child, self._members(context, child, rest))
+            group = self._group(child, *self._members(context, child, rest, changing))
             if group is not None:
                 placements.append((group, IDENTITY, child.name, 0))
         for key in branch.objects:
             entry = rest.pop(key, None)
-            if entry is not None:
-                placements += self._entry(entry)
-        return placements
+            if entry is None:
+                continue
+            made, changes = self._entry(entry), self._changes(entry)
+            if changes and context.collection is None:
+                changing += made
+                for above in self._above:
+                    if above.collection is not None:
+                        collection = ids.key_of("collection", above.collection)
+                        self.parts[collection].update(placement[0] for placement in made)
+            else:
+                placements += made
+                anew = anew or changes
+        self._above.pop()
+        return placements, anew
+
+    def _changes(self, entry: Entry) -> bool:
+        """Whether an animation moves it, or makes another thing of it or of what it emits."""
+        motion, item = self._motion, entry.object
+        if motion.moves(item) or (entry.leaf is not None and motion.deforms(item)):
+            return True
+        return bool(entry.emitted or entry.hair) and motion.emits_anew(item)
 
     def _entry(self, entry: Entry) -> list[Placement]:
         placements: list[Placement] = []
@@ -177,30 +210,40 @@ class Groups:
         uid = identity.stable_id(ids.uid_of("object", entry.object), "instances")
         children = [(leaf.object, place, leaf.data, hid) for leaf, place, hid in entry.emitted]
         environment = self._roles.is_environment(entry.object)
-        group = self._intern(uid, f"{entry.name} instances", environment, children)
-        if len(children) > MOST_CHILDREN:
+        anew = self._motion.emits_anew(entry.object)
+        group = self._intern(uid, f"{entry.name} instances", environment, children, anew)
+        if len(children) > MOST_CHILDREN and not anew:
             self._model.group_by_position(group, MOST_CHILDREN)
         known.append((entry.emitted, group))
         return group
 
-    def _group(self, branch: Branch, placements: list[Placement]) -> Any | None:
+    def _group(
+        self, branch: Branch, placements: list[Placement], changes: bool = False
+    ) -> Any | None:
         if not placements:
             return None
         if branch.collection is None:
             uid = ids.scene_uid(branch.name)
         else:
             uid = ids.uid_of("collection", branch.collection)
-        group = self._intern(uid, branch.name, branch.environment, placements)
+        group = self._intern(uid, branch.name, branch.environment, placements, changes)
         if branch.collection is not None:
             self.parts[ids.key_of("collection", branch.collection)].add(group)
         return group
 
-    def _intern(self, uid: str, name: str, environment: bool, placements: list[Placement]) -> Any:
-        key = (uid, environment, tuple((p[0].key, *p[1:]) for p in placements))
+    def _intern(
+        self,
+        uid: str,
+        name: str,
+        environment: bool,
+        placements: list[Placement],
+        changes: bool = False,
+    ) -> Any:
+        key = (uid, environment, changes, tuple((p[0].key, *p[1:]) for p in placements))
         group = self._made.get(key)
         if group is None:
             claimed = self._uids.claim(uid)
-            group = self._model.add_group(claimed, name, ids.role(environment))
+            group = self._model.add_group(claimed, name, ids.role(environment), changes)
             for item, place, child_name, hidden in placements:
                 self._model.add_placement(group, item, place, child_name, hidden)
             self._made[key] = group

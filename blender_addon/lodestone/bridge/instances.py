@@ -9,7 +9,7 @@ particles, vertices), the rest of it is opaque and the instance belongs to that 
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mathutils import Matrix
@@ -17,6 +17,7 @@ from mathutils import Matrix
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
 from .leaves import DRAWN, UNDRAWN, Leaf, Leaves, Look
+from .motion import Motion
 from .visibility import Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
@@ -65,6 +66,7 @@ class Instances:
         leaves: Leaves,
         visibility: Visibility,
         roles: ids.Roles,
+        motion: Motion,
         problems: Problems,
         tick: Callable[[], None],
     ) -> None:
@@ -74,6 +76,7 @@ class Instances:
         self._leaves = leaves
         self._visibility = visibility
         self._roles = roles
+        self._motion = motion
         self._problems = problems
         self._tick = tick
         self._paths: dict[tuple, Entry | None] = {}
@@ -148,7 +151,10 @@ class Instances:
         self, shown: Any, owner: Any, matrix: Matrix, context: Context, entry: Entry, direct: bool
     ) -> None:
         self._tick()
-        leaf = self._leaves.hair(shown, owner, self._look(context, entry, owner))
+        look = self._look(context, entry, owner)
+        if self._motion.emits_anew(owner):
+            look = replace(look, deforms=True)
+        leaf = self._leaves.hair(shown, owner, look)
         if leaf is None:
             return
         self.shown += 1
@@ -177,7 +183,7 @@ class Instances:
         pointer = owner.original.as_pointer()
         marked = pointer in context.environment or self._roles.is_environment(owner)
         holdout = entry.holdout or (not _is_self(entry, owner) and self._seen(owner)[1])
-        return Look(marked, holdout)
+        return Look(marked, holdout, self._motion.deforms(owner))
 
     def _seen(self, owner: Any) -> tuple[int, bool]:
         """Ray classes that an emitted object is hidden from, and whether it is a holdout."""

@@ -33,6 +33,7 @@ class Look:
 
     environment: bool = False
     holdout: bool = False  # all its materials are black
+    deforms: bool = False  # its shape is another one in every frame
 
 
 class Leaves:
@@ -95,7 +96,7 @@ class Leaves:
         base, name = self._name(shown, owner, slots)
         uid = self._uid(base, color, look)
         add = self._model.add_strands if shown.type == "CURVES" else self._model.add_mesh
-        item = add(uid, name, buffers, indices, ids.role(look.environment))
+        item = add(uid, name, buffers, indices, ids.role(look.environment), look.deforms)
         return Leaf(item, uid, shown.data.name, _names(slots), size)
 
     def _add_hair(
@@ -108,7 +109,7 @@ class Leaves:
             return None
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
         name, role = f"{owner.name} {HAIR}", ids.role(look.environment)
-        item = self._model.add_strands(uid, name, buffers, indices, role)
+        item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
         return Leaf(item, uid, f"{shown.name} {HAIR}", _names(slots), len(buffers.counts))
 
     def _add_point(
@@ -161,6 +162,8 @@ class Leaves:
             base = identity.stable_id(base, "environment")
         if look.holdout:
             base = identity.stable_id(base, "holdout")
+        if look.deforms:
+            base = identity.stable_id(base, "deforms")
         return self._uids.claim(base)
 
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:

@@ -178,6 +178,19 @@ def _targets(modifier: Any) -> Iterable[Any]:
                 yield value
 
 
+class Still(Motion):
+    """Nothing changes, or what does is to be simplified in each frame anew."""
+
+    def deforms(self, item: Any) -> bool:
+        return False
+
+    def moves(self, item: Any) -> bool:
+        return False
+
+    def emits_anew(self, item: Any) -> bool:
+        return False
+
+
 # ---- Sampling ----
 
 

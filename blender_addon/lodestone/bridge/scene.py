@@ -16,6 +16,7 @@ from . import camera, groups, ids, lights, world
 from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves
+from .motion import Motion, Still
 from .users import Users
 from .visibility import Visibility
 
@@ -40,15 +41,22 @@ class Extraction:
         return sorted(found, key=lambda item: item.key)
 
 
-def extract(depsgraph: Any, tick: Callable[[], None] = lambda: None) -> Extraction:
-    """`tick()` is called between meshes; what it raises stops the extraction. A scene that shows
-    nothing gives a model whose root group is empty."""
+def extract(
+    depsgraph: Any,
+    tick: Callable[[], None] = lambda: None,
+    still: dict[str, list[str]] | None = None,
+) -> Extraction:
+    """`tick()` is called between meshes; what it raises stops the extraction. `still`: what
+    motion.sample() found out. A scene that shows nothing gives a model whose root group is empty.
+    """
     scene = depsgraph.scene_eval
+    anew = depsgraph.scene.lodestone.deforming == "FRAME"
+    motion = Still() if anew else Motion(still)
     model, problems, uids = native.Model(), Problems(), ids.Uids()
     try:
         leaves = Leaves(model, depsgraph.scene, uids, problems)
-        walk = walked(depsgraph, leaves, problems, tick)
-        tree = groups.Groups(model, uids, walk.roles)
+        walk = walked(depsgraph, leaves, problems, tick, motion)
+        tree = groups.Groups(model, uids, walk.roles, motion)
         root = tree.build(walk.found.scene, walk.branch)
         if root is None:
             root = model.add_group(uids.claim(ids.scene_uid(scene.name)), scene.name)
@@ -82,13 +90,19 @@ class Walk:
     roles: ids.Roles
 
 
-def walked(depsgraph: Any, leaves: Any, problems: Problems, tick: Callable[[], None]) -> Walk:
+def walked(
+    depsgraph: Any,
+    leaves: Any,
+    problems: Problems,
+    tick: Callable[[], None],
+    motion: Motion | None = None,
+) -> Walk:
     """`leaves` are Leaves, or what takes their place where nothing is to be extracted."""
     roles = ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
     branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
     visibility = Visibility(depsgraph.view_layer_eval, problems)
-    found = Instances(users, visibility, roles, problems, tick)
+    found = Instances(users, visibility, roles, motion or Still(), problems, tick)
     found.walk(depsgraph, groups.environment_objects(branch))
     return Walk(found, branch, users, roles)
 

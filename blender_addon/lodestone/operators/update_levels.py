@@ -14,7 +14,7 @@ from bpy.props import BoolProperty
 
 from .. import extract_engine
 from ..bridge import decisions
-from ..core import progress, store_path, work
+from ..core import motion_file, progress, store_path, work
 from ..core.native import lodestone_native as native
 
 UNDO_NAME = "Update Levels"
@@ -45,7 +45,8 @@ def update_levels(context, scope):
     keys = decisions.scope_keys(context, scope)
     changed = decisions.issue_uids(decisions.in_scope(context, scope))
     try:
-        extraction = extract_engine.extract_now(context.scene, extract_engine.Request())
+        request = extract_engine.Request(still=motion_file.read(store))
+        extraction = extract_engine.extract_now(context.scene, request)
         with extraction.model as model:
             options = build_options(extraction, keys)
             store.mkdir(parents=True, exist_ok=True)
@@ -63,7 +64,7 @@ class _Session:
         self.extraction = None
         self.estimate = None
         self.options = None
-        self.request = extract_engine.Request()
+        self.request = extract_engine.Request(still=motion_file.read(self.store))
         self._keys = decisions.scope_keys(context, scope)
         self.build = work.Work()
         self._outcome = {}

@@ -33,6 +33,7 @@ class LODESTONE_RENDER_PT_levels(Panel):
         layout.use_property_decorate = False
         settings = context.scene.lodestone
         layout.prop(settings, "pixel_error_render", text="Pixel Error")
+        layout.prop(settings, "deforming")
         layout.prop(settings, "scope")
         row = layout.row(align=True)
         row.operator("lodestone.update_levels", icon="FILE_REFRESH")

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards animations: what moves is grouped apart, and nothing stands in for what deforms."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+
+def keyed(item, *places):
+    for frame, place in enumerate(places, 1):
+        item.location = place
+        item.keyframe_insert("location", frame=10 * frame)
+    return item
+
+
+def ball(name, collection=None, location=(0, 0, 0)):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4)
+    made = bpy.context.object
+    data = made.data
+    bpy.data.objects.remove(made)
+    item = bpy.data.objects.new(name, data)
+    item.location = location
+    return scenes.link(item, collection)
+
+
+def nodes(item, with_time):
+    tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+    tree.inputs.new("NodeSocketGeometry", "Geometry")
+    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    given, shown = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    moved = tree.nodes.new("GeometryNodeTransform")
+    tree.links.new(given.outputs[0], moved.inputs[0])
+    tree.links.new(moved.outputs[0], shown.inputs[0])
+    if with_time:
+        time = tree.nodes.new("GeometryNodeInputSceneTime")
+        tree.links.new(time.outputs["Seconds"], moved.inputs["Translation"])
+    item.modifiers.new("Nodes", "NODES").node_group = tree
+
+
+def armature(item, animated):
+    rig = scenes.link(bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig")))
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    rig.data.edit_bones.new("Bone").tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    group = item.vertex_groups.new(name="Bone")
+    group.add(range(len(item.data.vertices)), 1.0, "REPLACE")
+    item.modifiers.new("Armature", "ARMATURE").object = rig
+    if animated:
+        bone = rig.pose.bones["Bone"]
+        for frame in (1, 20):
+            bone.location.x = frame
+            bone.keyframe_insert("location", frame=frame)
+
+
+class Found(unittest.TestCase):
+    def setUp(self):
+        scenes.fresh()
+
+    def motion(self):
+        from lodestone.bridge.motion import Motion
+
+        bpy.context.view_layer.update()
+        return Motion()
+
+    def test_what_nothing_animates_rests(self):
+        item = ball("Ball")
+        item.modifiers.new("Subdivision", "SUBSURF")
+        nodes(item, with_time=False)
+        armature(item, animated=False)
+        item.constraints.new("COPY_LOCATION").target = scenes.cube("Other")
+        motion = self.motion()
+        self.assertFalse(motion.moves(item))
+        self.assertFalse(motion.deforms(item))
+
+    def test_keys_drivers_parents_constraints_and_physics_move(self):
+        lead = keyed(ball("Lead"), (0, 0, 0), (5, 0, 0))
+        child = ball("Child")
+        child.parent = lead
+        follower = ball("Follower")
+        follower.constraints.new("COPY_LOCATION").target = child
+        driven = ball("Driven")
+        driven.driver_add("location", 0)
+        motion = self.motion()
+        for item in (lead, child, follower, driven):
+            self.assertTrue(motion.moves(item), item.name)
+            self.assertFalse(motion.deforms(item), item.name)
+
+    def test_a_ring_of_constraints_ends(self):
+        a, b = ball("A"), ball("B")
+        a.constraints.new("COPY_LOCATION").target = b
+        b.constraints.new("COPY_LOCATION").target = a
+        self.assertFalse(self.motion().moves(a))
+
+    def test_rigs_waves_shape_keys_time_nodes_and_hooks_deform(self):
+        skinned, waving, keys, growing, hooked = (
+            ball(name) for name in ("Skinned", "Waving", "Keys", "Growing", "Hooked")
+        )
+        armature(skinned, animated=True)
+        waving.modifiers.new("Wave", "WAVE")
+        keys.shape_key_add(name="Basis")
+        keys.shape_key_add(name="Smile").keyframe_insert("value", frame=1)
+        nodes(growing, with_time=True)
+        hooked.modifiers.new("Hook", "HOOK").object = keyed(
+            scenes.link(bpy.data.objects.new("Empty", None)), (0, 0, 0), (1, 0, 0)
+        )
+        motion = self.motion()
+        for item in (skinned, waving, keys, growing, hooked):
+            self.assertTrue(motion.deforms(item), item.name)
+
+    def test_sampled_frames_tell_what_rests_after_all(self):
+        from lodestone.bridge import ids
+        from lodestone.bridge.motion import Motion, frames_to_sample, sample
+
+        self.assertEqual(frames_to_sample(1, 1), [1])
+        self.assertEqual(frames_to_sample(1, 2), [1, 2])
+        self.assertEqual(frames_to_sample(1, 10), [1, 4, 7, 10])
+        flat = ball("Flat")
+        flat.modifiers.new("Wave", "WAVE").height = 0.0
+        waving = ball("Waving")
+        waving.modifiers.new("Wave", "WAVE")
+        still = keyed(ball("Still"), (1, 0, 0), (1, 0, 0))
+        moving = keyed(ball("Moving"), (0, 0, 0), (5, 0, 0))
+        scene = bpy.context.scene
+        scene.frame_set(7)
+        found = sample(scene, bpy.context.view_layer, frames_to_sample(1, 20))
+        self.assertEqual(scene.frame_current, 7)
+        self.assertEqual(found["still_shape"], [ids.uid_of("object", flat)])
+        self.assertEqual(found["still_place"], [ids.uid_of("object", still)])
+        motion = Motion(found)
+        self.assertFalse(motion.deforms(flat) or motion.moves(still))
+        self.assertTrue(motion.deforms(waving) and motion.moves(moving))
+
+
+class Built(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.store = Path(folder.name)
+        street = scenes.collection("Street", self.scene.collection)
+        for i in range(3):
+            ball(f"Stone {i}", street, (3 * i, 0, 0))
+        keyed(ball("Car", street), (0, 3, 0), (9, 3, 0))
+        ball("Flag", street, (0, 6, 0)).modifiers.new("Wave", "WAVE")
+
+    def build(self, frame):
+        from lodestone import extract_engine
+        from lodestone.core.native import lodestone_native as native
+
+        self.scene.frame_set(frame)
+        request = extract_engine.Request(compare=True)
+        extraction = extract_engine.extract_now(self.scene, request)
+        self.assertEqual(request.differences, [])
+        with extraction.model as model:
+            report = model.build(str(self.store), native.BuildOptions())
+            summaries = [model.object_summary(item) for item in model.objects()]
+            return report.built, {s.name: s.representation_count for s in summaries}
+
+    def test_levels_of_what_rests_and_of_what_moves_are_built_once(self):
+        built, counts = self.build(1)
+        self.assertEqual(built, 2)  # one stone, which the car is too, and the street
+        self.assertEqual(counts["Flag"], 1)
+        self.assertGreater(counts["Street"], 1)  # of the stones alone
+        self.assertEqual(counts["Scene in motion"], 1)
+        self.assertEqual(self.build(10), (0, counts))
+        self.assertEqual(self.build(20), (0, counts))
+
+    def test_as_set_levels_are_made_for_every_frame(self):
+        self.scene.lodestone.deforming = "FRAME"
+        _, counts = self.build(1)
+        self.assertGreater(counts["Flag"], 1)
+        self.assertNotIn("Scene in motion", counts)
+        built, _ = self.build(10)
+        self.assertGreater(built, 0)
+
+    def test_an_instanced_collection_that_moves_inside_has_no_levels_of_its_own(self):
+        hidden = scenes.collection("Ride")
+        keyed(ball("Seat", hidden), (0, 0, 0), (2, 0, 0))
+        ball("Post", hidden)
+        scenes.instance("Ride 1", hidden, (0, 20, 0))
+        _, counts = self.build(1)
+        self.assertEqual(counts["Ride"], 1)
+        built, again = self.build(10)
+        self.assertEqual((built, again), (0, counts))
+
+
+if __name__ == "__main__":
+    unittest.main()
