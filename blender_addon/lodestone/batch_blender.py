@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The half of batch.py that runs inside Blender: one file, one reading of it per frame."""
 
+import contextlib
 import json
 import os
 import resource
@@ -20,13 +21,20 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
-from lodestone.bridge import blend_check  # noqa: E402
+from lodestone.bridge import blend_check, motion  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, process_session  # noqa: E402
-from lodestone.core import progress, report, store_path  # noqa: E402
+from lodestone.core import motion_file, progress, report, store_path  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
-from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
+from lodestone.core.picture import (  # noqa: E402
+    SceneFolder,
+    Settings,
+    cut_and_export,
+    make_picture,
+    remove_others,
+    used_files,
+)
 from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.work import Stopped, Work  # noqa: E402
 
@@ -53,6 +61,9 @@ class FileRun:
         self.work = Work()
         self.clock = progress.StageClock(0)
         self._said = 0.0
+        self._still = None
+        self._folders = contextlib.ExitStack()
+        self._shared: SceneFolder | None = None
         self._told = 0  # problems
 
     def run(self) -> ExitCode:
@@ -60,7 +71,8 @@ class FileRun:
         try:
             self._check_outputs()
             self._open()
-            self._frames()
+            with self._folders:
+                self._frames()
         except (Stopped, KeyboardInterrupt):
             code, text = ExitCode.CANCELLED, "cancelled"
         except Failed as error:
@@ -118,6 +130,8 @@ class FileRun:
         scene = bpy.context.scene
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
+        if first < last:
+            self._sample(scene, first, last)
         for frame in range(first, last + 1):
             requests = self.job.pictures
             if self.job.frames:
@@ -135,10 +149,22 @@ class FileRun:
                 many = self.job.many_pictures
                 self.result.update({"pictures": pictures} if many else pictures[0])
 
+    def _sample(self, scene, first: int, last: int) -> None:
+        """Finds out which animated objects rest after all."""
+        frames = motion.frames_to_sample(first, last)
+        still = motion.sample(scene, bpy.context.view_layer, frames, self._tick)
+        try:
+            motion_file.write(store_path.store_folder(self.job.file, self.job.store), still)
+        except OSError:
+            pass  # a hint for the next job; this one has it
+        self._still = still
+
     def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
         requests = tuple(_filled_up(scene, picture) for picture in requests)
         request = extract_engine.Request(
-            cameras=[(picture.camera, picture.size) for picture in requests], tick=self._tick
+            cameras=[(picture.camera, picture.size) for picture in requests],
+            tick=self._tick,
+            still=self._still,
         )
         wall, cpu = time.monotonic(), time.process_time()
         extraction = extract_engine.extract_now(scene, request)
@@ -155,25 +181,34 @@ class FileRun:
             store = store_path.store_folder(self.job.file, self.job.store)
             self.result["store"] = str(store)
             try:
+                built = {}
                 if self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests):
-                    self._build(model, store)
-                made = []
+                    built = {"build": self._build(model, store)} if self.job.frames else {}
+                made, used = [], set()
                 for picture, (view, size) in zip(requests, request.frames):
-                    made.append(self._picture(scene, model, store, picture, view, size))
+                    made.append(
+                        {**self._picture(scene, model, store, picture, view, size), **built}
+                    )
                     self.problems.extend_native(model.problems())
                     self._tell_picture(picture.out, made[-1])
+                    if self._shared is not None:
+                        used |= used_files(self._shared.path)
+                if self._shared is not None:
+                    remove_others(self._shared.path, used)
             finally:
                 self.problems.extend_native(model.problems())
         return made
 
-    def _build(self, model, store: Path) -> None:
+    def _build(self, model, store: Path) -> dict:
         try:
             store.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise Failed(ExitCode.FAILED, f"cannot make the folder of the levels: {error}")
         options = native.BuildOptions(threads=self.job.threads)
         done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
-        self.result.setdefault("build", report.build_part(done))
+        part = report.build_part(done)
+        self.result.setdefault("build", part)
+        return part
 
     def _picture(
         self, scene, model, store: Path, picture: PictureRequest, view, size: tuple[int, int]
@@ -202,7 +237,7 @@ class FileRun:
         kept = store_path.scene_folder(store)
         if self.job.keep == "always" and self.job.many_pictures:
             kept = kept / Path(picture.out).stem
-        with SceneFolder(kept, self.job.keep.upper()) as folder:
+        with self._scene_folder(kept) as folder:
             try:
                 made = self._long(
                     lambda: make_picture(
@@ -221,6 +256,16 @@ class FileRun:
         if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
             save_thumbnail(picture.out, self.job.thumbnail)
         return {**about, **made.parts, "picture": picture.out}
+
+    def _scene_folder(self, kept: Path):
+        """A context. One folder serves all pictures, so that what did not change is not written
+        again; scenes that are to be looked at afterwards have one each."""
+        keep = self.job.keep.upper()
+        if keep == "ALWAYS" and self.job.many_pictures:
+            return SceneFolder(kept, keep)
+        if self._shared is None:
+            self._shared = self._folders.enter_context(SceneFolder(kept, keep))
+        return contextlib.nullcontext(self._shared)
 
     # ---- What is told at once, for the case that this process does not live to its report ----
 

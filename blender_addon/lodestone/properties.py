@@ -37,8 +37,8 @@ DEFORMING = (
     (
         "FRAME",
         "Simplify Each Frame",
-        "Levels are made for every frame: fewer triangles, but building takes time in each and levels "
-        "may flicker. For stills",
+        "Levels are made for every frame: fewer triangles, but building takes time in each and "
+        "levels may flicker. For stills",
     ),
 )
 KEEP = (

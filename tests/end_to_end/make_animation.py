@@ -37,7 +37,7 @@ def material(name, color):
     return made
 
 
-def ball(name, radius, color, subdivisions=5):
+def ball(name, radius, color, subdivisions=6):
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions, radius=radius)
     item = bpy.context.object
     mesh = item.data

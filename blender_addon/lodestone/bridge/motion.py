@@ -8,7 +8,7 @@ would be those of one frame. `Motion` tells from how objects are animated, which
 
 import hashlib
 from array import array
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from . import ids
@@ -202,10 +202,12 @@ def frames_to_sample(first: int, last: int, count: int = 4) -> list[int]:
     return sorted({first + round(i * (last - first) / (count - 1)) for i in range(count)})
 
 
-def sample(scene: Any, view_layer: Any, frames: Iterable[int]) -> dict[str, list[str]]:
+def sample(
+    scene: Any, view_layer: Any, frames: Iterable[int], tick: Callable[[], None] = lambda: None
+) -> dict[str, list[str]]:
     """Evaluates the scene at each frame (and at its own again afterwards) and compares what might
     move or deform. Returns the uids of what turned out not to: {"still_shape", "still_place"}.
-    On the main thread, not while rendering."""
+    `tick()` is called between objects. On the main thread, not while rendering."""
     motion = Motion()
     before = scene.frame_current, scene.frame_subframe
     shapes: dict[str, set[bytes]] = {}
@@ -218,6 +220,7 @@ def sample(scene: Any, view_layer: Any, frames: Iterable[int]) -> dict[str, list
                 shape, place = motion.deforms(item), motion.moves(item)
                 if not (shape or place):
                     continue
+                tick()
                 uid = ids.uid_of("object", item)
                 evaluated = item.evaluated_get(depsgraph)
                 if place:

@@ -98,6 +98,24 @@ def make_picture(
     return Picture(folder / PICTURE, parts, in_use)
 
 
+def used_files(folder: Path) -> set[str]:
+    """Names of the representations that the scene in a folder includes."""
+    found = set()
+    with open(folder / "scene.pov", encoding="utf-8", errors="replace") as lines:
+        for line in lines:
+            if line.startswith('#include "r/'):
+                found.add(line[len('#include "r/') :].rstrip().rstrip('"'))
+    return found
+
+
+def remove_others(folder: Path, used: set[str]) -> None:
+    """Removes the representations that no scene of the frame used: what deforms is written anew in
+    every frame, and a long animation must not fill the disk."""
+    for path in (folder / "r").glob("*.inc"):
+        if path.name not in used:
+            path.unlink(missing_ok=True)
+
+
 class SceneFolder:
     """Where scene files go: `keep` is NEVER, FAILED or ALWAYS. A context; `path` names it.
 
