@@ -54,6 +54,10 @@ void check_view(const View& view) {
         fail(Status::InvalidArgument, "the camera '", camera.name, "' sees no volume");
 }
 
+bool blurred(const Camera& camera) {
+    return !camera.orthographic && camera.focus_distance > 0 && camera.aperture > 0;
+}
+
 void append_camera(std::string& out, const Camera& camera, Antialiasing antialiasing,
                    Problems& problems) {
     out += camera.orthographic ? "camera{orthographic\n" : "camera{perspective\n";
@@ -68,13 +72,11 @@ void append_camera(std::string& out, const Camera& camera, Antialiasing antialia
         append_vector(out, value, 15);
         out += '\n';
     }
-    if (camera.focus_distance > 0 && camera.aperture > 0) {
-        if (camera.orthographic)
-            problems.push_back({camera.name, Severity::Warning, "depth_of_field",
-                                "is sharp at every depth: POV-Ray blurs perspective cameras only"});
-        else
-            append_blur(out, camera, antialiasing);
-    }
+    if (blurred(camera))
+        append_blur(out, camera, antialiasing);
+    else if (camera.focus_distance > 0 && camera.aperture > 0)
+        problems.push_back({camera.name, Severity::Warning, "depth_of_field",
+                            "is sharp at every depth: POV-Ray blurs perspective cameras only"});
     out += "}\n\n";
 }
 

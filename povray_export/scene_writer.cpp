@@ -326,6 +326,8 @@ private:
             }
         }
         out += transparent() ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
+        if (blurred(view_.camera))
+            return out + "Antialias=Off\n";
         switch (options_.antialiasing) {
             case Antialiasing::Off:
                 return out + "Antialias=Off\n";
