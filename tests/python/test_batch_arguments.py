@@ -158,6 +158,23 @@ class Views(unittest.TestCase):
         self.assertEqual([p.pixel_error for p in pictures], [None, 0.0])  # None: as the file has it
         self.assertEqual([p.size for p in pictures], [(640, 360), (64, 36)])
 
+    def test_of_several_files_each_has_a_folder_of_its_own(self):
+        self.path.write_text(json.dumps([{"out": "x/one.png"}, {"out": "two.png"}]))
+        views = ("--views", str(self.path))
+        found = parse("render", "a.blend", "b.blend", *views, "--out", "/pictures")
+        self.assertEqual(
+            [[picture.out for picture in job.pictures] for job in found],
+            [
+                ["/pictures/a/one.png", "/pictures/a/two.png"],
+                ["/pictures/b/one.png", "/pictures/b/two.png"],
+            ],
+        )
+        with self.assertRaisesRegex(ValueError, "--out"):
+            parse("render", "a.blend", "b.blend", *views)
+        self.path.write_text(json.dumps([{"out": "x/one.png"}, {"out": "y/one.png"}]))
+        with self.assertRaisesRegex(ValueError, "same name"):
+            parse("render", "a.blend", "b.blend", *views, "--out", "/pictures")
+
     def test_mistakes_are_named_with_their_entry(self):
         for value, word in (
             ({}, "list"),

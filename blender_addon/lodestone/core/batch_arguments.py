@@ -3,6 +3,7 @@
 
 import argparse
 from argparse import BooleanOptionalAction
+from dataclasses import replace
 from pathlib import Path
 
 from . import batch_values
@@ -108,7 +109,8 @@ def _add_picture(verb: argparse.ArgumentParser) -> None:
 
 def _add_render(render: argparse.ArgumentParser) -> None:
     render.add_argument("--views", metavar="FILE", help="JSON list of pictures to render from one "
-                        f"reading of one file: objects of {', '.join(VIEW_KEYS)}")  # fmt: skip
+                        f"reading: objects of {', '.join(VIEW_KEYS)}; several files: each's in "
+                        "a folder of its own in --out")  # fmt: skip
     render.add_argument("--skip-existing", action=BooleanOptionalAction, default=False,
                         help="leave alone every picture that is there and whole")  # fmt: skip
     render.add_argument("--keep", choices=KEEP, default="failed", help="files of the POV-Ray "
@@ -139,9 +141,11 @@ def _job(options: argparse.Namespace, file: Path) -> FileJob:
     frames = getattr(options, "frames", None)
     pictures: tuple[PictureRequest, ...] = ()
     if getattr(options, "views", None):
-        if several or frames:
-            raise ValueError("--views goes with one file and no --frames")
+        if frames:
+            raise ValueError("--views goes without --frames")
         pictures = read_views(options.views, options)
+        if several:
+            pictures = _in_folders(pictures, options.out, file)
     elif options.verb != "build":
         if not options.out:
             raise ValueError("--out is missing: where should it go?")
@@ -160,6 +164,19 @@ def _job(options: argparse.Namespace, file: Path) -> FileJob:
         strict=options.strict,
         trust_scripts=options.trust_scripts,
     )
+
+
+def _in_folders(
+    pictures: tuple[PictureRequest, ...], out: str | None, file: Path
+) -> tuple[PictureRequest, ...]:
+    """The views of one of several files: their names, in a folder of the file's."""
+    if not out:
+        raise ValueError("--views of several files needs --out, a folder: theirs go into it")
+    folder = Path(out).absolute() / file.stem
+    moved = tuple(replace(p, out=str(folder / Path(p.out).name)) for p in pictures)
+    if len({picture.out for picture in moved}) < len(moved):
+        raise ValueError("--views: two pictures have the same name, so they need one file each")
+    return moved
 
 
 def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> PictureRequest:
