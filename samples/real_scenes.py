@@ -5,7 +5,7 @@
 
 FOLDER holds scenes/ as listed below: .blend files, and glTF files that Blender imports (with
 python3-numpy). Each becomes a .blend under --out, with a camera and a light where it has none; all
-of them go through batch.py at once, at either Pixel Error. Writes report.md and prints its table.
+of them go through batch.py in one call. Writes report.md and prints its table.
 """
 
 import argparse
@@ -57,22 +57,26 @@ def prepare(data: Path, out: Path) -> list[Path]:
     return [Path(job["out"]) for job in jobs]
 
 
-def render(blends: list[Path], out: Path, size: str) -> dict[str, dict]:
-    """{"full": {scene: what batch.py reports on its picture}, "one": ...}"""
+def render(blends: list[Path], out: Path, size: str) -> dict[str, dict[str, dict]]:
+    """{scene: {"full": what batch.py reports on that picture, "one": ...}}"""
+    shutil.rmtree(out / "store", ignore_errors=True)
+    views, report = out / "views.json", out / "report.json"
+    first = out / blends[0].stem  # of several files, each has its own
+    wanted = [
+        {"out": str(first / f"{name}.png"), "pixel_error": t} for name, t in PIXEL_ERRORS.items()
+    ]
+    views.write_text(json.dumps(wanted), "utf-8")
+    command = ["/usr/bin/python3", str(ADDON / "batch.py"), "render", *map(str, blends)]
+    command += ["--views", str(views), "--out", str(out), "--store", str(out / "store")]
+    command += ["--size", size, "--json", str(report)]
+    subprocess.run(command, check=False)
+    whole = json.loads(report.read_text("utf-8"))
     found = {}
-    shutil.rmtree(out / "store", ignore_errors=True)  # times are those of the first build
-    for name, pixel_error in PIXEL_ERRORS.items():
-        report = out / f"{name}.json"
-        command = ["/usr/bin/python3", str(ADDON / "batch.py"), "render", *map(str, blends)]
-        command += ["--out", str(out / name), "--store", str(out / "store"), "--size", size]
-        command += ["--pixel-error", str(pixel_error), "--json", str(report)]
-        subprocess.run(command, check=False)
-        whole = json.loads(report.read_text("utf-8"))
-        files = whole.get("files", [whole])
-        found[name] = {Path(file["input"]).stem: file for file in files}
-        for file in files:
-            if "cut" not in file:
-                sys.exit(f"real_scenes.py: {file['input']}: {file.get('message', 'no picture')}")
+    for file in whole.get("files", [whole]):
+        if len(file.get("pictures", ())) < len(wanted):
+            sys.exit(f"real_scenes.py: {file['input']}: {file.get('message', 'no picture')}")
+        pictures = {Path(picture["picture"]).stem: picture for picture in file["pictures"]}
+        found[Path(file["input"]).stem] = pictures
     return found
 
 
@@ -90,14 +94,14 @@ def row(name: str, made: dict, empty: int, difference) -> str:
     )
 
 
-def table(found: dict[str, dict], size: str) -> str:
+def table(found: dict[str, dict[str, dict]], size: str) -> str:
     sys.path.insert(0, str(ADDON))
     import lodestone_native as native
 
     empty = native.povray_empty_bytes(*map(int, size.split("x")))
     lines = [HEADER]
-    for name, full in found["full"].items():
-        one = found["one"][name]
+    for name, pictures in found.items():
+        full, one = pictures["full"], pictures["one"]
         difference = native.image_compare(full["picture"], one["picture"])
         lines += [row(name, full, empty, None), row(name, one, empty, difference)]
     return "\n".join(lines) + "\n"
