@@ -225,6 +225,36 @@ static void test_pictures_and_textures_are_checked(void) {
     picture.path = "nowhere.png";
     EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_ERROR_IO);
 
+    lds_bake_step steps[2] = {{LDS_BAKE_TEXEL, {0, 0, 0}, {0}, NULL, 0},
+                              {LDS_BAKE_CHANNEL, {0, 0, 0}, {2, 0, 0, 0}, NULL, 0}};
+    lds_texture two = {0};
+    two.picture = 1;
+    two.to_picture[0] = two.to_picture[4] = 1;
+    lds_bake bake = {0};
+    bake.struct_size = sizeof bake;
+    bake.name = "blue";
+    bake.steps = steps;
+    bake.step_count = 2;
+    bake.textures = &two;
+    bake.texture_count = 1;
+    bake.linear = 1;
+    EXPECT(lds_model_bake_picture(model, &bake, NULL, &index) == LDS_OK && index == 1);
+    double blue[3] = {-1, -1, -1};
+    two.picture = 2;
+    two.scale[0] = two.scale[1] = two.scale[2] = 1;
+    EXPECT(lds_model_texture_mean(model, &two, blue) == LDS_OK && blue[0] == 0.5);
+    two.picture = 3;
+    EXPECT(lds_model_bake_picture(model, &bake, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    bake.texture_count = 0;
+    EXPECT(lds_model_bake_picture(model, &bake, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    steps[0].op = LDS_BAKE_RAMP;
+    steps[0].table_count = 3;
+    EXPECT(lds_model_bake_picture(model, &bake, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    bake.steps = NULL;
+    EXPECT(lds_model_bake_picture(model, &bake, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_bake_picture(model, NULL, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(index == 1);
+
     lds_material material = lds_material_default();
     material.name = "brick";
     material.base_color_texture.picture = 1;
@@ -241,13 +271,48 @@ static void test_pictures_and_textures_are_checked(void) {
     EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
     material.other = 1;
     EXPECT(lds_model_add_material(model, &material, &index) == LDS_OK && index == 1);
-    material.base_color_texture.picture = 2;
+    material.base_color_texture.picture = 7;
     EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(strstr(lds_last_error_text(), "'brick'") != NULL);
     material.base_color_texture.picture = 1;
     material.base_color_texture.channel = 17;
     EXPECT(lds_model_add_material(model, &material, &index) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
+}
+
+static void test_texture_coordinates_are_projected(void) {
+    const float positions[9] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
+    const uint32_t triangles[3] = {0, 1, 2};
+    const int32_t slots[1] = {5};
+    lds_mesh_view mesh = {0};
+    mesh.struct_size = sizeof mesh;
+    mesh.positions = positions;
+    mesh.vertex_count = 3;
+    mesh.triangles = triangles;
+    mesh.triangle_count = 1;
+    mesh.slots = slots;
+    lds_uv_projection flat = {0};
+    flat.struct_size = sizeof flat;
+    flat.to_space[0] = flat.to_space[5] = flat.to_space[10] = 0.5;
+    flat.to_space[3] = 1;
+    flat.slot_count = 2; /* slot 5 counts as the last */
+    float uvs[6] = {9, 9, 9, 9, 9, 9};
+    flat.slot = 0;
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK && uvs[0] == 9);
+    flat.slot = 1;
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK);
+    EXPECT(uvs[0] == 1 && uvs[1] == 0 && uvs[2] == 2 && uvs[5] == 1);
+    const float points[9] = {4, 4, 4, 4, 4, 4, 4, 4, 4};
+    flat.points = points;
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK && uvs[0] == 3);
+    flat.projection = 4;
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    flat.projection = LDS_PROJECTION_BOX;
+    mesh.vertex_count = 2;
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_mesh_project_uvs(&mesh, NULL, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_mesh_project_uvs(&mesh, &flat, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(uvs[0] == 3);
 }
 
 static void test_a_cube_is_seen_all_around(void) {
@@ -354,6 +419,7 @@ int main(void) {
     test_choices_carry_the_path_of_placements();
     if (lds_rays_check() == LDS_OK) {
         test_pictures_and_textures_are_checked();
+        test_texture_coordinates_are_projected();
         test_a_cube_is_seen_all_around();
         test_simplifying_a_flat_grid_costs_no_shape();
     }

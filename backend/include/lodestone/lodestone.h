@@ -235,6 +235,25 @@ typedef struct lds_strands_view {
                              as the nearest slot */
     const float* uvs;     /* float32[strand_count][2]: of the surface at its root; null: none */
 } lds_strands_view;
+
+typedef enum lds_projection {
+    LDS_PROJECTION_FLAT = 0,   /* x and y */
+    LDS_PROJECTION_BOX = 1,    /* by the side of a cube that a triangle faces most */
+    LDS_PROJECTION_SPHERE = 2, /* longitude and latitude around (1/2, 1/2, 1/2) */
+    LDS_PROJECTION_TUBE = 3    /* longitude around that point's z axis, and z */
+} lds_projection;
+
+/* Texture coordinates of a slot's corners from positions: those projected of to_space (x, y, z, 1). */
+typedef struct lds_uv_projection {
+    uint32_t struct_size;
+    int32_t projection;  /* lds_projection */
+    double to_space[12]; /* row-major 3x4 */
+    const float* points; /* float32[vertex_count][3] to take instead of the mesh's positions; may be
+                            null */
+    int32_t slot;        /* only triangles of this slot; < 0: all */
+    uint32_t slot_count; /* slots outside 0...slot_count-1 count as the nearest */
+} lds_uv_projection;
+
 typedef enum lds_light_kind {
     LDS_LIGHT_SUN = 0,
     LDS_LIGHT_POINT = 1,
@@ -305,9 +324,64 @@ LDS_API lds_status lds_model_add_picture(lds_model* model, const lds_picture* pi
    is the first of out_color with a channel other than COLOR. */
 LDS_API lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
                                           double out_color[3]);
+typedef enum lds_bake_op { /* what a step does with the results a, b, c of earlier ones */
+                           LDS_BAKE_CONSTANT = 0, /* value */
+                           LDS_BAKE_TEXEL =
+                               1, /* color and alpha of texture args[0], by its picture, mapping, extension */
+                           LDS_BAKE_CHANNEL = 2, /* a's channel value[0] (0...3), in all channels */
+                           LDS_BAKE_LUMA = 3,    /* of a, in all channels */
+                           LDS_BAKE_COMBINE = 4, /* red of a, green of b, blue of c */
+                           LDS_BAKE_ADD = 5,
+                           LDS_BAKE_SUBTRACT = 6,
+                           LDS_BAKE_MULTIPLY = 7,
+                           LDS_BAKE_DIVIDE = 8, /* 0 where b is 0 */
+                           LDS_BAKE_POWER = 9,  /* 0 where it has no real value */
+                           LDS_BAKE_MINIMUM = 10,
+                           LDS_BAKE_MAXIMUM = 11,
+                           LDS_BAKE_MIX = 12,     /* a + c (b - a) */
+                           LDS_BAKE_GREATER = 13, /* 1 where a > b, else 0 */
+                           LDS_BAKE_ABSOLUTE = 14,
+                           LDS_BAKE_FLOOR = 15,
+                           LDS_BAKE_MODULO = 16, /* with a's sign; 0 where b is 0 */
+                           LDS_BAKE_RAMP = 17,   /* the table's color at a's red */
+                           LDS_BAKE_CURVES =
+                               18, /* each channel of a to the same channel of the table */
+                           LDS_BAKE_TO_HSV = 19, /* all 0...1 */
+                           LDS_BAKE_FROM_HSV = 20,
+                           LDS_BAKE_TO_SRGB = 21, /* display-encodes linear color */
+                           LDS_BAKE_FROM_SRGB = 22
+} lds_bake_op;
+
+typedef struct lds_bake_step {
+    int32_t op;       /* lds_bake_op, by channel unless it says otherwise */
+    uint32_t args[3]; /* a, b, c: earlier steps */
+    double value[4];
+    const float* table; /* float32[table_count][4] over 0...1, linear between; RAMP, CURVES */
+    size_t table_count;
+} lds_bake_step;
+
+typedef struct lds_bake {
+    uint32_t struct_size;
+    const char* name;            /* the new picture's */
+    const lds_bake_step* steps;  /* the last one's color is the texel's */
+    size_t step_count;           /* at most 256 */
+    const lds_texture* textures; /* to_picture takes the new picture's coordinates */
+    size_t texture_count;
+    int32_t width; /* 0: as the largest picture, at most 4096 a side */
+    int32_t height;
+    int32_t linear; /* as in lds_picture: 0 keeps color display-encoded */
+} lds_bake;
+/* Adds a picture computed from others, texel by texel; opaque, cut to 0...1, an 8-bit PNG. out_index
+   as lds_model_add_picture's. */
+LDS_API lds_status lds_model_bake_picture(lds_model* model, const lds_bake* bake, lds_job* job,
+                                          uint32_t* out_index);
 /* out_index: of the new material, rising from 0. */
 LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* material,
                                           uint32_t* out_index);
+/* Writes the projected coordinates to out_corner_uvs (float32[corner_count][2]; without corners
+   float32[vertex_count][2]); corners of other slots are left as they are. Not finite ones become 0. */
+LDS_API lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh,
+                                        const lds_uv_projection* projection, float* out_corner_uvs);
 /* Adds an object with one mesh; materials[slot] are indices of added materials (none: a grey one).
    Vertices that are not numbers, and the triangles that use them, are left out with a problem. */
 LDS_API lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,

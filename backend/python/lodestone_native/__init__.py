@@ -5,14 +5,17 @@ No bpy, no numpy, nothing compiled per Python version. Importing never loads the
 call does, and says in one sentence when it cannot.
 """
 
+from .bake import BakeStep
 from .cut import Cut
 from .enums import (
     AlphaMode,
     Antialias,
+    BakeOp,
     Channel,
     Extension,
     Kind,
     LightKind,
+    Projection,
     RayClass,
     Role,
     Severity,
@@ -48,12 +51,15 @@ from .povray import (
     povray_find,
     povray_run,
 )
+from .projection import project_uvs
 from .structs import Object
 from .view import Camera, Light, View
 
 __all__ = [
     "AlphaMode",
     "Antialias",
+    "BakeOp",
+    "BakeStep",
     "BuildOptions",
     "Camera",
     "Channel",
@@ -70,6 +76,7 @@ __all__ = [
     "Model",
     "Object",
     "PovrayOptions",
+    "Projection",
     "RayClass",
     "Role",
     "Severity",
@@ -90,6 +97,7 @@ __all__ = [
     "povray_false_color",
     "povray_find",
     "povray_run",
+    "project_uvs",
     "rays_check",
     "surface_inertia",
     "texture",

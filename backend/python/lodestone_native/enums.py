@@ -74,6 +74,43 @@ class Extension(IntEnum):
     MIRROR = 3
 
 
+class BakeOp(IntEnum):
+    """What a step of a bake does with the results a, b, c of earlier ones."""
+
+    CONSTANT = 0
+    TEXEL = 1
+    CHANNEL = 2
+    LUMA = 3
+    COMBINE = 4
+    ADD = 5
+    SUBTRACT = 6
+    MULTIPLY = 7
+    DIVIDE = 8
+    POWER = 9
+    MINIMUM = 10
+    MAXIMUM = 11
+    MIX = 12
+    GREATER = 13
+    ABSOLUTE = 14
+    FLOOR = 15
+    MODULO = 16
+    RAMP = 17
+    CURVES = 18
+    TO_HSV = 19
+    FROM_HSV = 20
+    TO_SRGB = 21
+    FROM_SRGB = 22
+
+
+class Projection(IntEnum):
+    """How texture coordinates are made from positions."""
+
+    FLAT = 0
+    BOX = 1
+    SPHERE = 2
+    TUBE = 3
+
+
 class AlphaMode(IntEnum):
     OPAQUE = 0
     BLEND = 1

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import structs
+from .bake import BakeStep, bake
 from .handle import Handle
 from .enums import Channel, Extension, Role
 from .job import Job
@@ -192,6 +193,21 @@ class Model(Handle):
         )
         index = ctypes.c_uint32()
         check(library().lds_model_add_picture(self.handle, picture, ctypes.byref(index)))
+        return index.value
+
+    def bake_picture(
+        self,
+        name: str,
+        steps: Sequence[BakeStep],
+        textures: Sequence[structs.Texture],
+        size: tuple[int, int] = (0, 0),
+        linear: bool = False,
+    ) -> int:
+        """A picture computed from others, as large as the largest of them when no size is given;
+        linear as in add_picture(). Its index."""
+        given = bake(name, steps, textures, size, linear)
+        index = ctypes.c_uint32()
+        check(library().lds_model_bake_picture(self.handle, given, None, ctypes.byref(index)))
         return index.value
 
     def texture_mean(self, given: structs.Texture) -> tuple[float, float, float]:

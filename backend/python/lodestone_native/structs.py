@@ -83,6 +83,30 @@ class Texture(Structure):
     ]
 
 
+class BakeStep(Structure):
+    _fields_ = [
+        ("op", c_int32),
+        ("args", c_uint32 * 3),
+        ("value", c_double * 4),
+        ("table", c_void_p),
+        ("table_count", c_size_t),
+    ]
+
+
+class Bake(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("name", c_char_p),
+        ("steps", POINTER(BakeStep)),
+        ("step_count", c_size_t),
+        ("textures", POINTER(Texture)),
+        ("texture_count", c_size_t),
+        ("width", c_int32),
+        ("height", c_int32),
+        ("linear", c_int32),
+    ]
+
+
 class Material(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -141,6 +165,17 @@ class StrandsView(Sized):
         ("strand_count", c_size_t),
         ("slots", c_void_p),
         ("uvs", c_void_p),
+    ]
+
+
+class UvProjection(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("projection", c_int32),
+        ("to_space", c_double * 12),
+        ("points", c_void_p),
+        ("slot", c_int32),
+        ("slot_count", c_uint32),
     ]
 
 

@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "image/bake.h"
 #include "image/sampler.h"
 
 #include <algorithm>
@@ -126,7 +127,76 @@ private:
     std::string owner_;
 };
 
+/// The model's index of a picture; that of an equal one when there is one.
+uint32_t index_of(lds_model& model, const PicturePtr& made) {
+    auto& pictures = model.pictures;
+    const auto same = std::find_if(pictures.begin(), pictures.end(),
+                                   [&](const PicturePtr& p) { return p->hash == made->hash; });
+    const auto index = static_cast<uint32_t>(same - pictures.begin());
+    if (same == pictures.end())
+        pictures.push_back(made);
+    return index;
+}
+
+std::vector<image::BakeStep> steps_of(const lds_bake& given) {
+    constexpr size_t kMostTable = 1u << 16u;
+    std::vector<image::BakeStep> steps;
+    if (given.step_count > image::kMostBakeSteps)
+        fail(Status::InvalidArgument, "bake.step_count is ", given.step_count);
+    for (size_t i = 0; i < given.step_count; ++i) {
+        const lds_bake_step& from = given.steps[i];
+        if (from.op < LDS_BAKE_CONSTANT || from.op > LDS_BAKE_FROM_SRGB ||
+            from.table_count > kMostTable || (from.table == nullptr && from.table_count > 0))
+            fail(Status::InvalidArgument, "step ", i, " of bake '", name_of(given.name),
+                 "' has op ", from.op, " and a table of ", from.table_count);
+        image::BakeStep step;
+        step.op = static_cast<image::BakeOp>(from.op);
+        for (size_t a = 0; a < 3; ++a)
+            step.args[a] = from.args[a];
+        step.value = {from.value[0], from.value[1], from.value[2], from.value[3]};
+        for (size_t k = 0; k < from.table_count; ++k) {
+            const float* row = from.table + 4 * k;
+            step.table.emplace_back(row[0], row[1], row[2], row[3]);
+        }
+        steps.push_back(std::move(step));
+    }
+    return steps;
+}
+
 }  // namespace
+
+lds_status lds_model_bake_picture(lds_model* model, const lds_bake* bake, lds_job* job,
+                                  uint32_t* out_index) {
+    return guard([&] {
+        require(model, "model");
+        require(out_index, "out_index");
+        const lds_bake& given = checked(bake, "bake");
+        const std::string name = name_of(given.name);
+        if (given.step_count > 0)
+            require(given.steps, "bake.steps");
+        if (given.texture_count > 0)
+            require(given.textures, "bake.textures");
+        if (given.texture_count > image::kMostBakeSteps)
+            fail(Status::InvalidArgument, "bake.texture_count is ", given.texture_count);
+        std::vector<Texture> textures;
+        int width = given.width;
+        int height = given.height;
+        for (size_t i = 0; i < given.texture_count; ++i) {
+            textures.push_back(texture_of(*model, given.textures[i], "bake '" + name + "'"));
+            const PicturePtr& picture = textures.back().picture;
+            if (!picture)
+                fail(Status::InvalidArgument, "texture ", i, " of bake '", name,
+                     "' has no picture");
+            if (given.width == 0)
+                width = std::clamp(picture->width, std::max(width, 1), image::kMostBakeSide);
+            if (given.height == 0)
+                height = std::clamp(picture->height, std::max(height, 1), image::kMostBakeSide);
+        }
+        const ColorSpace space = given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb;
+        *out_index = index_of(*model, image::bake_picture(steps_of(given), textures, width, height,
+                                                          space, name, job_of(job)));
+    });
+}
 
 lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
                                  uint32_t* out_index) {
@@ -137,12 +207,7 @@ lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
         const std::string name = name_of(given.name);
         const PicturePtr made = image::make_picture(
             bytes_of(given, name), given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb, name);
-        auto& pictures = model->pictures;
-        const auto same = std::find_if(pictures.begin(), pictures.end(),
-                                       [&](const PicturePtr& p) { return p->hash == made->hash; });
-        *out_index = static_cast<uint32_t>(same - pictures.begin());
-        if (same == pictures.end())
-            pictures.push_back(made);
+        *out_index = index_of(*model, made);
     });
 }
 

@@ -155,6 +155,13 @@ Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr 
         texels_ = nullptr;
 }
 
+glm::dvec4 Sampler::at(int column, int row) const {
+    const float* from =
+        texels_->rgba.data() + 4 * (static_cast<size_t>(row) * static_cast<size_t>(texels_->width) +
+                                    static_cast<size_t>(column));
+    return {from[0], from[1], from[2], from[3]};
+}
+
 glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
     const int width = texels_->width;
     const int height = texels_->height;
@@ -181,10 +188,7 @@ glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
         const int64_t row = wrapped(static_cast<int64_t>(top) + low, height, texture_.extension);
         if (column < 0 || row < 0)
             continue;
-        const float* from =
-            texels_->rgba.data() + 4 * (static_cast<size_t>(row) * static_cast<size_t>(width) +
-                                        static_cast<size_t>(column));
-        sum += weight * glm::dvec4(from[0], from[1], from[2], from[3]);
+        sum += weight * this->at(static_cast<int>(column), static_cast<int>(row));
     }
     return sum;
 }

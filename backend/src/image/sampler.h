@@ -36,10 +36,14 @@ public:
     explicit operator bool() const { return texels_ != nullptr; }
     glm::dvec3 color(glm::dvec2 uv) const;
     double number(glm::dvec2 uv) const;
+    /// The picture's own color and alpha there. There must be a picture.
+    glm::dvec4 texel(glm::dvec2 uv) const;
+    /// The texel of a column and row (0: the top one).
+    glm::dvec4 at(int column, int row) const;
+    int width() const { return texels_->width; }
+    int height() const { return texels_->height; }
 
 private:
-    glm::dvec4 texel(glm::dvec2 uv) const;
-
     Texture texture_;
     glm::dvec3 otherwise_;
     TexelsPtr texels_;  // null: none
