@@ -5,6 +5,11 @@ from array import array
 from typing import Any
 
 
+def buffer(code: str, count: int) -> array:
+    """Of 4-byte items, all 0."""
+    return array(code, bytes(4 * count))
+
+
 def corner_normals(mesh: Any, buffer: array) -> None:
     """Normals of all corners into a float buffer [corner][3]."""
     if hasattr(mesh, "calc_normals_split"):  # until 4.0
@@ -21,6 +26,17 @@ def corner_uvs(layer: Any, buffer: array) -> None:
         layer.uv.foreach_get("vector", buffer)
     else:
         layer.data.foreach_get("uv", buffer)
+
+
+def color_attribute(mesh: Any, name: str) -> Any | None:
+    """The color attribute of that name, else, for "", the one active for rendering."""
+    attributes = mesh.color_attributes
+    if name:
+        found = attributes.get(name)
+    else:
+        index = getattr(attributes, "render_color_index", 0)
+        found = attributes[index] if 0 <= index < len(attributes) else None
+    return found if found is not None and found.domain in {"POINT", "CORNER"} else None
 
 
 def set_pass(render_pass: Any, width: int, height: int, pixels: array) -> None:

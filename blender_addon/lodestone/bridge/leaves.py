@@ -6,7 +6,7 @@ from typing import Any
 
 from ..core import identity
 from ..core.problems import ERROR, Problems
-from . import ids, mesh, strands
+from . import ids, mesh, mesh_uvs, strands
 from .materials import Materials
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
@@ -42,8 +42,8 @@ class Leaves:
         self._scene = scene
         self._uids = uids
         self._problems = problems
-        self._materials = Materials(model, problems)
-        self._colored: dict[int, bool] = {}  # materials that show their object's color
+        self._materials = Materials(model, problems, frame=scene.frame_current)
+        self._varying: dict[tuple, tuple[bool, list | None]] = {}  # by materials
         self._black: int | None = None
         self._found: dict[tuple, Leaf | None] = {}
 
@@ -67,11 +67,28 @@ class Leaves:
 
     def _get(self, data: Any, shown: Any, owner: Any, look: Look, add: Any) -> Leaf | None:
         slots = material_slots(shown)
-        color = self._color(shown, slots)
-        key = (data, tuple(m.as_pointer() if m else 0 for m in slots), color, look)
+        materials = tuple(m.as_pointer() if m else 0 for m in slots)
+        color, frames = self._seen_from(shown, slots, materials)
+        key = (data, materials, color, frames, look)
         if key not in self._found:
             self._found[key] = add(shown, owner, slots, color, look)
         return self._found[key]
+
+    def _seen_from(
+        self, shown: Any, slots: list, materials: tuple
+    ) -> tuple[Color | None, tuple | None]:
+        """What of the object its materials show: its color, and where it is seen from others."""
+        if materials not in self._varying:
+            wanted = [self._materials.wanted(material) for material in slots]
+            self._varying[materials] = (
+                any(self._materials.shows_object_color(material) for material in slots),
+                wanted if mesh_uvs.depend_on_place(wanted) else None,
+            )
+        colored, wanted = self._varying[materials]
+        return (
+            tuple(shown.color) if colored else None,
+            mesh_uvs.frames(shown, wanted) if wanted else None,
+        )
 
     # ---- What they are made of ----
 
@@ -84,8 +101,8 @@ class Leaves:
                 buffers = strands.curves(shown.data)
                 size = 0 if buffers is None else len(buffers.counts)
             else:
-                textured = any(self._materials.textured(material) for material in slots)
-                buffers = mesh.extract(shown, len(slots), textured)
+                wanted = [self._materials.wanted(material, color) for material in slots]
+                buffers = mesh.extract(shown, wanted)
                 size = 0 if buffers is None else len(buffers.triangles) // 3
         except RuntimeError as error:
             text = f'Object "{owner.name}" cannot be read and is left out: {error}'
@@ -132,26 +149,7 @@ class Leaves:
                     "Holdout", base_color=black, roughness=1.0, specular=0.0
                 )
             return [self._black] * max(1, len(slots))
-        if color is None:
-            return [self._materials.index(material) for material in slots]
-        return [
-            self._materials.index(m, color) if self._is_colored(m) else self._materials.index(m)
-            for m in slots
-        ]
-
-    def _color(self, shown: Any, slots: list) -> Color | None:
-        """The object's color, when one of its materials shows it."""
-        if any(self._is_colored(material) for material in slots):
-            return tuple(shown.color)
-        return None
-
-    def _is_colored(self, material: Any | None) -> bool:
-        if material is None or not material.use_nodes or material.node_tree is None:
-            return False
-        key = material.as_pointer()
-        if key not in self._colored:
-            self._colored[key] = _shows_object_color(material.node_tree, set())
-        return self._colored[key]
+        return [self._materials.index(material, color) for material in slots]
 
     # ---- Names ----
 
@@ -191,17 +189,3 @@ def material_slots(shown: Any) -> list[Any]:
 
 def _names(slots: list) -> tuple[str, ...]:
     return tuple(material.name if material else "" for material in slots)
-
-
-def _shows_object_color(tree: Any, seen: set[int]) -> bool:
-    """Whether an Object Info node's Color is used in a tree or a group within it."""
-    if tree.as_pointer() in seen:
-        return False
-    seen.add(tree.as_pointer())
-    for node in tree.nodes:
-        if node.type == "OBJECT_INFO" and node.outputs["Color"].is_linked:
-            return True
-        if node.type == "GROUP" and node.node_tree is not None:
-            if _shows_object_color(node.node_tree, seen):
-                return True
-    return False

@@ -1,252 +1,284 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender materials as the backend's: base color, roughness, metallic, specular, emission.
+"""Blender materials as the backend's.
 
 What cannot be said exactly gets the nearest thing that can, and a problem naming the material:
-nothing turns grey silently.
+nothing turns gray silently. What counts is what Cycles draws: EEVEE's blend modes do nothing.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
-from . import compat, ids
+from ..core import expression as e
+from ..core.expression import Expression, Op
+from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
-from .images import ImageMeans
-from .node_values import NodeValues
+from . import graph, ids, looks
+from .coordinates import Coordinates
+from .looks import DEFAULT, Look, Value, VertexColors, gray
+from .node_expressions import NodeExpressions, Setting, mean_of
+from .pictures import NoPictures, Pictures
+from .shaders import Clear, Shader, Shaders, Surface, each_surface
+from .textures import Textures, main_coordinates
 
-_TRANSPARENT = {"BSDF_TRANSPARENT", "HOLDOUT"}
-_GLASS = {"BSDF_GLASS", "BSDF_REFRACTION", "BSDF_TRANSLUCENT"}
-_GLOSSY = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC"}
-_MAX_DEPTH = 32
-
-# Principled inputs beyond what is translated: names, the value that means "off", code, words
-_IGNORED = (
-    (("Subsurface", "Subsurface Weight"), 0.0, "subsurface", "subsurface scattering"),
-    (("Clearcoat", "Coat Weight"), 0.0, "clearcoat", "clearcoat"),
-    (("Sheen", "Sheen Weight"), 0.0, "sheen", "sheen"),
-    (("Anisotropic",), 0.0, "anisotropic", "anisotropic highlights"),
-    (("Normal",), None, "normal_map", "normal or bump mapping"),
-)
+AlphaMode = native.AlphaMode
+MOST_MIXED = 4  # surfaces in one material
+Color = tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class Surface:
-    """What the backend's material holds, without its name."""
+class Wanted:
+    """What a mesh has to carry for the material of a slot."""
 
-    base_color: tuple[float, float, float] = (0.8, 0.8, 0.8)
-    roughness: float = 0.5
-    metallic: float = 0.0
-    specular: float = 0.5
-    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-
-DEFAULT = Surface(roughness=0.4)  # Blender's own for an empty slot
+    coordinates: Coordinates | None = None
+    vertex_colors: VertexColors | None = None
 
 
 class Materials:
-    """Adds each material once to a model; remembers what it could not say exactly."""
+    """Adds each material once to a model (None: nowhere, nothing of an image is read); remembers
+    what it could not say exactly. `frame`: the scene's, for images that change."""
 
-    def __init__(self, model: Any, problems: Problems, images: ImageMeans | None = None) -> None:
+    def __init__(
+        self, model: Any, problems: Problems, pictures: Any = None, frame: int = 1
+    ) -> None:
         self._model = model
         self._problems = problems
-        self._images = images or ImageMeans()
+        self._pictures = pictures or (NoPictures() if model is None else Pictures(model))
+        self._frame = frame
         self._indices: dict[tuple, int] = {}
-        self._textured: set[int] = set()
+        self._looks: dict[tuple, Look] = {}
+        self._colored: dict[int, bool] = {}
 
-    def index(self, material: Any | None, object_color: tuple | None = None) -> int:
-        """The model's index of an evaluated material, or of Blender's default for None.
-        `object_color`: of the objects it is drawn on, when its nodes ask for it."""
-        key = (0 if material is None else material.as_pointer(), object_color)
+    def index(self, material: Any | None, color: Color | None = None) -> int:
+        """The model's index of an evaluated material, or of Blender's default for None; `color` is
+        that (RGBA) of the object that shows it."""
+        key = self._key(material, color)
         if key not in self._indices:
-            surface = DEFAULT if material is None else self.translate(material, object_color)
-            self._indices[key] = self._model.add_material(
-                "" if material is None else material.name, **asdict(surface)
-            )
+            look = self.look(material, color)
+            name = "" if material is None else material.name
+            if self._model is None:
+                self._indices[key] = len(self._indices)
+            else:
+                self._indices[key] = looks.add(self._model, self._pictures, name, look)
         return self._indices[key]
 
-    def textured(self, material: Any | None) -> bool:
-        """True when index() found an image behind it: its meshes keep their uvs."""
-        return material is not None and material.as_pointer() in self._textured
+    def look(self, material: Any | None, color: Color | None = None) -> Look:
+        key = self._key(material, color)
+        if key not in self._looks:
+            self._looks[key] = DEFAULT if material is None else self.translate(material, color)
+        return self._looks[key]
 
-    def translate(self, material: Any, object_color: tuple | None = None) -> Surface:
-        translator = _Translator(material, self._problems, self._images)
-        translator.values.object_color = object_color
-        surface = translator.surface()
-        if translator.values.saw_image:
-            self._textured.add(material.as_pointer())
-        return surface
+    def wanted(self, material: Any | None, color: Color | None = None) -> Wanted:
+        look = self.look(material, color)
+        return Wanted(look.coordinates, next(iter(_vertex_colors(look)), None))
+
+    def textured(self, material: Any | None) -> bool:
+        """True when its meshes keep their texture coordinates."""
+        return self.look(material).coordinates is not None
+
+    def shows_object_color(self, material: Any | None) -> bool:
+        """Whether it looks different on objects of different colors."""
+        if material is None:
+            return False
+        self.look(material)
+        return self._colored[material.as_pointer()]
+
+    def translate(self, material: Any, color: Color | None = None) -> Look:
+        translator = _Translator(material, self._problems, self._pictures, self._frame, color)
+        look = translator.look()
+        self._colored[material.as_pointer()] = translator.values.depends_on_color
+        return look
+
+    def _key(self, material: Any | None, color: Color | None) -> tuple:
+        if material is None:
+            return (0, None)
+        pointer = material.as_pointer()
+        if color is not None and (pointer, None) not in self._looks:
+            self.look(material)  # tells whether the color matters
+        return (pointer, color if self._colored.get(pointer) else None)
 
 
 class _Translator:
-    """One material's way from its output node to a Surface."""
+    """One material's way from its output node to a look."""
 
-    def __init__(self, material: Any, problems: Problems, images: ImageMeans) -> None:
+    def __init__(
+        self, material: Any, problems: Problems, pictures: Any, frame: int, color: Color | None
+    ) -> None:
         self.material = material
         self.problems = problems
-        self.values = NodeValues(images, self.note)
+        self.pictures = pictures
+        setting = Setting(frame, color, material.pass_index)
+        self.values = NodeExpressions(pictures, self.note, setting)
 
-    def note(self, code: str, text: str) -> None:
+    def note(self, severity: str, code: str, text: str) -> None:
         name = self.material.name
         text = f'Material "{name}": {text}'
-        self.problems.add(name, WARNING, code, text, library=ids.library_of(self.material))
+        self.problems.add(name, severity, code, text, library=ids.library_of(self.material))
 
-    def surface(self) -> Surface:
+    def look(self) -> Look:
+        surfaces = self._surfaces(self._shader())
+        first = [value for surface, _ in surfaces for value in _in_order(surface)]
+        shares = [share for _, share in surfaces]
+        main = main_coordinates([*first, *shares])
+        textures = Textures(self.pictures, self.note, main)
+        look = None
+        for surface, share in reversed(surfaces):  # each holds what is mixed with it
+            made = self._look(surface, textures)
+            if look is not None:
+                made = replace(made, other=look, mix=textures.number(share))
+            look = made
+        if len(set(_vertex_colors(look))) > 1:
+            self.note(WARNING, "vertex_colors", "of its several vertex colors one is drawn")
+        return replace(look, coordinates=main if _has_texture(look) else None)
+
+    # ---- From the output node to surfaces ----
+
+    def _shader(self) -> Shader:
         material = self.material
+        viewport = self._viewport()
         if not material.use_nodes or material.node_tree is None:
-            return self._viewport()
-        output = material.node_tree.get_output_node("ALL")
-        link = _link(output.inputs["Surface"]) if output else None
-        if link is None:
-            self.note("no_surface", "has no surface shader; drawn in its viewport color")
-            return self._viewport()
-        found = self._shader(link, (), 0)
-        if found is None:
-            self.note("transparent", "is transparent; drawn opaque in its viewport color")
-            return self._viewport()
-        return _clamped(found)
+            return viewport
+        output = material.node_tree.get_output_node("CYCLES")
+        if output is None:
+            self.note(WARNING, "no_surface", "has no output node; drawn in its viewport color")
+            return viewport
+        if graph.link_to(output.inputs["Surface"]) is None:
+            if graph.link_to(output.inputs["Volume"]) is not None:
+                self.note(WARNING, "volume", "its volume is left out")
+                return Clear()
+            text = "has no surface shader; drawn in its viewport color"
+            self.note(WARNING, "no_surface", text)
+            return viewport
+        if graph.link_to(output.inputs["Volume"]) is not None:
+            self.note(WARNING, "volume", "its volume is left out")
+        shaders = Shaders(self.values, self.note, viewport)
+        return self._displaced(shaders, shaders.shader(output.inputs["Surface"]), output)
 
     def _viewport(self) -> Surface:
         material = self.material
-        return _clamped(
-            Surface(
-                tuple(material.diffuse_color[:3]),
-                material.roughness,
-                material.metallic,
-                material.specular_intensity,
-            )
-        )
-
-    def _shader(self, link: Any, groups: tuple, depth: int) -> Surface | None:
-        """The shader a link comes from; None when it is nothing but transparency."""
-        if depth > _MAX_DEPTH:
-            self.note("node_depth", "nests its nodes too deeply; drawn in its viewport color")
-            return self._viewport()
-        node, kind = link.from_node, link.from_node.type
-        step = depth + 1
-        if kind == "REROUTE":
-            inner = _link(node.inputs[0])
-            return self._shader(inner, groups, step) if inner else Surface(base_color=(0, 0, 0))
-        if kind == "GROUP" and node.node_tree is not None:
-            outer = self.values.group_output(node, link.from_socket)
-            inner = _link(outer) if outer is not None else None
-            return self._shader(inner, (*groups, node), step) if inner else None
-        if kind == "GROUP_INPUT" and groups:
-            outer = self.values.group_input(groups[-1], link.from_socket)
-            inner = _link(outer) if outer is not None else None
-            return self._shader(inner, groups[:-1], step) if inner else None
-        if kind in {"MIX_SHADER", "ADD_SHADER"}:
-            return self._mix(node, kind, groups, step)
-        if kind == "BSDF_PRINCIPLED":
-            return self._principled(node, groups)
-        if kind in _TRANSPARENT:
-            return None
-        return self._plain(node, kind, groups)
-
-    def _mix(self, node: Any, kind: str, groups: tuple, depth: int) -> Surface | None:
-        first, second = (_link(s) for s in node.inputs if s.type == "SHADER")
-        black = Surface(base_color=(0.0, 0.0, 0.0), specular=0.0)
-        a = self._shader(first, groups, depth) if first else black
-        b = self._shader(second, groups, depth) if second else black
-        if a is None or b is None:
-            self.note("transparency", "transparency is left out; drawn opaque")
-            return a or b
-        if kind == "ADD_SHADER":
-            emission = tuple(x + y for x, y in zip(a.emission, b.emission))
-            main = a if sum(a.base_color) >= sum(b.base_color) else b
-            if min(sum(a.base_color), sum(b.base_color)) > 0.0:
-                self.note("added_shaders", "added shaders are drawn as the brighter one")
-            return replace(main, emission=emission)
-        share = min(1.0, max(0.0, self.values.number(node.inputs[0], groups)))
-        if 0.0 < share < 1.0:
-            self.note("mixed_shaders", "mixed shaders are drawn as one mean surface")
-        return _between(a, b, share)
-
-    def _principled(self, node: Any, groups: tuple) -> Surface:
-        get = compat.principled_input
-        color, number = self.values.color, self.values.number
-
-        def scalar(default: float, *names: str) -> float:
-            socket = get(node, *names)
-            return default if socket is None else number(socket, groups)
-
-        for names, off, code, words in _IGNORED:
-            socket = get(node, *names)
-            if socket is None:
-                continue
-            if socket.is_linked or (off is not None and socket.default_value != off):
-                self.note(code, f"{words} is left out")
-        alpha = get(node, "Alpha")
-        if alpha is not None and (alpha.is_linked or alpha.default_value < 1.0):
-            self.values.look(alpha, groups)
-            self.note("transparency", "transparency is left out; drawn opaque")
-        transmission = get(node, "Transmission", "Transmission Weight")
-        if transmission is not None and (transmission.is_linked or transmission.default_value > 0):
-            self.note("transmission", "transmission is left out; drawn opaque")
-        strength = scalar(1.0, "Emission Strength")
-        emission_socket = get(node, "Emission", "Emission Color")
-        emission = (0.0, 0.0, 0.0)
-        if strength > 0.0 and emission_socket is not None:
-            emission = tuple(strength * c for c in color(emission_socket, groups))
         return Surface(
-            color(get(node, "Base Color"), groups),
-            scalar(0.5, "Roughness"),
-            scalar(0.0, "Metallic"),
-            scalar(0.5, "Specular", "Specular IOR Level"),
-            emission,
+            base_color=e.constant(material.diffuse_color[:3]),
+            roughness=e.number(material.roughness),
+            metallic=e.number(material.metallic),
+            specular=e.number(material.specular_intensity),
         )
 
-    def _plain(self, node: Any, kind: str, groups: tuple) -> Surface:
-        """The other closures, each as the nearest opaque surface."""
-        socket = node.inputs.get("Color")
-        tint = self.values.color(socket, groups) if socket is not None else None
-        roughness_socket = node.inputs.get("Roughness")
-        rough = (
-            self.values.number(roughness_socket, groups) if roughness_socket is not None else 0.5
+    def _displaced(self, shaders: Shaders, shader: Shader, output: Any) -> Shader:
+        """Displacement as bumps: Cycles' own default."""
+        found = graph.feed(output.inputs["Displacement"])
+        if found.node is None:
+            return shader
+        if found.node.type != "DISPLACEMENT":
+            self.note(WARNING, "displacement", f"displacement by {found.node.bl_label} is left out")
+            return shader
+        cycles = getattr(self.material, "cycles", None)
+        if getattr(cycles, "displacement_method", "BUMP") != "BUMP":
+            self.note(WARNING, "displacement", "displacement is drawn as bumps")
+        height = self.values.number(found.node.inputs["Height"], found.groups)
+        size = mean_of(self.values.number(found.node.inputs["Scale"], found.groups))[0]
+
+        def bumped(surface: Surface) -> Surface:
+            return replace(surface, relief=shaders.bumped(surface.relief, height, size))
+
+        return each_surface(shader, bumped)
+
+    def _surfaces(self, shader: Shader) -> list[tuple[Surface, Expression]]:
+        """(surface, share of all that follows it) from a tree of mixtures."""
+        if isinstance(shader, Clear):
+            return [(Surface(alpha=e.ZERO), e.ZERO)]
+        if isinstance(shader, Surface):
+            return [(shader, e.ZERO)]
+        first, second = self._surfaces(shader.first), self._surfaces(shader.second)
+        share = shader.share
+        if len(first) > 1 and len(second) == 1:
+            first, second, share = second, first, e.subtract(e.ONE, share)
+        if len(first) > 1:
+            first = [(self._heaviest(first), e.ZERO)]
+        chain = [(first[0][0], share), *second]
+        if len(chain) > MOST_MIXED:
+            self.note(WARNING, "mixed_shaders", f"of its mixed shaders {MOST_MIXED} are drawn")
+            chain = chain[:MOST_MIXED]
+        return chain
+
+    def _heaviest(self, chain: list[tuple[Surface, Expression]]) -> Surface:
+        self.note(WARNING, "mixed_shaders", "a mixture in a mixture is drawn as its main shader")
+        left, best = 1.0, (-1.0, chain[0][0])
+        for surface, share in chain:
+            rest = min(1.0, max(0.0, mean_of(share, self.pictures)[0]))
+            best = max(best, (left * (1.0 - rest), surface), key=lambda pair: pair[0])
+            left *= rest
+        return best[1]
+
+    # ---- From a surface to a look ----
+
+    def _look(self, surface: Surface, textures: Textures) -> Look:
+        base, alpha, vertex = textures.vertex_colors(surface.base_color, surface.alpha)
+        value, mode, cutoff = self._alpha(alpha, textures)
+        if mode == AlphaMode.OPAQUE and vertex is not None and vertex.alpha:
+            mode = AlphaMode.BLEND
+        relief = surface.relief
+        normal = None if relief.normal is None else textures.color(relief.normal).texture
+        bump = None if relief.bump is None else textures.number(relief.bump).texture
+        if relief.normal is not None and normal is None:
+            self.note(WARNING, "normal_map", "its normal map is left out")
+        if relief.bump is not None and bump is None:
+            self.note(WARNING, "bump", "its bumps are left out")
+        return Look(
+            base_color=textures.color(base),
+            roughness=textures.number(surface.roughness),
+            metallic=textures.number(surface.metallic),
+            specular=textures.constant(surface.specular, "specular"),
+            emission=textures.color(surface.emission),
+            alpha=value,
+            alpha_mode=mode,
+            alpha_cutoff=cutoff,
+            transmission=textures.constant(surface.transmission, "transmission"),
+            ior=textures.constant(surface.ior, "IOR"),
+            clearcoat=textures.constant(surface.clearcoat, "clear coat"),
+            clearcoat_roughness=textures.constant(
+                surface.clearcoat_roughness, "clear coat's roughness"
+            ),
+            normal=normal,
+            normal_strength=relief.strength,
+            bump=bump,
+            bump_distance=relief.distance,
+            vertex_colors=vertex,
         )
-        if kind == "BSDF_DIFFUSE" and tint is not None:
-            return Surface(tint, 1.0, 0.0, 0.0)
-        if kind == "EMISSION" and tint is not None:
-            strength = self.values.number(node.inputs["Strength"], groups)
-            glow = tuple(strength * c for c in tint)
-            return Surface((0.0, 0.0, 0.0), 1.0, 0.0, 0.0, glow)
-        if kind in _GLOSSY and tint is not None:
-            return Surface(tint, rough, 1.0, 0.5)
-        if kind in _GLASS and tint is not None:
-            self.note("transmission", "transmission is left out; drawn opaque")
-            return Surface(tint, rough)
-        if tint is not None:
-            self.note("shader", f"{node.bl_label} is drawn as a plain surface of its color")
-            return Surface(tint, rough)
-        self.note("shader", f"{node.bl_label} is not known; drawn in its viewport color")
-        return self._viewport()
+
+    def _alpha(self, alpha: Expression, textures: Textures) -> tuple[Value, int, float]:
+        """Its value, mode and cutoff: what is compared with a constant is cut there."""
+        if alpha.op == Op.GREATER:
+            value, limit = alpha.args
+            if value.constant:  # below: turned over
+                value, limit = e.subtract(e.ONE, limit), e.subtract(e.ONE, value)
+            found = textures.number(value) if limit.constant else gray(0.0)
+            if found.texture is not None and 0.0 <= limit.value[0] <= 1.0:
+                return found, AlphaMode.CLIP, limit.value[0]
+        found = textures.number(alpha)
+        if found.texture is None and found.number >= 1.0:
+            return gray(1.0), AlphaMode.OPAQUE, 0.5
+        return found, AlphaMode.BLEND, 0.5
 
 
-def _link(socket: Any) -> Any | None:
-    """The socket's first link that is valid and not muted."""
-    if not socket.is_linked:
-        return None
-    return next((ln for ln in socket.links if ln.is_valid and not ln.is_muted), None)
+def _in_order(surface: Surface) -> list[Expression]:
+    """The one whose texture coordinates count comes first."""
+    relief = [surface.relief.normal, surface.relief.bump]
+    found = [surface.base_color, surface.alpha, surface.emission, surface.roughness]
+    return [*found, surface.metallic, *(value for value in relief if value is not None)]
 
 
-def _between(a: Surface, b: Surface, share: float) -> Surface:
-    def mix(x: Any, y: Any) -> Any:
-        if isinstance(x, tuple):
-            return tuple(mix(p, q) for p, q in zip(x, y))
-        return x + share * (y - x)
+def _has_texture(look: Look) -> bool:
+    if any(getattr(look, key).texture is not None for key in looks.TEXTURED):
+        return True
+    if look.normal is not None or look.bump is not None:
+        return True
+    return look.other is not None and _has_texture(look.other)
 
-    return Surface(*(mix(getattr(a, f), getattr(b, f)) for f in Surface.__dataclass_fields__))
 
-
-def _clamped(surface: Surface) -> Surface:
-    def unit(value: float) -> float:
-        return min(1.0, max(0.0, value)) if value == value else 0.0
-
-    def positive(value: float) -> float:
-        return min(1e9, max(0.0, value)) if value == value else 0.0
-
-    return Surface(
-        tuple(positive(c) for c in surface.base_color),
-        unit(surface.roughness),
-        unit(surface.metallic),
-        unit(surface.specular),
-        tuple(positive(c) for c in surface.emission),
-    )
+def _vertex_colors(look: Look | None) -> list[VertexColors]:
+    """Those of all surfaces that are mixed."""
+    found = []
+    while look is not None:
+        if look.vertex_colors is not None:
+            found.append(look.vertex_colors)
+        look = look.other
+    return found

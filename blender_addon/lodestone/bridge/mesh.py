@@ -2,51 +2,58 @@
 """An evaluated Blender object's triangles as flat buffers."""
 
 from array import array
+from collections.abc import Sequence
 from typing import Any
 
 import bmesh
 
-from . import compat
+from . import compat, mesh_colors, mesh_uvs
 from ..core.native import lodestone_native as native
+from .materials import Wanted
 
 
-def _buffer(code: str, count: int) -> array:
-    return array(code, bytes(4 * count))
-
-
-def extract(instance_object: Any, slot_count: int, with_uvs: bool) -> Any:
+def extract(instance_object: Any, wanted: Sequence[Wanted]) -> Any:
     """MeshBuffers of an evaluated object (mesh, curve, text, surface, metaball), or None when it
-    has no faces. Only while the object is valid: inside the loop over depsgraph instances."""
+    has no faces; `wanted` is what the material of each slot needs. Only while the object is valid:
+    inside the loop over depsgraph instances."""
     mesh = instance_object.to_mesh()
     try:
-        return None if mesh is None else _buffers(mesh, slot_count, with_uvs)
+        return None if mesh is None else _buffers(mesh, instance_object, wanted)
     finally:
         instance_object.to_mesh_clear()
 
 
-def _buffers(mesh: Any, slot_count: int, with_uvs: bool) -> Any:
+def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
     if not mesh.polygons:
         return None
     mesh.calc_loop_triangles()
     vertices, corners, triangles = len(mesh.vertices), len(mesh.loops), len(mesh.loop_triangles)
     if triangles == 0:
         return None
-    buffers = native.MeshBuffers(_buffer("f", 3 * vertices), _buffer("i", 3 * triangles))
+    buffers = native.MeshBuffers(
+        compat.buffer("f", 3 * vertices), compat.buffer("i", 3 * triangles)
+    )
     mesh.vertices.foreach_get("co", buffers.positions)
     mesh.loop_triangles.foreach_get("vertices", buffers.triangles)
-    uv_layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
     if _has_smooth(mesh):
-        buffers.corner_normals = _buffer("f", 3 * corners)
+        buffers.corner_normals = compat.buffer("f", 3 * corners)
         compat.corner_normals(mesh, buffers.corner_normals)
-    if with_uvs and uv_layer is not None:
-        buffers.corner_uvs = _buffer("f", 2 * corners)
-        compat.corner_uvs(uv_layer, buffers.corner_uvs)
-    if buffers.corner_normals is not None or buffers.corner_uvs is not None:
-        buffers.corners = _buffer("i", 3 * triangles)
-        mesh.loop_triangles.foreach_get("loops", buffers.corners)
-    if slot_count > 1:
-        buffers.slots = _buffer("i", triangles)
+    if len(wanted) > 1:
+        buffers.slots = compat.buffer("i", triangles)
         mesh.loop_triangles.foreach_get("material_index", buffers.slots)
+    textured = any(item.coordinates is not None for item in wanted)
+    colored = any(item.vertex_colors is not None for item in wanted)
+    if buffers.corner_normals is not None or textured or colored:
+        buffers.corners = compat.buffer("i", 3 * triangles)
+        mesh.loop_triangles.foreach_get("loops", buffers.corners)
+    if textured:
+        buffers.corner_uvs = mesh_uvs.corner_uvs(
+            mesh, buffers, shown, [item.coordinates for item in wanted]
+        )
+    if colored:
+        buffers.corner_colors = mesh_colors.corner_colors(
+            mesh, [item.vertex_colors for item in wanted]
+        )
     return buffers
 
 

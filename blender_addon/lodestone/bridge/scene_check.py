@@ -29,7 +29,7 @@ def check(
     the current one, which `depsgraph` is of. `problems` are those known already."""
     recorder, heads = Recorder(), ImageHeads()
     shown = Shown(depsgraph, rendered_objects(rendered_layers(original, view_layer)))
-    glances = Glances(Materials(recorder, problems, heads))
+    glances = Glances(Materials(None, problems, frame=original.frame_current))
     walk = scene.walked(shown, glances, problems, tick)
     evaluated = shown.scene_eval
     scene.surroundings(recorder, evaluated, walk.found.lights, problems, heads)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Color attributes of a mesh's corners, each slot's as its material wants them."""
+
+from array import array
+from collections.abc import Sequence
+from itertools import chain
+from typing import Any
+
+from . import compat
+from .looks import VertexColors
+from .mesh_uvs import corners_of_slots
+
+
+def corner_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array:
+    """[corner][4], linear, by slot; white where a slot wants none. An attribute the mesh lacks is
+    black, as in Blender."""
+    kinds = list(dict.fromkeys(item for item in wanted if item is not None))
+    if len(kinds) == 1:  # the other slots do not look at them
+        return _colors(mesh, kinds[0])
+    colors = array("f", [1.0]) * (4 * len(mesh.loops))
+    for item in kinds:
+        found = _colors(mesh, item)
+        for start, end in corners_of_slots(mesh, wanted, item):
+            colors[4 * start : 4 * end] = found[4 * start : 4 * end]
+    return colors
+
+
+def _colors(mesh: Any, wanted: VertexColors) -> array:
+    corners = len(mesh.loops)
+    attribute = compat.color_attribute(mesh, wanted.name)
+    white = array("f", [1.0])
+    if attribute is None:
+        colors = compat.buffer("f", 4 * corners)
+        colors[3::4] = white * corners
+    else:
+        colors = compat.buffer("f", 4 * len(attribute.data))
+        attribute.data.foreach_get("color", colors)
+        if attribute.domain == "POINT":
+            colors = _to_corners(mesh, colors)
+    if not wanted.alpha:
+        colors[3::4] = white * corners
+    if not wanted.color:
+        for k in range(3):
+            colors[k::4] = white * corners
+    return colors
+
+
+def _to_corners(mesh: Any, colors: array) -> array:
+    vertices = compat.buffer("i", len(mesh.loops))
+    mesh.loops.foreach_get("vertex_index", vertices)
+    values = iter(colors)
+    points = list(zip(values, values, values, values))
+    return array("f", chain.from_iterable(map(points.__getitem__, vertices)))
