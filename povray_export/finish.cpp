@@ -22,12 +22,6 @@ void append_named(std::string& out, const char* name, double value) {
     append_number(out, value, kDigits);
 }
 
-void append_rgb(std::string& out, const char* name, const glm::dvec3& color) {
-    out += name;
-    out += "rgb ";
-    append_vector(out, color, kDigits);
-}
-
 glm::dvec3 from_srgb(const glm::dvec3& color) {
     glm::dvec3 linear;
     for (int i = 0; i < 3; ++i)
@@ -38,44 +32,70 @@ glm::dvec3 from_srgb(const glm::dvec3& color) {
 
 }  // namespace
 
-void append_texture(std::string& out, const Material& material) {
-    glm::dvec3 base;
-    glm::dvec3 emission;
-    for (int i = 0; i < 3; ++i) {
-        base[i] = clamped(material.base_color[i], 0, 1, 0.8);
-        emission[i] = clamped(material.emission[i], 0, 1e9, 0);
-        // POV-Ray multiplies emission by the pigment: a black lamp needs a trace of color.
-        if (emission[i] > 0)
-            base[i] = std::max(base[i], 1e-4);
-    }
-    const double metallic = clamped(material.metallic, 0, 1, 0);
-    const double roughness = clamped(material.roughness, 0, 1, 0.5);
-    const double dielectric = (1 - metallic) * 0.08 * clamped(material.specular, 0, 1, 0.5);
-    const double mirror = metallic > 0.5 && roughness < 0.3 ? metallic : 0;
-    const double reflectance = metallic + dielectric;
-    const double brightest = std::max({base.x, base.y, base.z});
-    const double room = brightest > 0 ? std::min(1.0, (1 - dielectric) / brightest) : 1.0;
-    const double alpha = std::max(roughness * roughness, 0.02);  // below it the sun's own disc wins
-    const double exponent = std::max(2 / (alpha * alpha) - 2, 1.0);
+Look look_of(const Material& material) {
+    Look look;
+    look.roughness = clamped(material.roughness, 0, 1, 0.5);
+    look.metallic = clamped(material.metallic, 0, 1, 0);
+    look.specular = clamped(material.specular, 0, 1, 0.5);
+    look.clearcoat = clamped(material.clearcoat, 0, 1, 0);
+    look.clearcoat_roughness = clamped(material.clearcoat_roughness, 0, 1, 0.03);
+    return look;
+}
 
-    append_rgb(out, "texture{pigment{", base);
-    append_named(out, "} finish{ambient ", 1 - mirror);
-    for (int i = 0; i < 3; ++i)
-        emission[i] = emission[i] > 0 ? emission[i] / base[i] : 0;
-    append_rgb(out, " emission ", emission);
-    append_named(out, " diffuse ", (1 - metallic) * room);
-    append_named(out, " specular albedo ", reflectance);
-    append_named(out, " roughness ", 1 / exponent);
-    append_named(out, " metallic ", reflectance > 0 ? metallic / reflectance : 0);
-    append_rgb(out, " reflection{", base * mirror);
-    out += "}}}";
+Finish finish_of(const Look& look, double brightest) {
+    const double dielectric = (1 - look.metallic) * 0.08 * look.specular;
+    const double mirror = look.metallic > 0.5 && look.roughness < 0.3 ? look.metallic : 0;
+    const double reflectance = look.metallic + dielectric;
+    const double room = brightest > 0 ? std::min(1.0, (1 - dielectric) / brightest) : 1.0;
+    const double alpha = std::max(look.roughness * look.roughness, 0.02);
+    Finish finish;
+    finish.ambient = 1 - mirror;
+    finish.diffuse = (1 - look.metallic) * room;
+    finish.specular = reflectance;
+    finish.roughness = 1 / std::max(2 / (alpha * alpha) - 2, 1.0);
+    finish.metallic = reflectance > 0 ? look.metallic / reflectance : 0;
+    finish.mirror = finish.mirror_grazing = mirror;
+    finish.mirror_metallic = 1;
+    return finish;
+}
+
+void append_rgb(std::string& out, const glm::dvec3& color) {
+    out += "rgb ";
+    append_vector(out, color, kDigits);
+}
+
+void append_finish(std::string& out, const Finish& finish, double light,
+                   const glm::dvec3& emission) {
+    append_named(out, "finish{ambient ", finish.ambient * light);
+    out += " emission ";
+    append_rgb(out, emission);
+    append_named(out, " diffuse ", finish.diffuse * light);
+    if (finish.brilliance != 1)
+        append_named(out, " brilliance ", finish.brilliance);
+    append_named(out, " specular albedo ", finish.specular * light);
+    append_named(out, " roughness ", finish.roughness);
+    append_named(out, " metallic ", finish.metallic);
+    if (finish.coat > 0) {
+        append_named(out, " phong albedo ", finish.coat * light);
+        append_named(out, " phong_size ", finish.coat_exponent);
+    }
+    if (finish.mirror > 0 || finish.mirror_grazing > 0) {
+        append_named(out, " reflection{rgb ", finish.mirror * light);
+        append_named(out, ", rgb ", finish.mirror_grazing * light);
+        append_named(out, " falloff 5 metallic ", finish.mirror_metallic);
+        out += '}';
+    } else {
+        out += " reflection{rgb 0}";
+    }
+    out += '}';
 }
 
 void append_flat_texture(std::string& out, const glm::dvec3& color) {
-    append_rgb(out, "texture{pigment{", color);
-    out +=
-        "} finish{ambient 0 emission 1 diffuse 0 specular 0 roughness 1 metallic 0 "
-        "reflection{rgb 0}}}";
+    out += "texture{pigment{";
+    append_rgb(out, color);
+    out += "} ";
+    append_finish(out, Finish{}, 1, glm::dvec3(1.0));
+    out += '}';
 }
 
 glm::dvec3 color_of(Kind kind, uint32_t lod) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finish: a material of the principled model in POV-Ray's terms. All such fitting is in this file.
+// Finish: how a surface of the principled model reflects light, in POV-Ray's terms. All such fitting is in this file.
 #pragma once
 
 #include "model/material.h"
@@ -9,20 +9,46 @@
 
 namespace lodestone::povray {
 
-/// texture{pigment{...} finish{...}}, every value written, because POV-Ray's defaults (ambient .1,
-/// diffuse .6) would leak in. With a = base color, m = metallic, F = reflectance of a smooth face:
-///   sun S on a facing surface   (1 - m) a S / pi   (lights are written as S / pi, so diffuse = 1 - m)
-///   uniform sky of radiance L   a L                (ambient 1, ambient_light = L; what is mirrored
-///                                                   is traced instead)
-///   highlight                   F times the normalized Blinn-Phong lobe as wide as the material's
-///                               microfacets: exponent 2 / roughness^4 - 2
-/// Metals tint their highlight; only smooth ones (metallic > .5, roughness < .3) trace reflections.
-/// Diffuse gives way where it would send back more light than arrives. Values out of range are
-/// clamped, so that any material gives text that POV-Ray reads.
-void append_texture(std::string& out, const Material& material);
+/// POV-Ray's finish, as far as it is used. Times the pigment: ambient, diffuse, emission, and what
+/// `metallic` and `reflection_metallic` tint.
+struct Finish {
+    double ambient = 0;     // answer to a uniform sky, which is not traced
+    double diffuse = 0;     // share of a light's radiance times pi
+    double brilliance = 1;  // exponent of the cosine
+    double specular = 0;    // albedo of the highlight
+    double roughness = 1;   // of the highlight: 1 / exponent of its half-vector's cosine
+    double metallic = 0;
+    double coat = 0;  // albedo of the second highlight, around the mirror direction
+    double coat_exponent = 1;
+    double mirror = 0;          // share of light that is mirrored (and traced) when facing,
+    double mirror_grazing = 0;  // and when seen at no angle
+    double mirror_metallic = 0;
+};
 
-/// Unlit and flat: what the picture shows is `color` (linear).
+/// Numbers of a material in their ranges, whatever was given.
+struct Look {
+    double roughness = 0.5;
+    double metallic = 0;
+    double specular = 0.5;
+    double clearcoat = 0;
+    double clearcoat_roughness = 0.03;
+};
+Look look_of(const Material& material);
+
+/// `brightest`: the largest of the base color's channels (1 when it varies): what is diffused gives
+/// way where more light would be sent back than arrives.
+Finish finish_of(const Look& look, double brightest);
+
+/// finish{...}, every value written, because POV-Ray's defaults (ambient .1, diffuse .6) would leak
+/// in. `light` scales all of it; emission (times the pigment) comes on top.
+void append_finish(std::string& out, const Finish& finish, double light,
+                   const glm::dvec3& emission);
+
+/// Shows its pigment as it is.
 void append_flat_texture(std::string& out, const glm::dvec3& color);
+
+/// rgb <r,g,b>
+void append_rgb(std::string& out, const glm::dvec3& color);
 
 /// Color (linear Rec.709) of a representation in a false-colored picture and in its legend. Meshes
 /// run from light gray (LOD 0) through blue and green to yellow (LOD 6 and coarser); boxes are

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/picture_writer.h"
 
 #include <string>
 
@@ -11,7 +12,7 @@ namespace lodestone::povray {
 
 struct RepresentationOptions {
     bool textures = true;  // false: the occurrence brings its texture
-    bool uvs = true;       // texture coordinates, where the mesh has them
+    bool uvs = true;       // texture coordinates, where a texture uses them
 };
 
 /// Hash of the file's content: of what is drawn, the options and the version of this writer.
@@ -21,13 +22,12 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
 std::string identifier_of(Hash file);
 
 /// `#declare <identifier> = mesh2{...}`, `box{...}` or `sphere{...}`; "" when nothing of it can be
-/// seen (no triangle with an area, a primitive without volume). Coordinates are rounded by less than
-/// a millionth of the mesh's size, normals by .00005. Triangles without area after rounding are left
-/// out. Normals, uvs and positions are shared in whichever way needs the fewest numbers.
-/// Throws Error(Internal) for a non-finite coordinate, Error(InvalidArgument) for a bad index.
+/// seen (no triangle with an area, a primitive without volume). Before it the declarations of what
+/// `pictures` (a new one) is given. Throws Error(Internal) for a non-finite coordinate or a picture
+/// that is not resident, Error(InvalidArgument) for a bad index.
 /// cost: 0.1-0.2 us a triangle. Thread-safe on a const model.
 std::string representation_text(const Model& model, const Representation& representation,
                                 const std::string& identifier, const RepresentationOptions& options,
-                                const Job& job);
+                                PictureWriter& pictures, const Job& job);
 
 }  // namespace lodestone::povray

@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cmath>
 #include <ctime>
+#include <fstream>
 #include <unordered_map>
 
 namespace lodestone::povray {
@@ -109,6 +110,15 @@ std::string name_of_node(const Model& model, const quality::Cut& cut, uint32_t n
     return group.representations[0].assembly().placements[here.placement].name;
 }
 
+/// As much of an include file as can name its pictures.
+std::string beginning_of(const std::filesystem::path& path) {
+    std::string text(size_t{16} << 10u, ' ');
+    std::ifstream file(path, std::ios::binary);
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return text;
+}
+
 struct Use {
     uint32_t node;
     size_t file;  // index of the include file
@@ -133,7 +143,8 @@ public:
           view_(view),
           options_(options),
           problems_(problems),
-          job_(job) {}
+          job_(job),
+          pictures_(options.folder) {}
 
     ExportReport write() {
         const double start = thread_cpu_s();
@@ -163,6 +174,10 @@ public:
             ++report.representations;
             report.written += include.written ? 1u : 0u;
         }
+        const PictureFolder::Totals pictures = pictures_.totals();
+        report.bytes += pictures.bytes;
+        report.files += pictures.files;
+        report.written += pictures.written;
         report.cpu_s += before_files - start + thread_cpu_s() - after_files;
         job_.progress(1);
         return report;
@@ -219,13 +234,16 @@ private:
                 options_.folder / "r" / (hex16(include.hash) + ".inc");
             std::error_code error;
             const uintmax_t found = std::filesystem::file_size(path, error);
-            if (!error && found > 0) {
+            if (!error && found > 0 && pictures_.found(pictures_named(beginning_of(path)))) {
                 include.bytes = found;
                 include.drawn = true;
             } else {
-                const std::string text = representation_text(model_, *include.representation,
-                                                             identifier_of(include.hash), as, job_);
+                PictureWriter pictures;
+                const std::string text =
+                    representation_text(model_, *include.representation,
+                                        identifier_of(include.hash), as, pictures, job_);
                 if (!text.empty()) {
+                    pictures.write(pictures_);
                     write_file(path, text);
                     include.bytes = text.size();
                     include.written = include.drawn = true;
@@ -349,6 +367,7 @@ private:
     const ExportOptions& options_;
     Problems& problems_;
     const Job& job_;
+    PictureFolder pictures_;
     std::vector<Use> uses_;
     std::vector<Include> includes_;
     ExportReport report_;

@@ -18,7 +18,8 @@ struct ExportOptions {
     // Without Environment objects (and all below them, and stand-ins for groups that hold them),
     // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
     bool covered_only = false;
-    bool uvs = true;  // texture coordinates; nothing uses them as long as materials have no images
+    bool uvs =
+        true;  // texture coordinates where a texture uses them; false: textures are their means
 };
 
 struct ExportReport {
@@ -30,8 +31,9 @@ struct ExportReport {
     double cpu_s = 0;          // of all threads
 };
 
-/// Writes scene.pov, scene.ini and r/<16 hex>.inc, one for every distinct representation; those that
-/// are there already are used as they are, for their name is their content. The same input gives the
+/// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the
+/// pictures they show as i/<16 hex>.png or .jpg; those that are there already are used as they are,
+/// for their name is their content. The same input gives the
 /// same bytes. Occurrences that cannot be drawn (flattened to a line, too small, not finite) are left
 /// out with a problem each; those flattened to a sheet get a thickness of 1/100000.
 /// Throws Error(InvalidArgument) for a view that cannot be a picture, Error(Io) naming the file,

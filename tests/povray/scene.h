@@ -4,6 +4,7 @@
 
 #include "backend/shapes.h"
 #include "base/files.h"
+#include "image/sampler.h"
 #include "povray_export/runner.h"
 #include "povray_export/scene_writer.h"
 
@@ -29,6 +30,37 @@ inline bool have_povray() {
     } catch (const Error&) {
         return false;
     }
+}
+
+/// A picture of linear colors (data) or sRGB ones, top row first.
+inline PicturePtr picture(int width, const std::vector<glm::vec4>& texels,
+                          ColorSpace space = ColorSpace::Linear) {
+    image::Image image;
+    image.width = width;
+    image.height = static_cast<int>(texels.size()) / width;
+    for (const glm::vec4& texel : texels) {
+        for (int i = 0; i < 4; ++i)
+            image.pixels.push_back(texel[i]);
+    }
+    return image::make_picture(image::png_bytes(image), space, "picture");
+}
+
+/// 2 x 2: red, green; blue, yellow.
+inline Texture checker(ColorSpace space = ColorSpace::Linear) {
+    Texture texture;
+    texture.picture =
+        picture(2, {{.8, 0, 0, 1}, {0, .6, 0, 1}, {0, 0, .9, 1}, {.7, .5, 0, 1}}, space);
+    return texture;
+}
+
+/// Matte, its base color a texture.
+inline Material textured(const Texture& texture) {
+    Material material;
+    material.specular = 0;
+    material.base_color_texture = texture;
+    if (texture)
+        material.base_color = image::color_of(texture, texture.picture->mean);
+    return material;
 }
 
 /// A model whose root places what is added to it.

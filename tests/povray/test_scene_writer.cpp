@@ -39,7 +39,9 @@ std::vector<std::filesystem::path> includes(const std::filesystem::path& folder)
 
 std::string include_text(const Model& model, ObjectIndex object,
                          const RepresentationOptions& options = {}) {
-    return representation_text(model, model.objects[object].representations[0], "X", options, {});
+    PictureWriter pictures;
+    return representation_text(model, model.objects[object].representations[0], "X", options,
+                               pictures, {});
 }
 
 std::string number(const Lattice& lattice, double value) {
@@ -97,11 +99,12 @@ TEST(PovrayWriter, ACubeIsOneDeclarationWithWeldedCornersAndNoNormals) {
 
 TEST(PovrayWriter, SmoothNormalsAndUvsNeedNoIndicesOfTheirOwn) {
     Builder builder;
+    const uint32_t checker = builder.material(scenes::textured(scenes::checker()));
     Mesh mesh = shapes::sphere(1, 2);
     for (size_t i = 0; i < mesh.positions.size(); ++i)
         mesh.uvs.emplace_back(mesh.positions[i].x, mesh.positions[i].z);
     const std::string count_text = text(mesh.positions.size(), ",");
-    const std::string out = include_text(builder.model, builder.mesh(mesh));
+    const std::string out = include_text(builder.model, builder.mesh(mesh, {checker}));
     EXPECT_EQ(count(out, "vertex_vectors{" + count_text), 1u);
     EXPECT_EQ(count(out, "normal_vectors{" + count_text), 1u);
     EXPECT_EQ(count(out, "uv_vectors{" + count_text), 1u);
@@ -114,10 +117,13 @@ TEST(PovrayWriter, UvsOfACubesSidesAreSharedWithIndices) {
     Mesh mesh = shapes::cube();
     for (size_t i = 0; i < mesh.positions.size(); ++i)
         mesh.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
-    const std::string out = include_text(builder.model, builder.mesh(mesh));
+    const uint32_t checker = builder.material(scenes::textured(scenes::checker()));
+    const std::string out = include_text(builder.model, builder.mesh(mesh, {checker}));
     EXPECT_EQ(count(out, "vertex_vectors{8,"), 1u);
     EXPECT_EQ(count(out, "uv_vectors{4,"), 1u);
     EXPECT_EQ(count(out, "uv_indices{12,"), 1u);
+    // Nothing looks them up: they would only be parsed.
+    EXPECT_EQ(count(include_text(builder.model, builder.mesh(mesh)), "uv_"), 0u);
 }
 
 TEST(PovrayWriter, OnlySeveralLooksNeedATextureList) {

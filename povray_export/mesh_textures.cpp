@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/mesh_textures.h"
+
+#include "base/error.h"
+#include "image/image.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr uint16_t kUnknown = 0xffff;
+
+// A picture is baked for every distinct hue of the paint over it.
+constexpr size_t kMostHues = 8;
+
+/// RGBA in display encoding, 16 bits each: exact for colors of 8 bits.
+using Key = uint64_t;
+
+Key key_of(const glm::vec4& color, bool alpha) {
+    Key key = 0;
+    for (int i = 0; i < 4; ++i) {
+        float value = std::isfinite(color[i]) ? std::clamp(color[i], 0.0f, 1.0f) : 1.0f;
+        if (i < 3)
+            value = image::encode_srgb(value);
+        else if (!alpha)
+            value = 1;
+        key = key << 16u | static_cast<Key>(std::lround(value * 65535));
+    }
+    return key;
+}
+
+/// Rounds all channels to multiples of `step` / 65535 (and to white).
+Key rounded(Key key, uint64_t step) {
+    Key out = 0;
+    for (unsigned shift = 0; shift < 64; shift += 16) {
+        const uint64_t value = key >> shift & 0xffffu;
+        const uint64_t near = (value + step / 2) / step * step;
+        out |= std::min<uint64_t>(near + step / 2 > 65535 ? 65535 : near, 65535) << shift;
+    }
+    return out;
+}
+
+glm::dvec4 color_of(Key key) {
+    glm::dvec4 color;
+    for (int i = 3; i >= 0; --i, key >>= 16u) {
+        const float value = static_cast<float>(key & 0xffffu) / 65535.0f;
+        color[i] = i < 3 ? image::decode_srgb(value) : value;
+    }
+    return color;
+}
+
+/// The color without its brightness.
+Key hue_of(Key key) {
+    glm::dvec4 color = color_of(key);
+    const double most = std::max({color.x, color.y, color.z});
+    if (most > 0)
+        color /= most;
+    return rounded(key_of(glm::vec4(color), false), 257);
+}
+
+}  // namespace
+
+MeshTextures::MeshTextures(const Model& model, const Representation& representation, bool uvs,
+                           PictureWriter& pictures, const Job& job)
+    : mesh_(representation.mesh()), job_(job) {
+    find_slots(model, representation, uvs && !mesh_.uvs.empty());
+    if (uses_uvs_)
+        find_ranges();
+    bool colored = false;
+    for (Slot& slot : slots_) {
+        refraction_ = std::max(refraction_, refraction_of(slot.material));
+        if (slot.colored)
+            colored = true;
+        else
+            slot.text = add(slot, pictures);
+    }
+    if (colored)
+        color_corners(pictures);
+}
+
+size_t MeshTextures::of(size_t triangle, int corner) const {
+    return per_corner() ? corners_[3 * triangle + static_cast<size_t>(corner)]
+                        : slots_[slot_at_[mesh_.slot(triangle)]].text;
+}
+
+void MeshTextures::breathe(size_t i) const {
+    if ((i & 0xffffu) == 0xffffu)
+        job_.check();
+}
+
+void MeshTextures::find_slots(const Model& model, const Representation& representation, bool uvs) {
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        const uint16_t number = mesh_.slot(i);
+        if (i > 0 && number == mesh_.slot(i - 1))
+            continue;
+        if (number >= slot_at_.size())
+            slot_at_.resize(size_t{number} + 1, kUnknown);
+        if (slot_at_[number] != kUnknown)
+            continue;
+        slot_at_[number] = static_cast<uint16_t>(slots_.size());
+        Slot slot;  // a slot without a material looks neutral
+        if (number < representation.materials.size()) {
+            const uint32_t index = representation.materials[number];
+            if (index >= model.materials.size())
+                fail(Status::InvalidArgument, "a representation uses material ", index, " of ",
+                     model.materials.size());
+            slot.material = model.materials[index];
+        }
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
+            slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
+        slot.surface.uvs = uvs && textured(slot.material);
+        uses_uvs_ = uses_uvs_ || slot.surface.uvs;
+        slots_.push_back(std::move(slot));
+    }
+}
+
+void MeshTextures::find_ranges() {
+    for (Slot& slot : slots_) {
+        slot.surface.range.low = glm::dvec2(1e300);
+        slot.surface.range.high = glm::dvec2(-1e300);
+    }
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        Surface& surface = slots_[slot_at_[mesh_.slot(i)]].surface;
+        if (!surface.uvs)
+            continue;
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec2 uv(mesh_.uvs[mesh_.triangles[i][corner]]);
+            surface.range.low = glm::min(surface.range.low, uv);
+            surface.range.high = glm::max(surface.range.high, uv);
+        }
+    }
+}
+
+size_t MeshTextures::add(const Slot& slot, PictureWriter& pictures) {
+    std::string text = texture_text(slot.material, slot.surface, pictures);
+    const auto [at, fresh] = known_.try_emplace(std::move(text), texts_.size());
+    if (fresh)
+        texts_.push_back(at->first);
+    return at->second;
+}
+
+void MeshTextures::color_corners(PictureWriter& pictures) {
+    std::vector<Key> keys(mesh_.colors.size());
+    bool alpha = false;
+    bool pictured = false;
+    for (const Slot& slot : slots_) {
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get()) {
+            alpha = alpha || m->alpha_mode != AlphaMode::Opaque;
+            pictured = pictured || (slot.colored && slot.surface.uvs && m->base_color_texture);
+        }
+    }
+    for (size_t i = 0; i < keys.size(); ++i) {
+        breathe(i);
+        keys[i] = key_of(mesh_.colors[i], alpha);
+    }
+    // First what 8 bits hold, then coarser until it fits.
+    for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
+        std::unordered_map<Key, uint32_t> distinct;
+        bool few = true;
+        for (size_t i = 0; i < keys.size() && few; ++i) {
+            breathe(i);
+            distinct.emplace(rounded(keys[i], step), 0);
+            few = distinct.size() <= kMost;
+        }
+        if (!few)
+            continue;
+        for (Key& key : keys)
+            key = rounded(key, step);
+        break;
+    }
+    // Over a picture, many hues become their mean: only brightness varies without another picture.
+    glm::dvec3 hue(-1.0);
+    if (pictured) {
+        std::set<Key> hues;
+        glm::dvec3 sum(0.0);
+        for (const Key key : keys) {
+            sum += glm::dvec3(color_of(key));
+            if (hues.size() <= kMostHues)
+                hues.insert(hue_of(key));
+        }
+        const double most = std::max({sum.x, sum.y, sum.z});
+        if (hues.size() > kMostHues && most > 0)
+            hue = sum / most;
+    }
+    corners_.resize(3 * mesh_.triangles.size());
+    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        const size_t at = slot_at_[mesh_.slot(i)];
+        for (int corner = 0; corner < 3; ++corner) {
+            uint32_t& text = corners_[3 * i + static_cast<size_t>(corner)];
+            if (!slots_[at].colored) {
+                text = static_cast<uint32_t>(slots_[at].text);
+                continue;
+            }
+            const Key key = keys[mesh_.triangles[i][corner]];
+            const auto [found, fresh] = texts[at].try_emplace(key, 0);
+            if (fresh) {
+                Slot slot = slots_[at];
+                slot.surface.color = color_of(key);
+                if (hue.x >= 0 && slot.surface.uvs) {
+                    const glm::dvec3 color(slot.surface.color);
+                    slot.surface.color = glm::dvec4(hue * std::max({color.x, color.y, color.z}),
+                                                    slot.surface.color.w);
+                }
+                found->second = static_cast<uint32_t>(add(slot, pictures));
+            }
+            text = found->second;
+        }
+    }
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/picture_writer.h"
+
+#include "base/error.h"
+#include "base/files.h"
+#include "image/sampler.h"
+#include "povray_export/number.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+// Raised whenever what is baked changes: files are found again by their name alone.
+constexpr uint32_t kBakeVersion = 1;
+
+constexpr std::string_view kNameComment = "// i/";
+
+bool plain(const Texture& texture) {
+    return texture.scale == glm::dvec3(1.0) && texture.offset == glm::dvec3(0.0);
+}
+
+/// Color type of a PNG's header; -1 for one that POV-Ray is not trusted with (interlaced), or that
+/// has a transparent color.
+int png_color_type(const std::string& bytes) {
+    constexpr size_t kHeader = 33;  // signature and IHDR
+    if (bytes.size() < kHeader || bytes[28] != 0)
+        return -1;
+    for (size_t at = 8; at + 12 <= bytes.size();) {
+        size_t length = 0;
+        for (size_t i = 0; i < 4; ++i)
+            length = length << 8u | static_cast<unsigned char>(bytes[at + i]);
+        if (bytes.compare(at + 4, 4, "tRNS") == 0)
+            return -1;
+        if (bytes.compare(at + 4, 4, "IDAT") == 0 || length > bytes.size() - at - 12)
+            break;
+        at += length + 12;
+    }
+    return static_cast<unsigned char>(bytes[25]);
+}
+
+/// POV-Ray may read the picture's own file: it shows the texture's very values.
+bool usable_as_is(const Texture& texture, Content content) {
+    const Picture& picture = *texture.picture;
+    if (!plain(texture) || picture.format == PictureFormat::Exr)
+        return false;
+    const bool png = picture.format == PictureFormat::Png;
+    const int type = png ? png_color_type(picture.bytes) : -1;
+    if (content == Content::Color)  // alpha would make holes
+        return texture.channel == Channel::Color && (!png || type == 0 || type == 2 || type == 3);
+    // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
+    return texture.channel != Channel::Alpha && type == 0;
+}
+
+std::string baked(const Texture& texture, Content content) {
+    const image::Image from = image::decoded(*texture.picture);
+    image::Image to;
+    to.width = from.width;
+    to.height = from.height;
+    to.pixels.resize(from.pixels.size());
+    for (size_t i = 0; i < from.pixels.size(); i += 4) {
+        const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
+                               from.pixels[i + 3]);
+        if (content == Content::Color) {
+            const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
+            for (int c = 0; c < 3; ++c)
+                to.pixels[i + static_cast<size_t>(c)] =
+                    image::encode_srgb(static_cast<float>(color[c]));
+        } else {
+            const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
+            for (size_t c = 0; c < 3; ++c)
+                to.pixels[i + c] = static_cast<float>(number);
+        }
+        to.pixels[i + 3] = 1;
+    }
+    return image::png_bytes(to);
+}
+
+/// Whether anything outside of the picture is looked at.
+bool leaves(const Texture& texture, const UvRange& range) {
+    constexpr double kEdge = 1e-4;
+    for (int corner = 0; corner < 4; ++corner) {
+        const glm::dvec2 at = to_picture(texture, {(corner & 1) != 0 ? range.high.x : range.low.x,
+                                                   (corner & 2) != 0 ? range.high.y : range.low.y});
+        for (int i = 0; i < 2; ++i) {
+            if (!(at[i] >= -kEdge && at[i] <= 1 + kEdge))
+                return true;
+        }
+    }
+    return false;
+}
+
+/// Below 0 and above 1 of an axis the border's texels: strips so wide that the center of one texel
+/// covers them.
+std::string extended(const std::string& inside, char axis, int texels) {
+    const bool x = axis == 'x';
+    const auto strip = [&](double center) {
+        std::string out = inside + (x ? " translate<" : " translate<0,");
+        append_number(out, -center);
+        out += x ? ",0,0> scale<1e9,1,1>" : ",0> scale<1,1e9,1>";
+        return out;
+    };
+    const std::string at(1, axis);
+    return "function{select(" + at + ",0,.5,select(" + at + "-1,.5,1))} pigment_map{[.2 " +
+           strip(0.5 / texels) + "][.2 " + inside + "][.8 " + inside + "][.8 " +
+           strip(1 - 0.5 / texels) + "]}";
+}
+
+/// Black outside 0...1 of both axes.
+std::string clipped(const std::string& inside) {
+    return "function{select(x,0,1)*select(1-x,0,1)*select(y,0,1)*select(1-y,0,1)} "
+           "pigment_map{[.5 rgb 0][.5 " +
+           inside + "]}";
+}
+
+/// The transform of a pattern (picture to mesh: POV-Ray looks up through its inverse).
+std::string mapping(const Texture& texture) {
+    std::array<double, 6> m = texture.to_picture;
+    if (m == std::array<double, 6>{1, 0, 0, 0, 1, 0})
+        return "";
+    for (double& value : m)  // beyond, nothing can be told apart; POV-Ray corrects columns < 1e-10
+        value = std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0;
+    const auto determinant = [&m] { return m[0] * m[4] - m[1] * m[3]; };
+    constexpr double kThin = 1e-6;  // a line or a point of the picture is a very thin part of it
+    if (std::abs(determinant()) < kThin * kThin) {
+        m[0] += kThin;
+        m[4] += kThin;
+    }
+    if (std::abs(determinant()) < kThin * kThin) {
+        m[1] += 2 * kThin;
+        m[3] -= 2 * kThin;
+    }
+    const double d = determinant();
+    const double a = m[4] / d;
+    const double b = -m[1] / d;
+    const double c = -m[3] / d;
+    const double e = m[0] / d;
+    const double values[] = {
+        a, c, 0, b, e, 0, 0, 0, 1, -(a * m[2] + b * m[5]), -(c * m[2] + e * m[5]), 0};
+    std::string out = " matrix<";
+    for (size_t i = 0; i < std::size(values); ++i) {
+        append_number(out, values[i]);
+        out += i + 1 < std::size(values) ? "," : ">";
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string PictureWriter::file_of(const Texture& texture, Content content) {
+    const Picture& picture = *texture.picture;
+    if (picture.bytes.empty())
+        fail(Status::Internal, "the picture '", picture.name, "' is not resident");
+    File file{texture, content, usable_as_is(texture, content)};
+    Hasher hasher;
+    hasher.value(picture.hash);
+    if (!file.as_is) {
+        hasher.value(kBakeVersion).value(content).value(texture.channel);
+        for (int i = 0; i < 3; ++i)
+            hasher.value(texture.scale[i]).value(texture.offset[i]);
+    }
+    std::string name =
+        "i/" + hex16(hasher.result()) + '.' + (file.as_is ? suffix_of(picture.format) : "png");
+    files_.try_emplace(name, std::move(file));
+    return name;
+}
+
+std::string PictureWriter::file_reference(const Texture& texture, Content content) {
+    const std::string name = file_of(texture, content);
+    const File& file = files_.at(name);
+    const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
+    const bool encoded =
+        file.as_is ? texture.picture->space == ColorSpace::Srgb : content == Content::Color;
+    return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
+}
+
+std::string PictureWriter::pigment(const Texture& texture, Content content, const UvRange& range) {
+    const std::string reference = file_reference(texture, content);
+    const bool repeats = texture.extension == Extension::Repeat;
+    // `once` keeps the interpolation at a border from reaching over to the opposite one.
+    const std::string image =
+        "image_map{" + reference +
+        (texture.interpolation == Interpolation::Linear ? " interpolate 2" : "") +
+        (repeats ? "}" : " once}");
+    const std::string identifier = "LDS_I_" + hex16(Hasher().text(image).result());
+    declared_[identifier] = image;
+    std::string out = identifier;
+    if (!repeats && leaves(texture, range)) {
+        switch (texture.extension) {
+            case Extension::Extend:
+                out = extended(extended(out, 'x', texture.picture->width), 'y',
+                               texture.picture->height);
+                break;
+            case Extension::Clip:
+                out = clipped(out);
+                break;
+            case Extension::Mirror:
+                out += " warp{repeat x flip x} warp{repeat y flip y}";
+                break;
+            case Extension::Repeat:
+                break;
+        }
+    }
+    return out + mapping(texture);
+}
+
+std::string PictureWriter::declarations() const {
+    std::string out;
+    for (const auto& [name, file] : files_)
+        out += "// " + name + '\n';
+    for (const auto& [identifier, inside] : declared_)
+        out += "#ifndef(" + identifier + ") #declare " + identifier + " = pigment{" + inside +
+               "} #end\n";
+    return out;
+}
+
+void PictureWriter::write(PictureFolder& folder) const {
+    for (const auto& [name, file] : files_)
+        folder.add(name, [&file = file] {
+            return file.as_is ? file.texture.picture->bytes : baked(file.texture, file.content);
+        });
+}
+
+void PictureFolder::add(const std::string& name, const std::function<std::string()>& bytes) {
+    std::error_code error;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto [at, fresh] = names_.try_emplace(name, false);
+        if (!fresh || std::filesystem::exists(folder_ / name, error))
+            return;
+        at->second = true;
+    }
+    std::filesystem::create_directories(folder_ / "i", error);
+    if (error)
+        fail(Status::Io, "cannot make the folder '", (folder_ / "i").string(),
+             "': ", error.message());
+    write_file(folder_ / name, bytes());
+}
+
+bool PictureFolder::found(const std::vector<std::string>& names) {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& name : names) {
+        std::error_code error;
+        if (names_.contains(name))
+            continue;
+        if (!std::filesystem::exists(folder_ / name, error))
+            return false;
+        names_.try_emplace(name, false);
+    }
+    return true;
+}
+
+PictureFolder::Totals PictureFolder::totals() const {
+    Totals totals;
+    for (const auto& [name, written] : names_) {
+        std::error_code error;
+        const uintmax_t bytes = std::filesystem::file_size(folder_ / name, error);
+        ++totals.files;
+        totals.bytes += error ? 0 : bytes;
+        totals.written += written ? 1u : 0u;
+    }
+    return totals;
+}
+
+std::vector<std::string> pictures_named(std::string_view text) {
+    std::vector<std::string> names;
+    while (text.starts_with(kNameComment)) {
+        const size_t end = text.find('\n');
+        if (end == std::string_view::npos)
+            break;
+        const std::string_view name = text.substr(3, end - 3);
+        if (safe_relative_name(name))
+            names.emplace_back(name);
+        text.remove_prefix(end + 1);
+    }
+    return names;
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picture writer: textures as POV-Ray's pigments, and the picture files below i/ that they show.
+#pragma once
+
+#include "model/texture.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lodestone::povray {
+
+/// What of a texture a pigment shows.
+enum class Content : uint8_t {
+    Color = 0,   // its color; transparency is not in it
+    Number = 1,  // its number as gray, clamped to 0...1
+};
+
+/// Texture coordinates a surface uses. What a picture shows outside 0...1 costs POV-Ray time when it
+/// is no plain repetition, so it is written only where it can be seen.
+struct UvRange {
+    glm::dvec2 low{0.0};
+    glm::dvec2 high{1.0};
+};
+
+/// The folder i/ below a scene's folder; all threads of one export share it.
+class PictureFolder {
+public:
+    explicit PictureFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// Writes the file, unless it is there, or is being written by another thread.
+    void add(const std::string& name, const std::function<std::string()>& bytes);
+    /// Counts files that an old text names; false when one is missing.
+    bool found(const std::vector<std::string>& names);
+
+    struct Totals {
+        uint64_t files = 0;
+        uint64_t bytes = 0;
+        uint64_t written = 0;
+    };
+    Totals totals() const;  // when no thread adds any more
+
+private:
+    std::filesystem::path folder_;
+    mutable std::mutex mutex_;
+    std::map<std::string, bool> names_;  // true: written now
+};
+
+/// Collects the pictures that the text of one representation shows. Not for several threads.
+class PictureWriter {
+public:
+    /// The inside of pigment{...}: a function of texture coordinates, so it must stand below a
+    /// uv_mapping. Throws Error(Internal) for a picture that is not resident.
+    std::string pigment(const Texture& texture, Content content, const UvRange& range);
+
+    /// `png "i/..." gamma ...` for a pattern of its own. Throws as above.
+    std::string file_reference(const Texture& texture, Content content);
+
+    /// Comments that name all files, then a guarded declaration of every image, so that POV-Ray
+    /// loads one that several representations show once; "" when there is none.
+    std::string declarations() const;
+
+    /// Writes the files that are not there yet (a name is its content).
+    /// Throws Error(Io), Error(BadFile).
+    void write(PictureFolder& folder) const;
+
+private:
+    struct File {
+        Texture texture;
+        Content content = Content::Color;
+        bool as_is = false;  // the picture's own bytes
+    };
+
+    std::string file_of(const Texture& texture, Content content);
+
+    std::map<std::string, File> files_;            // by name
+    std::map<std::string, std::string> declared_;  // identifier: inside of the pigment
+};
+
+/// The names of the files that declarations() listed at the beginning of a text, and no others.
+std::vector<std::string> pictures_named(std::string_view text);
+
+}  // namespace lodestone::povray

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/texture_writer.h"
+
+#include "povray_export/finish.h"
+#include "povray_export/number.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+// A finish cannot follow a picture: textures at this many steps of roughness are blended instead.
+// Highlights change fastest where the surface is smooth.
+constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
+
+constexpr const char* kClear =
+    "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
+
+double share(double value, double otherwise) {
+    return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
+}
+
+/// Inside of texture{...} or of an entry of a texture_map.
+using Body = std::string;
+
+class TextureText {
+public:
+    TextureText(const Surface& surface, PictureWriter& pictures)
+        : surface_(surface), pictures_(pictures) {}
+
+    Body mixed(const Material& material) {
+        if (!material.other)
+            return covered(material);
+        const double mix = share(material.mix, 0);
+        if (shown(material.mix_texture))
+            return blended(material.mix_texture,
+                           {{0, covered(material)}, {1, mixed(*material.other)}});
+        return average(covered(material), mixed(*material.other), mix);
+    }
+
+    bool mapped() const { return mapped_; }
+
+private:
+    using Entries = std::vector<std::pair<double, Body>>;
+
+    bool shown(const Texture& texture) const { return texture && surface_.uvs; }
+
+    std::string pigment(const Texture& texture, Content content) {
+        mapped_ = true;
+        return pictures_.pigment(texture, content, surface_.range);
+    }
+
+    static Body map(const Entries& entries) {
+        Body out = " texture_map{";
+        for (const auto& [at, body] : entries) {
+            out += '[';
+            append_number(out, at, 6);
+            out += ' ' + body + ']';
+        }
+        return out + '}';
+    }
+
+    /// By the number of a texture.
+    Body blended(const Texture& texture, const Entries& entries) {
+        return "pigment_pattern{" + pigment(texture, Content::Number) + '}' + map(entries);
+    }
+
+    /// (1 - second) of a and second of b.
+    static Body average(Body a, Body b, double second) {
+        if (second <= 0 || a == b)
+            return a;
+        if (second >= 1)
+            return b;
+        return "average" + map({{1 - second, std::move(a)}, {second, std::move(b)}});
+    }
+
+    /// A share of alpha of the surface, the rest is not there.
+    Body covered(const Material& material) {
+        const Body body = rough(material);
+        if (material.alpha_mode == AlphaMode::Opaque)
+            return body;
+        const double paint = material.vertex_colors ? share(surface_.color.w, 1) : 1;
+        const double cutoff = share(material.alpha_cutoff, 0.5);
+        const bool clip = material.alpha_mode == AlphaMode::Clip;
+        if (!shown(material.alpha_texture)) {
+            const double alpha = paint * share(material.alpha, 1);
+            if (clip)
+                return alpha >= cutoff ? body : kClear;
+            return average(kClear, body, alpha);
+        }
+        if (!clip)
+            return average(kClear, blended(material.alpha_texture, {{0, kClear}, {1, body}}),
+                           paint);
+        if (cutoff <= 0)
+            return body;
+        const double least = paint > 0 ? cutoff / paint : 2;
+        if (least > 1)
+            return kClear;
+        return blended(material.alpha_texture, {{least, kClear}, {least, body}});
+    }
+
+    Body rough(const Material& material) {
+        Look look = look_of(material);
+        if (!shown(material.roughness_texture))
+            return metal(material, look);
+        Entries entries;
+        for (const double roughness : kRoughnessSteps) {
+            look.roughness = roughness;
+            entries.emplace_back(roughness, metal(material, look));
+        }
+        return blended(material.roughness_texture, entries);
+    }
+
+    Body metal(const Material& material, Look look) {
+        if (!shown(material.metallic_texture))
+            return lit(material, look);
+        look.metallic = 0;
+        const Body dielectric = lit(material, look);
+        look.metallic = 1;
+        return blended(material.metallic_texture, {{0, dielectric}, {1, lit(material, look)}});
+    }
+
+    Body lit(const Material& material, const Look& look) {
+        glm::dvec3 base;
+        glm::dvec3 emission;
+        glm::dvec3 paint(1.0);
+        for (int i = 0; i < 3; ++i) {
+            base[i] = share(material.base_color[i], 0.8);
+            emission[i] = std::isfinite(material.emission[i])
+                              ? std::clamp(material.emission[i], 0.0, 1e9)
+                              : 0;
+            if (material.vertex_colors)
+                paint[i] = share(surface_.color[i], 1);
+        }
+        const bool image = shown(material.base_color_texture);
+        const bool lamp = shown(material.emission_texture);
+        // What the paint leaves of a picture's brightness is left to the finish: a picture is baked
+        // for every distinct hue only.
+        const double brightness = image ? std::max({paint.x, paint.y, paint.z}) : 1;
+        Finish finish = finish_of(
+            look, image ? 1 : std::max({base.x * paint.x, base.y * paint.y, base.z * paint.z}));
+        finish.ambient *= brightness;
+        finish.diffuse *= brightness;
+        Body pigment_text = "pigment{";
+        if (image) {
+            Texture texture = material.base_color_texture;
+            if (brightness > 0) {
+                texture.scale *= paint / brightness;
+                texture.offset *= paint / brightness;
+            }
+            pigment_text += pigment(texture, Content::Color);
+        } else {
+            append_rgb(pigment_text, base * paint);
+        }
+        pigment_text += "} ";
+        const bool dark = emission == glm::dvec3(0.0);
+        if (!lamp && (dark || !image)) {
+            if (!dark) {  // POV-Ray multiplies emission by the pigment: it needs a trace of color
+                for (int i = 0; i < 3; ++i) {
+                    const double color = std::max(base[i] * paint[i], emission[i] > 0 ? 1e-4 : 0);
+                    base[i] = color;
+                    emission[i] = color > 0 ? emission[i] / color : 0;
+                }
+                pigment_text = "pigment{";
+                append_rgb(pigment_text, base);
+                pigment_text += "} ";
+            }
+            append_finish(pigment_text, finish, 1, emission);
+            return pigment_text;
+        }
+        append_finish(pigment_text, finish, 2, glm::dvec3(0.0));
+        Body glow = "pigment{";
+        if (lamp) {
+            // Brighter than 1 is not for a picture: its brightness is left to the finish.
+            Texture texture = material.emission_texture;
+            const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
+            const double brightest = std::max({most.x, most.y, most.z, 1e-9});
+            texture.scale /= brightest;
+            texture.offset /= brightest;
+            glow += pigment(texture, Content::Color) + "} ";
+            append_finish(glow, Finish{}, 0, glm::dvec3(2 * brightest));
+        } else {
+            append_rgb(glow, glm::dvec3(1.0));
+            glow += "} ";
+            append_finish(glow, Finish{}, 0, 2.0 * emission);
+        }
+        return "average" + map({{1, pigment_text}, {1, glow}});
+    }
+
+    const Surface& surface_;
+    PictureWriter& pictures_;
+    bool mapped_ = false;
+};
+
+}  // namespace
+
+std::string texture_text(const Material& material, const Surface& surface,
+                         PictureWriter& pictures) {
+    TextureText text(surface, pictures);
+    const std::string body = text.mixed(material);
+    return (text.mapped() ? "texture{uv_mapping " : "texture{") + body + '}';
+}
+
+double refraction_of(const Material& material) {
+    const double other = material.other ? refraction_of(*material.other) : 0;
+    if (!(material.transmission > 0) || !std::isfinite(material.ior))
+        return other;
+    return std::clamp(material.ior, 0.1, 10.0);
+}
+
+}  // namespace lodestone::povray

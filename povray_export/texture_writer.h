@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texture writer: a material as the text of a POV-Ray texture.
+#pragma once
+
+#include "model/material.h"
+#include "povray_export/picture_writer.h"
+
+#include <glm/vec4.hpp>
+
+#include <string>
+
+namespace lodestone::povray {
+
+/// What of a surface its texture's text depends on.
+struct Surface {
+    bool uvs = false;  // without texture coordinates every texture is its mean
+    UvRange range;
+    glm::dvec4 color{1.0};  // of its vertices, linear; counts where the material uses it
+};
+
+/// texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted averages of
+/// whole textures, which is what they mean; base color and emission are averaged at twice their
+/// strength where one pigment cannot be both. Values out of range are clamped, so that any material
+/// gives text that POV-Ray reads.
+std::string texture_text(const Material& material, const Surface& surface, PictureWriter& pictures);
+
+/// Index of refraction of a material that light goes through; 0 for all others.
+double refraction_of(const Material& material);
+
+}  // namespace lodestone::povray

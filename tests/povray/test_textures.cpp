@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards pictures on surfaces: what POV-Ray shows is what the texture's own sampler says.
+#include "povray/scene.h"
+#include "povray_export/representation_writer.h"
+
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::above;
+using scenes::Builder;
+using scenes::checker;
+using scenes::render;
+using scenes::scratch;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A square with uv -1.25...2.25 that fills a picture of 28 x 28 pixels, an eighth each.
+Mesh patch(double low = -1.25, double high = 2.25) {
+    Mesh mesh = shapes::quad(0.875F, 0.875F);
+    for (const glm::vec3& at : mesh.positions)
+        mesh.uvs.emplace_back(low + (high - low) * at.x / 0.875, low + (high - low) * at.y / 0.875);
+    return mesh;
+}
+
+/// Under a sun that makes a matte surface as bright as its base color.
+scenes::Image shown(const std::vector<Material>& materials, const Mesh& mesh,
+                    const std::string& name, const glm::dvec3& world = glm::dvec3(0.0)) {
+    Builder builder;
+    builder.model.world.color = world;
+    builder.model.lights.push_back(scenes::sun(kPi));
+    std::vector<uint32_t> slots;
+    for (const Material& material : materials)
+        slots.push_back(builder.material(material));
+    builder.place_at(builder.mesh(mesh, slots), {-0.4375, -0.4375, 0});
+    ExportOptions options;
+    options.folder = scratch(name);
+    options.antialiasing = Antialiasing::Off;
+    return render(builder.finish(), above(28, 28), options);
+}
+
+glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
+    return {low + (high - low) * (x + 0.5) / 28, high - (high - low) * (y + 0.5) / 28};
+}
+
+/// The largest difference of each texture to what its sampler says, in one picture.
+std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
+                                double high = 2.25) {
+    Builder builder;
+    builder.model.lights.push_back(scenes::sun(kPi));
+    const auto count = static_cast<int>(textures.size());
+    for (int i = 0; i < count; ++i)
+        builder.place_at(
+            builder.mesh(patch(low, high),
+                         {builder.material(scenes::textured(textures[static_cast<size_t>(i)]))}),
+            {0.875 * (i - 0.5 * count), -0.4375, 0});
+    ExportOptions options;
+    options.folder = scratch("sampler");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(28 * count, 28), options);
+    std::vector<double> worst;
+    for (const Texture& texture : textures) {
+        const image::Sampler sampler(texture, glm::dvec3(0.0));
+        const int left = 28 * static_cast<int>(worst.size());
+        worst.push_back(0);
+        for (int y = 0; y < 28; ++y) {
+            for (int x = 0; x < 28; ++x) {
+                const glm::dvec3 expected = sampler.color(uv_of(x, y, low, high));
+                for (int i = 0; i < 3; ++i)
+                    worst.back() =
+                        std::max(worst.back(), std::abs(image.at(left + x, y)[i] - expected[i]));
+            }
+        }
+    }
+    return worst;
+}
+
+std::vector<std::string> pictures(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "i"))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace
+
+TEST(PovrayTextures, EveryExtensionAndInterpolationShowsWhatTheSamplerSays) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    std::vector<Texture> textures;
+    for (const Extension extension :
+         {Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror}) {
+        for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Closest}) {
+            // The border of a clipped picture is not interpolated with the black around it.
+            if (extension == Extension::Clip && interpolation == Interpolation::Linear)
+                continue;
+            textures.push_back(checker());
+            textures.back().extension = extension;
+            textures.back().interpolation = interpolation;
+        }
+    }
+    for (const double difference : differences(textures))
+        EXPECT_LE(difference, 0.004);
+    for (const double difference : differences(textures, 0.02, 0.98))
+        EXPECT_LE(difference, 0.004);
+}
+
+TEST(PovrayTextures, AMappedPictureLiesWhereTheMappingSays) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    std::vector<Texture> textures(5, checker(ColorSpace::Srgb));
+    textures[0].to_picture = {0.8, -0.6, 0.3, 1.2, 1.6, -0.7};
+    textures[1].to_picture = textures[0].to_picture;
+    textures[1].extension = Extension::Extend;
+    textures[2].to_picture = {-1, 0, 0.3, 0, 1, 0.1};  // mirrored
+    textures[3].to_picture = {0, 0, 0.3, 0, 0, 0.1};   // one texel everywhere
+    textures[4].to_picture = {1, 0, 0.3, 2, 0, 0.1};   // a line
+    for (const double difference : differences(textures))
+        EXPECT_LE(difference, 0.005);
+}
+
+TEST(PovrayTextures, ChangedValuesAndTransparentPicturesAreBaked) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    std::vector<Texture> textures(3, checker(ColorSpace::Srgb));
+    textures[0].scale = {0.5, 0.25, -1};
+    textures[0].offset = {0.1, 0.2, 1};
+    textures[1].channel = Channel::Green;
+    // What is behind transparent texels is color all the same.
+    textures[2].picture = scenes::picture(2, {{.8, 0, 0, 0}, {0, .6, 0, 1}});
+    for (const double difference : differences(textures))
+        EXPECT_LE(difference, 0.006);
+    EXPECT_EQ(pictures(std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray/sampler").size(),
+              3u);
+}
+
+TEST(PovrayTextures, PlainPicturesAreWrittenAsTheyAreOnce) {
+    Builder builder;
+    const Texture texture = checker();
+    Material both = scenes::textured(texture);
+    both.emission_texture = texture;
+    const uint32_t first = builder.material(both);
+    const uint32_t second = builder.material(scenes::textured(texture));
+    builder.place(builder.mesh(patch(), {first}));
+    builder.place(builder.mesh(patch(0, 1), {second}));
+    ExportOptions options;
+    options.folder = scratch("as_is");
+    Problems problems;
+    const Model& model = builder.finish();
+    const ExportReport report = scenes::write(model, above(), options, problems);
+    ASSERT_EQ(pictures(options.folder).size(), 1u);
+    const auto file = options.folder / "i" / pictures(options.folder)[0];
+    EXPECT_EQ(read_file(file), texture.picture->bytes);
+    EXPECT_EQ(report.files, 5u);
+    EXPECT_EQ(report.written, 5u);
+    EXPECT_GT(report.bytes, texture.picture->bytes.size());
+    const ExportReport again = scenes::write(model, above(), options, problems);
+    EXPECT_EQ(again.files, 5u);
+    EXPECT_EQ(again.written, 2u);
+    EXPECT_EQ(again.bytes, report.bytes);
+    std::filesystem::remove(file);  // what is missing comes back
+    EXPECT_EQ(scenes::write(model, above(), options, problems).files, 5u);
+    EXPECT_EQ(read_file(file), texture.picture->bytes);
+}
+
+TEST(PovrayTextures, WithoutTextureCoordinatesThereIsTheMean) {
+    Builder builder;
+    const uint32_t material = builder.material(scenes::textured(checker()));
+    Mesh mesh = shapes::cube();
+    builder.place(builder.mesh(mesh, {material}));
+    builder.place(builder.primitive(Kind::Box, {}, {material}));
+    ExportOptions options;
+    options.folder = scratch("mean");
+    Problems problems;
+    scenes::write(builder.finish(), above(), options, problems);
+    EXPECT_FALSE(std::filesystem::exists(options.folder / "i"));
+}
+
+TEST(PovrayTextures, AlphaLetsThatShareOfTheSkyThrough) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Material glassy;
+    glassy.base_color = {0.8, 0.8, 0.8};
+    glassy.specular = 1;
+    glassy.roughness = 0.1;
+    glassy.alpha_mode = AlphaMode::Blend;
+    glassy.alpha = 0;
+    const glm::dvec3 sky(0.1, 0.2, 0.4);
+    scenes::Image image = shown({glassy}, patch(), "alpha", sky);
+    EXPECT_NEAR(image.at(14, 14).y, 0.2, 0.002);  // not even a highlight is left
+    Material leaf = scenes::textured({});
+    leaf.base_color = glm::dvec3(0.5);
+    leaf.alpha_mode = AlphaMode::Blend;
+    leaf.alpha = 0.25;
+    image = shown({leaf}, patch(), "alpha", glm::dvec3(0.2));
+    EXPECT_NEAR(image.at(14, 14).y, 0.25 * (0.5 + 0.1) + 0.75 * 0.2, 0.003);
+
+    leaf.alpha_texture.picture = scenes::picture(2, {{1, 1, 1, 0.25F}, {1, 1, 1, 1}});
+    leaf.alpha_texture.channel = Channel::Alpha;
+    leaf.alpha_texture.interpolation = Interpolation::Closest;
+    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
+    EXPECT_NEAR(image.at(7, 14).y, 0.25 * 0.6 + 0.75 * 0.2, 0.004);
+    EXPECT_NEAR(image.at(21, 14).y, 0.6, 0.003);
+    leaf.alpha_mode = AlphaMode::Clip;
+    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
+    EXPECT_NEAR(image.at(7, 14).y, 0.2, 0.002);
+    EXPECT_NEAR(image.at(21, 14).y, 0.6, 0.003);
+    leaf.alpha_mode = AlphaMode::Opaque;
+    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
+    EXPECT_NEAR(image.at(7, 14).y, 0.6, 0.003);
+}
+
+TEST(PovrayTextures, ALeafsShadowHasItsHoles) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    builder.model.lights.push_back(scenes::sun(kPi, {1, 0, -1}));
+    Material leaf = scenes::textured({});
+    leaf.alpha_mode = AlphaMode::Clip;
+    leaf.alpha_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
+    leaf.alpha_texture.interpolation = Interpolation::Closest;
+    builder.place_at(builder.mesh(patch(0, 1), {builder.material(leaf)}), {-1.4375, -0.4375, 1});
+    builder.place_at(builder.mesh(shapes::quad(0.875F, 0.875F), {builder.matte(glm::dvec3(1.0))}),
+                     {-0.4375, -0.4375, 0});
+    ExportOptions options;
+    options.folder = scratch("holes");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(28, 28), options);
+    EXPECT_NEAR(image.at(7, 14).y, std::sqrt(0.5), 0.01);
+    EXPECT_NEAR(image.at(21, 14).y, 0, 0.001);
+}
+
+TEST(PovrayTextures, EmissionAndBaseColorAddUp) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Material lamp = scenes::textured(checker());
+    lamp.base_color_texture.interpolation = Interpolation::Closest;
+    lamp.emission = {0.05, 0.1, 0.02};
+    scenes::Image image = shown({lamp}, patch(0, 1), "emission");
+    EXPECT_NEAR(image.at(7, 7).x, 0.85, 0.004);
+    EXPECT_NEAR(image.at(7, 7).y, 0.1, 0.004);
+    lamp.emission_texture.picture = scenes::picture(1, {{0, .2, 0, 1}, {.1, .3, 1, 1}});
+    lamp.emission_texture.interpolation = Interpolation::Closest;
+    lamp.emission_texture.scale = {2, 1, 0.5};
+    image = shown({lamp}, patch(0, 1), "emission");
+    EXPECT_NEAR(image.at(7, 7).x, 0.8, 0.006);
+    EXPECT_NEAR(image.at(7, 7).y, 0.2, 0.006);
+    EXPECT_NEAR(image.at(21, 21).x, 0.9, 0.01);
+    EXPECT_NEAR(image.at(21, 21).y, 0.8, 0.01);
+    EXPECT_NEAR(image.at(21, 21).z, 0.5, 0.01);
+    lamp.base_color_texture = {};
+    lamp.base_color = glm::dvec3(0.0);
+    image = shown({lamp}, patch(0, 1), "emission");
+    EXPECT_NEAR(image.at(21, 21).y, 0.3, 0.006);
+    EXPECT_NEAR(image.at(21, 21).z, 0.5, 0.006);
+}
+
+TEST(PovrayTextures, ConstantMapsLookLikeTheirNumbers) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Material plain;
+    plain.base_color = {0.7, 0.4, 0.2};
+    plain.roughness = 0.5;
+    plain.metallic = 0.4;
+    Material mapped = plain;
+    mapped.roughness = mapped.metallic = 0.9;
+    mapped.roughness_texture.picture = scenes::picture(1, {{0, 127.5F / 255, 0, 1}});
+    mapped.roughness_texture.channel = Channel::Green;
+    mapped.metallic_texture.picture = scenes::picture(1, {{0.8F, 0.8F, 0.8F, 1}});
+    mapped.metallic_texture.scale.x = 0.5;
+    const scenes::Image a = shown({plain}, patch(), "maps", glm::dvec3(0.3));
+    const scenes::Image b = shown({mapped}, patch(), "maps", glm::dvec3(0.3));
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(a.at(14, 14)[i], b.at(14, 14)[i], 0.01);
+}
+
+TEST(PovrayTextures, MixedMaterialsAreWeightedMeans) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    auto blue = std::make_shared<Material>(scenes::textured({}));
+    blue->base_color = {0, 0, 0.8};
+    Material red = scenes::textured({});
+    red.base_color = {0.4, 0, 0};
+    red.other = blue;
+    red.mix = 0.25;
+    scenes::Image image = shown({red}, patch(), "mix");
+    EXPECT_NEAR(image.at(14, 14).x, 0.3, 0.003);
+    EXPECT_NEAR(image.at(14, 14).z, 0.2, 0.003);
+    red.mix_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
+    red.mix_texture.interpolation = Interpolation::Closest;
+    image = shown({red}, patch(0, 1), "mix");
+    EXPECT_NEAR(image.at(7, 14).x, 0.4, 0.003);
+    EXPECT_NEAR(image.at(21, 14).z, 0.8, 0.003);
+}
+
+TEST(PovrayTextures, VertexColorsRunBetweenVerticesAndMultiplyThePicture) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Mesh mesh = patch(0, 1);
+    for (const glm::vec2& uv : mesh.uvs)
+        mesh.colors.emplace_back(uv.x, 0.25F, 1 - uv.x, 1);
+    Material material = scenes::textured({});
+    material.base_color = {1, 1, 0.5};
+    material.vertex_colors = true;
+    scenes::Image image = shown({material}, mesh, "colors");
+    for (const int x : {0, 7, 21, 27}) {
+        const double u = (x + 0.5) / 28;
+        EXPECT_NEAR(image.at(x, 14).x, u, 0.006);
+        EXPECT_NEAR(image.at(x, 14).y, 0.25, 0.003);
+        EXPECT_NEAR(image.at(x, 14).z, 0.5 * (1 - u), 0.006);
+    }
+    material.vertex_colors = false;
+    EXPECT_NEAR(shown({material}, mesh, "colors").at(7, 14).x, 1, 0.01);
+
+    material = scenes::textured(checker());
+    material.base_color_texture.interpolation = Interpolation::Closest;
+    material.vertex_colors = true;
+    image = shown({material}, mesh, "colors");
+    EXPECT_NEAR(image.at(7, 7).x, 0.8 * 7.5 / 28, 0.006);
+    EXPECT_NEAR(image.at(21, 7).y, 0.6 * 0.25, 0.006);
+    EXPECT_NEAR(image.at(7, 21).z, 0.9 * (1 - 7.5 / 28), 0.01);
+}
+
+TEST(PovrayTextures, ManyVertexColorsAreRoundedToAFewThousand) {
+    Builder builder;
+    Mesh mesh = shapes::terrain(128);
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.colors.emplace_back(float(i % 128) / 128.0F, float(i) / 16384.0F,
+                                 float(i * 37 % 101) / 101.0F, 1);
+    Material material = scenes::textured({});
+    material.vertex_colors = true;
+    const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
+    PictureWriter pictures;
+    const std::string text = representation_text(
+        builder.model, builder.model.objects[object].representations[0], "X", {}, pictures, {});
+    const size_t at = text.find("texture_list{");
+    ASSERT_NE(at, std::string::npos);
+    const int textures = std::stoi(text.substr(at + 13));
+    EXPECT_LE(textures, 4096);
+    EXPECT_GT(textures, 500);
+}
+
+TEST(PovrayTextures, HostileTexturesGiveTextThatPovrayReads) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Texture texture = checker();
+    texture.to_picture = {1e300, 0, -1e300, 0, 1e-300, 5};
+    texture.scale = {1e300, -1e300, 0};
+    texture.extension = Extension::Extend;
+    Material material = scenes::textured(texture);
+    material.emission_texture = texture;
+    material.alpha_mode = AlphaMode::Clip;
+    material.alpha_texture = texture;
+    material.roughness_texture = material.metallic_texture = material.mix_texture = texture;
+    material.other = std::make_shared<Material>(material);
+    Mesh mesh = patch();
+    mesh.uvs[0] = {1e30F, -1e30F};
+    Builder builder;
+    builder.place(builder.mesh(mesh, {builder.material(material)}));
+    ExportOptions options;
+    options.folder = scratch("hostile");
+    RunReport report;
+    render(builder.finish(), above(16, 16), options, &report);
+    EXPECT_EQ(report.messages, "");
+}
