@@ -90,6 +90,15 @@ void append_finish(std::string& out, const Finish& finish, double light,
     out += '}';
 }
 
+void append_glass_finish(std::string& out, const Look& look) {
+    Look clear = look;
+    clear.metallic = 0;
+    const Finish finish = finish_of(clear, 1);
+    append_named(out, "finish{ambient 0 emission 0 diffuse 0 specular albedo ", finish.specular);
+    append_named(out, " roughness ", finish.roughness);
+    out += " reflection{rgb 0, rgb 1 fresnel on} conserve_energy}";
+}
+
 void append_flat_texture(std::string& out, const glm::dvec3& color) {
     out += "texture{pigment{";
     append_rgb(out, color);

@@ -44,6 +44,9 @@ Finish finish_of(const Look& look, double brightest);
 void append_finish(std::string& out, const Finish& finish, double light,
                    const glm::dvec3& emission);
 
+/// Of a clear surface: it mirrors what Fresnel's equations say, and shows the highlight of that.
+void append_glass_finish(std::string& out, const Look& look);
+
 /// Shows its pigment as it is.
 void append_flat_texture(std::string& out, const glm::dvec3& color);
 

@@ -5,11 +5,13 @@
 #include "image/image.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <unordered_map>
+#include <unordered_set>
 
 namespace lodestone::povray {
 namespace {
@@ -72,21 +74,22 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
     find_slots(model, representation, uvs && !mesh_.uvs.empty());
     if (uses_uvs_)
         find_ranges();
-    bool colored = false;
+    find_planes();
+    bool corners = false;
     for (Slot& slot : slots_) {
         refraction_ = std::max(refraction_, refraction_of(slot.material));
-        if (slot.colored)
-            colored = true;
+        if (slot.colored || !slot.planes.empty())
+            corners = true;
         else
             slot.text = add(slot, pictures);
     }
-    if (colored)
-        color_corners(pictures);
+    if (corners)
+        find_corners(pictures);
 }
 
 size_t MeshTextures::of(size_t triangle, int corner) const {
-    return per_corner() ? corners_[3 * triangle + static_cast<size_t>(corner)]
-                        : slots_[slot_at_[mesh_.slot(triangle)]].text;
+    return !corners_.empty() ? corners_[3 * triangle + static_cast<size_t>(corner)]
+                             : slots_[slot_at_[mesh_.slot(triangle)]].text;
 }
 
 void MeshTextures::breathe(size_t i) const {
@@ -116,6 +119,7 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
         slot.surface.uvs = uvs && textured(slot.material);
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
+        slot.bumped = slot.surface.uvs && bumpy(slot.material);
         slots_.push_back(std::move(slot));
     }
 }
@@ -146,7 +150,75 @@ size_t MeshTextures::add(const Slot& slot, PictureWriter& pictures) {
     return at->second;
 }
 
-void MeshTextures::color_corners(PictureWriter& pictures) {
+void MeshTextures::find_planes() {
+    if (std::none_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.bumped; }))
+        return;
+    plane_of_.assign(mesh_.triangles.size(), uint8_t{kMostPlanes});
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        Slot& slot = slots_[slot_at_[mesh_.slot(i)]];
+        if (!slot.bumped || plane_of(i, slot, plane_of_[i]))
+            continue;
+        slot.bumped = false;
+        slot.planes.clear();
+        bumps_left_out_ = true;
+    }
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        if (slots_[slot_at_[mesh_.slot(i)]].planes.empty())
+            plane_of_[i] = kMostPlanes;
+    }
+}
+
+/// False: a plane too many. Triangles without an area, here or in the picture, have none.
+bool MeshTextures::plane_of(size_t triangle, Slot& slot, uint8_t& plane) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    const glm::dvec3 at[] = {glm::dvec3(mesh_.positions[t.x]), glm::dvec3(mesh_.positions[t.y]),
+                             glm::dvec3(mesh_.positions[t.z])};
+    const glm::dvec2 uv[] = {glm::dvec2(mesh_.uvs[t.x]), glm::dvec2(mesh_.uvs[t.y]),
+                             glm::dvec2(mesh_.uvs[t.z])};
+    const auto fits = [&](const Affine& to_uv) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 there = to_uv(at[i]);
+            // Within a tenth of the texels of a picture of 1000, and of its plane as wide.
+            if (!(std::abs(there.x - uv[i].x) < 1e-4 && std::abs(there.y - uv[i].y) < 1e-4))
+                return false;
+        }
+        const glm::dvec3 normal = glm::cross(at[1] - at[0], at[2] - at[0]);
+        const glm::dvec3 up(to_uv.linear[0].z, to_uv.linear[1].z, to_uv.linear[2].z);
+        return glm::dot(normal, up) >= 0.9999 * glm::length(normal);
+    };
+    for (size_t i = slot.planes.size(); i-- > 0;) {  // neighbors tend to share the last one
+        if (fits(slot.planes[i])) {
+            plane = static_cast<uint8_t>(i);
+            return true;
+        }
+    }
+    const glm::dvec3 a = at[1] - at[0];
+    const glm::dvec3 b = at[2] - at[0];
+    const glm::dvec3 normal = glm::cross(a, b);
+    const double square = glm::dot(normal, normal);
+    const glm::dvec2 ua = uv[1] - uv[0];
+    const glm::dvec2 ub = uv[2] - uv[0];
+    // Gradients of u and v in the plane, and the height above it.
+    const glm::dvec3 across = glm::cross(b, normal) / square;
+    const glm::dvec3 along = glm::cross(normal, a) / square;
+    const glm::dvec3 rows[] = {ua.x * across + ub.x * along, ua.y * across + ub.y * along,
+                               normal / std::sqrt(square)};
+    Affine to_uv;
+    to_uv.linear = glm::transpose(glm::dmat3(rows[0], rows[1], rows[2]));
+    const double volume = glm::determinant(to_uv.linear);
+    if (!to_uv.finite() || !(std::abs(volume) > 1e-9 * glm::length(rows[0]) * glm::length(rows[1])))
+        return true;
+    const glm::dvec3 origin = to_uv.linear * at[0];
+    to_uv.offset = {uv[0].x - origin.x, uv[0].y - origin.y, -origin.z};
+    if (slot.planes.size() == kMostPlanes)
+        return false;
+    plane = static_cast<uint8_t>(slot.planes.size());
+    slot.planes.push_back(to_uv);
+    return true;
+}
+
+std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
     std::vector<Key> keys(mesh_.colors.size());
     bool alpha = false;
     bool pictured = false;
@@ -162,21 +234,18 @@ void MeshTextures::color_corners(PictureWriter& pictures) {
     }
     // First what 8 bits hold, then coarser until it fits.
     for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
-        std::unordered_map<Key, uint32_t> distinct;
-        bool few = true;
-        for (size_t i = 0; i < keys.size() && few; ++i) {
+        std::unordered_set<Key> distinct;
+        for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
             breathe(i);
-            distinct.emplace(rounded(keys[i], step), 0);
-            few = distinct.size() <= kMost;
+            distinct.insert(rounded(keys[i], step));
         }
-        if (!few)
+        if (distinct.size() > kMost)
             continue;
         for (Key& key : keys)
             key = rounded(key, step);
         break;
     }
     // Over a picture, many hues become their mean: only brightness varies without another picture.
-    glm::dvec3 hue(-1.0);
     if (pictured) {
         std::set<Key> hues;
         glm::dvec3 sum(0.0);
@@ -189,31 +258,41 @@ void MeshTextures::color_corners(PictureWriter& pictures) {
         if (hues.size() > kMostHues && most > 0)
             hue = sum / most;
     }
+    return keys;
+}
+
+void MeshTextures::find_corners(PictureWriter& pictures) {
+    glm::dvec3 hue(-1.0);
+    const bool colored =
+        std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.colored; });
+    const std::vector<Key> keys = colored ? color_keys(hue) : std::vector<Key>();
+    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * (kMostPlanes + 1));
+    const auto text_of = [&](size_t at, size_t plane, Key key) {
+        const auto [found, fresh] = texts[at * (kMostPlanes + 1) + plane].try_emplace(key, 0);
+        if (!fresh)
+            return found->second;
+        Slot slot = slots_[at];
+        if (plane < slot.planes.size()) {
+            slot.surface.flat = true;
+            slot.surface.to_uv = slot.planes[plane];
+        }
+        if (slot.colored) {
+            const glm::dvec4 color = color_of(key);
+            slot.surface.color = color;
+            if (hue.x >= 0 && slot.surface.uvs)
+                slot.surface.color =
+                    glm::dvec4(hue * std::max({color.x, color.y, color.z}), color.w);
+        }
+        return found->second = static_cast<uint32_t>(add(slot, pictures));
+    };
     corners_.resize(3 * mesh_.triangles.size());
-    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size());
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
         breathe(i);
         const size_t at = slot_at_[mesh_.slot(i)];
-        for (int corner = 0; corner < 3; ++corner) {
-            uint32_t& text = corners_[3 * i + static_cast<size_t>(corner)];
-            if (!slots_[at].colored) {
-                text = static_cast<uint32_t>(slots_[at].text);
-                continue;
-            }
-            const Key key = keys[mesh_.triangles[i][corner]];
-            const auto [found, fresh] = texts[at].try_emplace(key, 0);
-            if (fresh) {
-                Slot slot = slots_[at];
-                slot.surface.color = color_of(key);
-                if (hue.x >= 0 && slot.surface.uvs) {
-                    const glm::dvec3 color(slot.surface.color);
-                    slot.surface.color = glm::dvec4(hue * std::max({color.x, color.y, color.z}),
-                                                    slot.surface.color.w);
-                }
-                found->second = static_cast<uint32_t>(add(slot, pictures));
-            }
-            text = found->second;
-        }
+        const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[i];
+        for (int corner = 0; corner < 3; ++corner)
+            corners_[3 * i + static_cast<size_t>(corner)] =
+                text_of(at, plane, slots_[at].colored ? keys[mesh_.triangles[i][corner]] : 0);
     }
 }
 

@@ -14,10 +14,11 @@ namespace lodestone::povray {
 
 /// Materials of slots, times the colors of vertices where a material uses them: a texture for every
 /// distinct color. More than kMost colors are rounded, in display encoding, as little as it takes;
-/// rounding by 2/255 keeps a difference nobody sees.
+/// rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane.
 class MeshTextures {
 public:
     static constexpr size_t kMost = 4096;
+    static constexpr size_t kMostPlanes = 64;
 
     /// Equal looks share one text. Throws Error(InvalidArgument) for a material out of range.
     MeshTextures(const Model& model, const Representation& representation, bool uvs,
@@ -28,7 +29,9 @@ public:
     /// Of what light goes through (the largest of the slots'); 0: nothing.
     double refraction() const { return refraction_; }
 
-    bool per_corner() const { return !corners_.empty(); }
+    /// Some bumps are not shown: their surface has more than kMostPlanes planes.
+    bool bumps_left_out() const { return bumps_left_out_; }
+
     size_t of(size_t triangle, int corner) const;
 
 private:
@@ -36,12 +39,17 @@ private:
         Material material;
         Surface surface;
         bool colored = false;
-        size_t text = 0;  // where it is not colored
+        bool bumped = false;
+        std::vector<Affine> planes;  // to_uv of its flat parts, where it is bumped
+        size_t text = 0;             // where it is neither
     };
 
     void find_slots(const Model& model, const Representation& representation, bool uvs);
     void find_ranges();
-    void color_corners(PictureWriter& pictures);
+    void find_planes();
+    bool plane_of(size_t triangle, Slot& slot, uint8_t& plane) const;
+    std::vector<uint64_t> color_keys(glm::dvec3& hue) const;
+    void find_corners(PictureWriter& pictures);
     size_t add(const Slot& slot, PictureWriter& pictures);
     void breathe(size_t i) const;
 
@@ -51,8 +59,10 @@ private:
     std::vector<uint16_t> slot_at_;  // by slot of the mesh: where in slots_
     std::unordered_map<std::string, size_t> known_;
     std::vector<std::string> texts_;
-    std::vector<uint32_t> corners_;  // 3 a triangle
+    std::vector<uint8_t> plane_of_;  // by triangle, of its slot's planes; kMostPlanes: none
+    std::vector<uint32_t> corners_;  // 3 a triangle; empty: the slots' texts
     bool uses_uvs_ = false;
+    bool bumps_left_out_ = false;
     double refraction_ = 0;
 };
 

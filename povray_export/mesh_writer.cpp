@@ -112,6 +112,11 @@ public:
                         [&](size_t i) { append_face(out, uvs_, kept_[i]); });
         if (textures_ != nullptr && !list)
             out += textures_->texts().front() + "\n";
+        if (textures_ != nullptr && textures_->refraction() > 0) {
+            out += "inside_vector <0,0,1> interior{ior ";
+            append_number(out, textures_->refraction(), 6);
+            out += "}\n";
+        }
         out += "}\n";
         return out;
     }

@@ -37,6 +37,17 @@ void append_vector(std::string& out, const glm::dvec3& value, int digits) {
     out += '>';
 }
 
+void append_matrix(std::string& out, const Affine& transform) {
+    out += "matrix<";
+    for (int column = 0; column < 4; ++column) {
+        const glm::dvec3& image = column < 3 ? transform.linear[column] : transform.offset;
+        for (int i = 0; i < 3; ++i) {
+            append_number(out, image[i]);
+            out += column == 3 && i == 2 ? ">" : ",";
+        }
+    }
+}
+
 Lattice::Lattice(double precision, double largest) {
     // Rounding to the nearest step errs by half a step at most.
     const double wanted = precision > 0 ? std::ceil(-std::log10(2 * precision)) : 300;

@@ -2,6 +2,8 @@
 // Number: numbers as POV-Ray reads them, in any locale; never "inf" or "nan", which it cannot read.
 #pragma once
 
+#include "base/maths.h"
+
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -15,6 +17,8 @@ void append_number(std::string& out, double value, int digits = 10);
 void append_count(std::string& out, uint64_t value);
 /// <x,y,z>
 void append_vector(std::string& out, const glm::dvec3& value, int digits = 10);
+/// matrix<...> of 12 numbers, as POV-Ray's transforms are written.
+void append_matrix(std::string& out, const Affine& transform);
 
 /// Decimal lattice on which coordinates are written: what is tested on the lattice (equal points,
 /// zero areas) is exactly what POV-Ray reads.

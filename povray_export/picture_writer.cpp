@@ -49,7 +49,7 @@ bool usable_as_is(const Texture& texture, Content content) {
         return false;
     const bool png = picture.format == PictureFormat::Png;
     const int type = png ? png_color_type(picture.bytes) : -1;
-    if (content == Content::Color)  // alpha would make holes
+    if (content != Content::Number)  // alpha would make holes
         return texture.channel == Channel::Color && (!png || type == 0 || type == 2 || type == 3);
     // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
     return texture.channel != Channel::Alpha && type == 0;
@@ -64,7 +64,7 @@ std::string baked(const Texture& texture, Content content) {
     for (size_t i = 0; i < from.pixels.size(); i += 4) {
         const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
                                from.pixels[i + 3]);
-        if (content == Content::Color) {
+        if (content != Content::Number) {
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
                 to.pixels[i + static_cast<size_t>(c)] =
@@ -158,7 +158,7 @@ std::string PictureWriter::file_of(const Texture& texture, Content content) {
     Hasher hasher;
     hasher.value(picture.hash);
     if (!file.as_is) {
-        hasher.value(kBakeVersion).value(content).value(texture.channel);
+        hasher.value(kBakeVersion).value(content == Content::Number).value(texture.channel);
         for (int i = 0; i < 3; ++i)
             hasher.value(texture.scale[i]).value(texture.offset[i]);
     }
@@ -173,7 +173,7 @@ std::string PictureWriter::file_reference(const Texture& texture, Content conten
     const File& file = files_.at(name);
     const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
     const bool encoded =
-        file.as_is ? texture.picture->space == ColorSpace::Srgb : content == Content::Color;
+        file.as_is ? texture.picture->space == ColorSpace::Srgb : content != Content::Number;
     return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
 }
 
@@ -184,7 +184,7 @@ std::string PictureWriter::pigment(const Texture& texture, Content content, cons
     const std::string image =
         "image_map{" + reference +
         (texture.interpolation == Interpolation::Linear ? " interpolate 2" : "") +
-        (repeats ? "}" : " once}");
+        (content == Content::Filter ? " filter all 1" : "") + (repeats ? "}" : " once}");
     const std::string identifier = "LDS_I_" + hex16(Hasher().text(image).result());
     declared_[identifier] = image;
     std::string out = identifier;

@@ -30,16 +30,16 @@ std::string primitive_text(const Model& model, const Representation& representat
             material = model.materials[index];
         }
         out += '\n' + texture_text(material, Surface{}, pictures);
-    }
-    out += "\nmatrix<";
-    const Affine frame = frame_of(primitive);
-    for (int column = 0; column < 4; ++column) {
-        const glm::dvec3& image = column < 3 ? frame.linear[column] : frame.offset;
-        for (int i = 0; i < 3; ++i) {
-            append_number(out, image[i]);
-            out += column == 3 && i == 2 ? ">}\n" : ",";
+        const double refraction = refraction_of(material);
+        if (refraction > 0) {
+            out += " interior{ior ";
+            append_number(out, refraction, 6);
+            out += '}';
         }
     }
+    out += '\n';
+    append_matrix(out, frame_of(primitive));
+    out += "}\n";
     return out;
 }
 

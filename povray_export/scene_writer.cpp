@@ -9,6 +9,7 @@
 #include "povray_export/number.h"
 #include "povray_export/representation_writer.h"
 #include "povray_export/sky_writer.h"
+#include "povray_export/texture_writer.h"
 
 #include <glm/common.hpp>
 
@@ -65,17 +66,6 @@ bool make_invertible(Affine& transform) {
         transform.linear += glm::outerProduct(
             unit * (std::copysign(thinnest, thickness) - thickness), eigen.axes[2]);
     return true;
-}
-
-void append_matrix(std::string& out, const Affine& transform) {
-    out += "matrix<";
-    for (int column = 0; column < 4; ++column) {
-        const glm::dvec3& image = column < 3 ? transform.linear[column] : transform.offset;
-        for (int i = 0; i < 3; ++i) {
-            append_number(out, image[i]);
-            out += column == 3 && i == 2 ? ">" : ",";
-        }
-    }
 }
 
 /// POV-Ray's flags; only ever on single objects, as it loses no_image in some of its CSG.
@@ -261,6 +251,17 @@ private:
         ++report_.written;
     }
 
+    bool refracts() const {
+        for (const Include& include : includes_) {
+            for (const uint32_t material : include.representation->materials) {
+                if (material < model_.materials.size() &&
+                    refraction_of(model_.materials[material]) > 0)
+                    return true;
+            }
+        }
+        return false;
+    }
+
     bool transparent() const { return options_.covered_only || view_world().transparent; }
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
@@ -295,7 +296,9 @@ private:
             "#version 3.7;\n\n"
             "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
             "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
-            "global_settings{assumed_gamma 1 max_trace_level 5 ambient_light rgb ";
+            "global_settings{assumed_gamma 1 max_trace_level ";
+        append_count(out, refracts() ? 10 : 5);  // two surfaces of a glass are two levels
+        out += " ambient_light rgb ";
         append_vector(out, sky_.ambient, 6);
         const glm::dvec3 background = sky_.statement.empty() ? sky_.ambient : glm::dvec3(0.0);
         out += transparent() ? "}\nbackground{rgbt <" : "}\nbackground{rgb <";

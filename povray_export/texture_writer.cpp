@@ -5,6 +5,8 @@
 #include "povray_export/number.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -41,16 +43,37 @@ public:
         return average(covered(material), mixed(*material.other), mix);
     }
 
-    bool mapped() const { return mapped_; }
-
 private:
     using Entries = std::vector<std::pair<double, Body>>;
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
 
     std::string pigment(const Texture& texture, Content content) {
-        mapped_ = true;
-        return pictures_.pigment(texture, content, surface_.range);
+        return "uv_mapping " + pictures_.pigment(texture, content, surface_.range);
+    }
+
+    /// POV-Ray's bump_map knows no direction of u, so the height is a pattern in space, laid on the
+    /// plane of the surface: a slope of 1 needs an amount of 7.5 (measured).
+    std::string normal(const Material& material) {
+        const Texture& texture = material.bump_texture;
+        if (!shown(texture) || !surface_.flat || !std::isfinite(material.bump_distance) ||
+            material.bump_distance == 0)
+            return "";
+        const Picture& picture = *texture.picture;
+        const std::array<double, 6>& m = texture.to_picture;
+        const glm::dmat3 rows = glm::transpose(surface_.to_uv.linear);
+        const double across = picture.width * glm::length(m[0] * rows[0] + m[1] * rows[1]);
+        const double along = picture.height * glm::length(m[3] * rows[0] + m[4] * rows[1]);
+        const double texel = 1 / std::max({across, along, 1e-9});
+        std::string out = "normal{pigment_pattern{" +
+                          pictures_.pigment(texture, Content::Number, surface_.range) + ' ';
+        Affine from_uv;
+        from_uv.linear = glm::inverse(surface_.to_uv.linear);
+        from_uv.offset = -(from_uv.linear * surface_.to_uv.offset);
+        append_matrix(out, from_uv);
+        append_number(out += "} ", 7.5 * std::clamp(material.bump_distance, -1e6, 1e6), 6);
+        append_number(out += " accuracy ", std::max(texel / 2, 1e-9), 6);
+        return out + "} ";
     }
 
     static Body map(const Entries& entries) {
@@ -124,6 +147,33 @@ private:
     }
 
     Body lit(const Material& material, const Look& look) {
+        const double through = share(material.transmission, 0) * (1 - look.metallic);
+        if (through <= 0)
+            return solid(material, look);
+        return average(solid(material, look), glass(material, look), through);
+    }
+
+    /// Filters by the base color where light enters and where it leaves; the index of refraction is
+    /// the object's. Other than in a path tracer without caustics its shadow is bright.
+    Body glass(const Material& material, const Look& look) {
+        Body out = "pigment{";
+        if (shown(material.base_color_texture)) {
+            out += pigment(material.base_color_texture, Content::Filter);
+        } else {
+            out += "rgbf <";
+            for (int i = 0; i < 3; ++i) {
+                const double paint = material.vertex_colors ? share(surface_.color[i], 1) : 1;
+                append_number(out, paint * share(material.base_color[i], 0.8), 6);
+                out += ',';
+            }
+            out += "1>";
+        }
+        out += "} " + normal(material);
+        append_glass_finish(out, look);
+        return out;
+    }
+
+    Body solid(const Material& material, const Look& look) {
         glm::dvec3 base;
         glm::dvec3 emission;
         glm::dvec3 paint(1.0);
@@ -168,9 +218,11 @@ private:
                 append_rgb(pigment_text, base);
                 pigment_text += "} ";
             }
+            pigment_text += normal(material);
             append_finish(pigment_text, finish, 1, emission);
             return pigment_text;
         }
+        pigment_text += normal(material);
         append_finish(pigment_text, finish, 2, glm::dvec3(0.0));
         Body glow = "pigment{";
         if (lamp) {
@@ -192,16 +244,17 @@ private:
 
     const Surface& surface_;
     PictureWriter& pictures_;
-    bool mapped_ = false;
 };
 
 }  // namespace
 
 std::string texture_text(const Material& material, const Surface& surface,
                          PictureWriter& pictures) {
-    TextureText text(surface, pictures);
-    const std::string body = text.mixed(material);
-    return (text.mapped() ? "texture{uv_mapping " : "texture{") + body + '}';
+    return "texture{" + TextureText(surface, pictures).mixed(material) + '}';
+}
+
+bool bumpy(const Material& material) {
+    return material.bump_texture || (material.other && bumpy(*material.other));
 }
 
 double refraction_of(const Material& material) {

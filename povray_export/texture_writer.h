@@ -2,6 +2,7 @@
 // Texture writer: a material as the text of a POV-Ray texture.
 #pragma once
 
+#include "base/maths.h"
 #include "model/material.h"
 #include "povray_export/picture_writer.h"
 
@@ -16,6 +17,8 @@ struct Surface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
     glm::dvec4 color{1.0};  // of its vertices, linear; counts where the material uses it
+    bool flat = false;      // in one plane with to_uv; bumps are shown on such surfaces only
+    Affine to_uv;           // position to (u, v, height above the plane), where flat
 };
 
 /// texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted averages of
@@ -23,6 +26,9 @@ struct Surface {
 /// strength where one pigment cannot be both. Values out of range are clamped, so that any material
 /// gives text that POV-Ray reads.
 std::string texture_text(const Material& material, const Surface& surface, PictureWriter& pictures);
+
+/// Whether it shows more of a flat surface.
+bool bumpy(const Material& material);
 
 /// Index of refraction of a material that light goes through; 0 for all others.
 double refraction_of(const Material& material);
