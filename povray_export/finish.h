@@ -35,9 +35,9 @@ struct Look {
 };
 Look look_of(const Material& material);
 
-/// `brightest`: the largest of the base color's channels (1 when it varies): what is diffused gives
-/// way where more light would be sent back than arrives.
-Finish finish_of(const Look& look, double brightest);
+/// `brightness`: mean luminance of the base color. Found by fitting: tests/bench/fit_finish.py.
+/// What is smooth mirrors its surroundings (traced); what is rough answers the sky with `ambient`.
+Finish finish_of(const Look& look, double brightness);
 
 /// finish{...}, every value written, because POV-Ray's defaults (ambient .1, diffuse .6) would leak
 /// in. `light` scales all of it; emission (times the pigment) comes on top.

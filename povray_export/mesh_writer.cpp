@@ -110,10 +110,13 @@ public:
         if (has_uvs_ && explicit_uvs_)
             append_list(out, "uv_indices", kept_.size(),
                         [&](size_t i) { append_face(out, uvs_, kept_[i]); });
+        const bool refracts = textures_ != nullptr && textures_->refraction() > 0;
+        if (refracts)
+            out += "inside_vector <0,0,1>\n";
         if (textures_ != nullptr && !list)
             out += textures_->texts().front() + "\n";
-        if (textures_ != nullptr && textures_->refraction() > 0) {
-            out += "inside_vector <0,0,1> interior{ior ";
+        if (refracts) {
+            out += "interior{ior ";
             append_number(out, textures_->refraction(), 6);
             out += "}\n";
         }

@@ -18,6 +18,8 @@ namespace {
 // Highlights change fastest where the surface is smooth.
 constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 
+const glm::dvec3 kLuma(0.2126, 0.7152, 0.0722);
+
 constexpr const char* kClear =
     "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
 
@@ -190,10 +192,10 @@ private:
         // What the paint leaves of a picture's brightness is left to the finish: a picture is baked
         // for every distinct hue only.
         const double brightness = image ? std::max({paint.x, paint.y, paint.z}) : 1;
-        Finish finish = finish_of(
-            look, image ? 1 : std::max({base.x * paint.x, base.y * paint.y, base.z * paint.z}));
+        Finish finish = finish_of(look, glm::dot(base * paint, kLuma));
         finish.ambient *= brightness;
         finish.diffuse *= brightness;
+        finish.specular *= std::lerp(1.0, brightness, finish.metallic);
         Body pigment_text = "pigment{";
         if (image) {
             Texture texture = material.base_color_texture;
