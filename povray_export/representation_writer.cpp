@@ -70,7 +70,10 @@ std::string representation_text(const Model& model, const Representation& repres
         textures.emplace(model, representation, options.uvs, pictures, job);
     const std::string text =
         mesh_text(mesh, textures.has_value() ? &*textures : nullptr, identifier, job);
-    return text.empty() ? text : pictures.declarations() + text;
+    if (text.empty())
+        return text;
+    const bool left_out = textures.has_value() && textures->bumps_left_out();
+    return pictures.declarations() + (left_out ? kBumpsLeftOut : "") + text;
 }
 
 }  // namespace lodestone::povray

@@ -15,6 +15,10 @@ struct RepresentationOptions {
     bool uvs = true;       // texture coordinates, where a texture uses them
 };
 
+/// A line at the beginning of the text of a mesh with bumps or normals that are not shown, because
+/// they lie on more planes than textures are written for.
+inline constexpr const char* kBumpsLeftOut = "// bumps left out\n";
+
 /// Hash of the file's content: of what is drawn, the options and the version of this writer.
 Hash file_hash(const Representation& representation, const RepresentationOptions& options);
 

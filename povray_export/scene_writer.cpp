@@ -101,8 +101,9 @@ std::string name_of_node(const Model& model, const quality::Cut& cut, uint32_t n
 }
 
 /// As much of an include file as can name its pictures.
+constexpr size_t kBeginning = size_t{16} << 10u;
 std::string beginning_of(const std::filesystem::path& path) {
-    std::string text(size_t{16} << 10u, ' ');
+    std::string text(kBeginning, ' ');
     std::ifstream file(path, std::ios::binary);
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
@@ -122,6 +123,7 @@ struct Include {
     double cpu_s = 0;
     bool written = false;
     bool drawn = false;
+    bool bumps_left_out = false;
 };
 
 class SceneWriter {
@@ -147,6 +149,7 @@ public:
             sky_ = write_sky(view_world(), options_.antialiasing, options_.folder, problems_);
         write_includes();
         const double after_files = thread_cpu_s();
+        name_problems();
         if (!sky_.file.empty()) {
             report_.bytes += sky_.bytes;
             ++report_.files;
@@ -224,24 +227,38 @@ private:
                 options_.folder / "r" / (hex16(include.hash) + ".inc");
             std::error_code error;
             const uintmax_t found = std::filesystem::file_size(path, error);
-            if (!error && found > 0 && pictures_.found(pictures_named(beginning_of(path)))) {
+            std::string text = error || found == 0 ? "" : beginning_of(path);
+            if (!text.empty() && pictures_.found(pictures_named(text))) {
                 include.bytes = found;
                 include.drawn = true;
             } else {
                 PictureWriter pictures;
-                const std::string text =
-                    representation_text(model_, *include.representation,
-                                        identifier_of(include.hash), as, pictures, job_);
+                text = representation_text(model_, *include.representation,
+                                           identifier_of(include.hash), as, pictures, job_);
                 if (!text.empty()) {
                     pictures.write(pictures_);
                     write_file(path, text);
                     include.bytes = text.size();
                     include.written = include.drawn = true;
                 }
+                text.resize(std::min(text.size(), kBeginning));
             }
+            include.bumps_left_out = text.find(kBumpsLeftOut) != std::string::npos;
             include.cpu_s = thread_cpu_s() - start;
             job_.progress(static_cast<double>(++done) / static_cast<double>(includes_.size() + 1));
         });
+    }
+
+    /// Once for what several occurrences show.
+    void name_problems() {
+        std::vector<uint8_t> named(includes_.size(), 0);
+        for (const Use& use : uses_) {
+            if (!includes_[use.file].bumps_left_out || named[use.file]++ != 0)
+                continue;
+            problems_.push_back({quality::path_of(model_, cut_, use.node), Severity::Warning,
+                                 "bump_not_flat",
+                                 "is shown without its bumps: POV-Ray shows them on flat faces"});
+        }
     }
 
     void write_text(const char* name, const std::string& text) {

@@ -296,6 +296,89 @@ TEST(PovrayTextures, MixedMaterialsAreWeightedMeans) {
     EXPECT_NEAR(image.at(21, 14).z, 0.8, 0.003);
 }
 
+TEST(PovrayTextures, BumpsFollowTheTextureCoordinatesHoweverTheSurfaceIsTurned) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    std::vector<glm::vec4> ramp;
+    for (int i = 0; i < 256; ++i)
+        ramp.emplace_back(glm::vec3(static_cast<float>(i) / 255.0F), 1);
+    Material material = scenes::textured({});
+    material.base_color = glm::dvec3(0.5);
+    material.bump_texture.picture = scenes::picture(256, ramp);
+    material.bump_distance = 0.0875;  // on a picture .875 m wide: a slope of .1
+    Builder builder;
+    builder.model.lights.push_back(scenes::sun(kPi, {-1, 0, -1}));
+    const ObjectIndex square = builder.mesh(patch(0, 1), {builder.material(material)});
+    const double turns[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int i = 0; i < 4; ++i) {
+        const double c = turns[i][0];
+        const double s = turns[i][1];
+        const glm::dmat3 turn(c, s, 0, -s, c, 0, 0, 0, 1);
+        builder.place(square,
+                      {turn, glm::dvec3(i - 1.5, 0, 0) - turn * glm::dvec3(0.4375, 0.4375, 0)});
+    }
+    ExportOptions options;
+    options.folder = scratch("bump");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(128, 32), options);
+    const double flat = 0.5 * std::sqrt(0.5);
+    const double root = std::sqrt(1.01);
+    EXPECT_NEAR(image.at(16, 16).x, flat * 0.9 / root, 0.005);  // turned away from the sun
+    EXPECT_NEAR(image.at(48, 16).x, flat / root, 0.005);
+    EXPECT_NEAR(image.at(80, 16).x, flat * 1.1 / root, 0.005);
+    EXPECT_NEAR(image.at(112, 16).x, flat / root, 0.005);
+}
+
+TEST(PovrayTextures, BumpsOnACurvedSurfaceAreLeftOutAndNamed) {
+    Builder builder;
+    Mesh ball = shapes::sphere(1, 3);
+    for (const glm::vec3& at : ball.positions)
+        ball.uvs.emplace_back(at.x, at.y * at.z);
+    Material material = scenes::textured({});
+    material.bump_texture = checker();
+    material.bump_distance = 0.1;
+    const uint32_t index = builder.material(material);
+    builder.place(builder.mesh(ball, {index}), {}, "ball");
+    Mesh cube = shapes::cube();
+    for (size_t i = 0; i < cube.positions.size(); ++i)
+        cube.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
+    builder.place(builder.mesh(cube, {index}), {}, "cube");
+    ExportOptions options;
+    options.folder = scratch("curved");
+    for (int frame = 0; frame < 2; ++frame) {  // the second finds its files
+        Problems problems;
+        scenes::write(builder.finish(), above(), options, problems);
+        ASSERT_EQ(problems.size(), 1u) << frame;
+        EXPECT_EQ(problems[0].object, "ball");
+        EXPECT_EQ(problems[0].code, "bump_not_flat");
+    }
+}
+
+TEST(PovrayTextures, GlassBendsWhatIsBehindItAndTintsItTwice) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    Material glass;
+    glass.base_color = {1, 0.5, 0.8};
+    glass.transmission = 1;
+    glass.ior = 1.5;
+    glass.roughness = 0;
+    Material lamp = scenes::textured({});
+    lamp.base_color = glm::dvec3(0.0);
+    lamp.emission = glm::dvec3(0.5);
+    builder.place(builder.mesh(shapes::sphere(0.8, 5), {builder.material(glass)}));
+    builder.place_at(builder.mesh(shapes::quad(2, 4), {builder.material(lamp)}), {-2, -2, -2});
+    ExportOptions options;
+    options.folder = scratch("glass");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(64, 64), options);
+    EXPECT_NEAR(image.at(24, 32).x, 0, 0.01);  // left and right change places
+    EXPECT_NEAR(image.at(40, 32).x, 0.5 * 0.96 * 0.96, 0.02);
+    EXPECT_NEAR(image.at(40, 32).y, 0.5 * 0.25 * 0.96 * 0.96, 0.01);
+    EXPECT_NEAR(image.at(40, 32).z, 0.5 * 0.64 * 0.96 * 0.96, 0.015);
+    EXPECT_NEAR(image.at(2, 32).x, 0.5, 0.002);
+}
+
 TEST(PovrayTextures, VertexColorsRunBetweenVerticesAndMultiplyThePicture) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
