@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/sampler.h"
+#include "povray_export/height_map.h"
 #include "povray_export/number.h"
 
 #include <glm/common.hpp>
@@ -45,17 +46,19 @@ int png_color_type(const std::string& bytes) {
 /// POV-Ray may read the picture's own file: it shows the texture's very values.
 bool usable_as_is(const Texture& texture, Content content) {
     const Picture& picture = *texture.picture;
-    if (!plain(texture) || picture.format == PictureFormat::Exr)
+    if (content == Content::Height || !plain(texture) || picture.format == PictureFormat::Exr)
         return false;
     const bool png = picture.format == PictureFormat::Png;
     const int type = png ? png_color_type(picture.bytes) : -1;
-    if (content != Content::Number)  // alpha would make holes
+    if (content == Content::Color || content == Content::Filter)  // alpha would make holes
         return texture.channel == Channel::Color && (!png || type == 0 || type == 2 || type == 3);
     // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
     return texture.channel != Channel::Alpha && type == 0;
 }
 
 std::string baked(const Texture& texture, Content content) {
+    if (content == Content::Height)
+        return png_of(*height_map(texture));
     const image::Image from = image::decoded(*texture.picture);
     image::Image to;
     to.width = from.width;
@@ -158,7 +161,9 @@ std::string PictureWriter::file_of(const Texture& texture, Content content) {
     Hasher hasher;
     hasher.value(picture.hash);
     if (!file.as_is) {
-        hasher.value(kBakeVersion).value(content == Content::Number).value(texture.channel);
+        hasher.value(kBakeVersion)
+            .value(content == Content::Filter ? Content::Color : content)
+            .value(texture.channel);
         for (int i = 0; i < 3; ++i)
             hasher.value(texture.scale[i]).value(texture.offset[i]);
     }
@@ -172,8 +177,8 @@ std::string PictureWriter::file_reference(const Texture& texture, Content conten
     const std::string name = file_of(texture, content);
     const File& file = files_.at(name);
     const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
-    const bool encoded =
-        file.as_is ? texture.picture->space == ColorSpace::Srgb : content != Content::Number;
+    const bool encoded = file.as_is ? texture.picture->space == ColorSpace::Srgb
+                                    : content == Content::Color || content == Content::Filter;
     return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
 }
 

@@ -19,6 +19,7 @@ enum class Content : uint8_t {
     Color = 0,   // its color; transparency is not in it
     Number = 1,  // its number as gray, clamped to 0...1
     Filter = 2,  // its color, of all that goes through it
+    Height = 3,  // of a normal map: height_map()
 };
 
 /// Texture coordinates a surface uses. What a picture shows outside 0...1 costs POV-Ray time when it

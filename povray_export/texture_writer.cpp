@@ -2,6 +2,7 @@
 #include "povray_export/texture_writer.h"
 
 #include "povray_export/finish.h"
+#include "povray_export/height_map.h"
 #include "povray_export/number.h"
 
 #include <glm/common.hpp>
@@ -57,25 +58,55 @@ private:
     /// POV-Ray's bump_map knows no direction of u, so the height is a pattern in space, laid on the
     /// plane of the surface: a slope of 1 needs an amount of 7.5 (measured).
     std::string normal(const Material& material) {
-        const Texture& texture = material.bump_texture;
-        if (!shown(texture) || !surface_.flat || !std::isfinite(material.bump_distance) ||
-            material.bump_distance == 0)
+        if (!surface_.flat)
             return "";
-        const Picture& picture = *texture.picture;
+        std::string bump;
+        std::string map;
+        const bool both = shown(material.bump_texture) && shown(material.normal_texture);
+        if (shown(material.bump_texture) && std::isfinite(material.bump_distance) &&
+            material.bump_distance != 0)
+            bump = relief(material.bump_texture, Content::Number,
+                          std::clamp(material.bump_distance, -1e6, 1e6) * (both ? 2 : 1), 1);
+        if (shown(material.normal_texture) && std::isfinite(material.normal_strength)) {
+            const Texture& texture = material.normal_texture;
+            const std::shared_ptr<const HeightMap> heights = height_map(texture);
+            const glm::dvec2 size = picture_size(texture);
+            // Of a texel; where it is no square its slopes are true on average.
+            const double wide = std::sqrt(size.x / heights->width * size.y / heights->height);
+            map = relief(texture, Content::Height,
+                         std::clamp(material.normal_strength, 0.0, 10.0) * heights->range * wide *
+                             (both ? 2 : 1),
+                         std::max(texture.picture->width / heights->width, 1));
+        }
+        if (bump.empty() && map.empty())
+            return "";
+        if (bump.empty() || map.empty())
+            return "normal{" + bump + map + "} ";
+        return "normal{average normal_map{[1 " + bump + "][1 " + map + "]}} ";
+    }
+
+    /// Metres of the whole picture across and along, on this plane.
+    glm::dvec2 picture_size(const Texture& texture) const {
         const std::array<double, 6>& m = texture.to_picture;
         const glm::dmat3 rows = glm::transpose(surface_.to_uv.linear);
-        const double across = picture.width * glm::length(m[0] * rows[0] + m[1] * rows[1]);
-        const double along = picture.height * glm::length(m[3] * rows[0] + m[4] * rows[1]);
-        const double texel = 1 / std::max({across, along, 1e-9});
-        std::string out = "normal{pigment_pattern{" +
-                          pictures_.pigment(texture, Content::Number, surface_.range) + ' ';
+        return {1 / std::max(glm::length(m[0] * rows[0] + m[1] * rows[1]), 1e-9),
+                1 / std::max(glm::length(m[3] * rows[0] + m[4] * rows[1]), 1e-9)};
+    }
+
+    /// `height`: metres of white; `texels`: of the picture, that one of the pattern covers.
+    std::string relief(const Texture& texture, Content content, double height, int texels) {
+        const glm::dvec2 size = picture_size(texture);
+        const double texel =
+            std::min(size.x / texture.picture->width, size.y / texture.picture->height);
+        std::string out =
+            "pigment_pattern{" + pictures_.pigment(texture, content, surface_.range) + ' ';
         Affine from_uv;
         from_uv.linear = glm::inverse(surface_.to_uv.linear);
         from_uv.offset = -(from_uv.linear * surface_.to_uv.offset);
         append_matrix(out, from_uv);
-        append_number(out += "} ", 7.5 * std::clamp(material.bump_distance, -1e6, 1e6), 6);
-        append_number(out += " accuracy ", std::max(texel / 2, 1e-9), 6);
-        return out + "} ";
+        append_number(out += "} ", 7.5 * height, 6);
+        append_number(out += " accuracy ", std::max(texels * texel / 2, 1e-9), 6);
+        return out;
     }
 
     static Body map(const Entries& entries) {
@@ -256,7 +287,8 @@ std::string texture_text(const Material& material, const Surface& surface,
 }
 
 bool bumpy(const Material& material) {
-    return material.bump_texture || (material.other && bumpy(*material.other));
+    return material.bump_texture || material.normal_texture ||
+           (material.other && bumpy(*material.other));
 }
 
 double refraction_of(const Material& material) {

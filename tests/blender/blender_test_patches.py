@@ -20,7 +20,7 @@ import mathutils
 import blender_scenes as scenes
 
 CELL = 32  # pixels
-COLUMNS, ROWS = 6, 3
+COLUMNS, ROWS = 5, 4
 SUN = (0.35, 0.3, 0.8)  # the direction to it
 POWER = 2.5
 WORLD = 0.25
@@ -62,6 +62,18 @@ def waves(width):
             yield (value, value, value, 1.0)
 
 
+def normals(width):
+    """Of the hills of waves(), in a square of 1.8 m, .1 m high, as a normal map (green up)."""
+    per_metre = 2 * math.pi / 1.8
+    for y in range(width):
+        for x in range(width):
+            turn = 2 * math.pi / width
+            across = 0.1 * 0.25 * 2 * per_metre * math.cos(2 * turn * (x + 0.5))
+            along = 0.1 * 0.25 * 3 * per_metre * math.cos(3 * turn * (y + 0.5))
+            length = math.sqrt(across**2 + along**2 + 1)
+            yield (*(0.5 + 0.5 * v / length for v in (-across, -along, 1)), 1.0)
+
+
 def spots(width, holes):
     """Colors, with holes or without (Cycles shows holes black where alpha is not used)."""
     for y in range(width):
@@ -97,6 +109,7 @@ PATCHES = [
         transmission=1.0,
     ),
     principled("bump", 5),
+    principled("normal", 5),
     principled("mixed", 3, color=(0.8, 0.1, 0.1)),
 ]
 
@@ -171,6 +184,11 @@ def blender_material(patch):
         bump.inputs["Strength"].default_value = 1.0
         bump.inputs["Distance"].default_value = 0.1
         tree.links.new(image.outputs["Color"], bump.inputs["Height"])
+        tree.links.new(bump.outputs["Normal"], node.inputs["Normal"])
+    if patch.name == "normal":
+        image = made("ShaderNodeTexImage", image=blender_image("Normals", list(normals(64)), True))
+        bump = made("ShaderNodeNormalMap")
+        tree.links.new(image.outputs["Color"], bump.inputs["Color"])
         tree.links.new(bump.outputs["Normal"], node.inputs["Normal"])
     if patch.name == "mixed":
         other = made("ShaderNodeBsdfPrincipled")
@@ -269,6 +287,8 @@ def native_material(native, model, patch):
     if patch.name == "bump":
         fields["bump_texture"] = native.texture(picture(list(waves(32)), True))
         fields["bump_distance"] = 0.1
+    if patch.name == "normal":
+        fields["normal_texture"] = native.texture(picture(list(normals(64)), True))
     if patch.name == "mixed":
         other = model.add_material("other", base_color=(0.1, 0.1, 0.8), specular=0.0)
         fields.update(other=1 + other, mix=0.3)
