@@ -108,11 +108,17 @@ CoatRow coat_of(double roughness) {
 }
 
 /// Share of a mirrored image that is traced: POV-Ray's is sharp, so it fades out where the true one
-/// would be a blur.
-double sharpness(double roughness) {
-    constexpr double kSharp = 0.2;
-    constexpr double kBlurred = 0.35;
-    return std::clamp((kBlurred - roughness) / (kBlurred - kSharp), 0.0, 1.0);
+/// would be a blur. Metals show nothing else. Of the rest it is 4% of the light when facing, and
+/// costs the same: where all surfaces trace it a picture takes 3.4 times as long (measured), so
+/// theirs ends earlier.
+double sharpness(double roughness, double sharp, double blurred) {
+    return std::clamp((blurred - roughness) / (blurred - sharp), 0.0, 1.0);
+}
+double metal_sharpness(double roughness) {
+    return sharpness(roughness, 0.2, 0.35);
+}
+double coat_sharpness(double roughness) {
+    return sharpness(roughness, 0.15, 0.25);
 }
 
 glm::dvec3 from_srgb(const glm::dvec3& color) {
@@ -139,9 +145,10 @@ Finish finish_of(const Look& look, double brightness) {
     const double m = look.metallic;
     const Row row = row_of(look.roughness);
     const double dielectric = (1 - m) * look.specular / 0.5;  // of the table's
-    const double sharp = sharpness(look.roughness);
+    const double sharp = coat_sharpness(look.roughness);
+    const double metal_sharp = metal_sharpness(look.roughness);
     const CoatRow coat = coat_of(look.clearcoat_roughness);
-    const double coat_sharp = sharpness(look.clearcoat_roughness);
+    const double coat_sharp = coat_sharpness(look.clearcoat_roughness);
     Finish finish;
     finish.diffuse = 1 - m + m * row.metal_diffuse;
     const double metal_share = finish.diffuse > 0 ? m * row.metal_diffuse / finish.diffuse : 0;
@@ -155,9 +162,9 @@ Finish finish_of(const Look& look, double brightness) {
     finish.coat = look.clearcoat * coat.highlight;
     finish.coat_exponent = std::exp(coat.log_exponent);
     // What is mirrored: Schlick's curve, tinted as far as it is metal's.
-    const double metal_mirror = m * sharp * row.metal_sky;
+    const double metal_mirror = m * metal_sharp * row.metal_sky;
     finish.mirror = metal_mirror + dielectric * sharp * 0.04 + look.clearcoat * coat_sharp * 0.01;
-    finish.mirror_grazing = m * sharp + (1 - m) * sharp * std::min(1.0, 2 * look.specular) +
+    finish.mirror_grazing = m * metal_sharp + (1 - m) * sharp * std::min(1.0, 2 * look.specular) +
                             look.clearcoat * coat_sharp * 0.25;
     finish.mirror_grazing = std::clamp(finish.mirror_grazing, finish.mirror, 1.0);
     finish.mirror_metallic = finish.mirror > 0 ? metal_mirror / finish.mirror : 0;
@@ -165,8 +172,8 @@ Finish finish_of(const Look& look, double brightness) {
     // below a luminance of .02 that would show nothing but its hue.
     const double white =
         dielectric * (1 - sharp) * row.sky + look.clearcoat * (1 - coat_sharp) * coat.sky;
-    finish.ambient = (1 - m) * (0.967 + 0.058 * look.roughness) + m * (1 - sharp) * row.metal_sky +
-                     white / std::max(brightness, 0.02);
+    finish.ambient = (1 - m) * (0.967 + 0.058 * look.roughness) +
+                     m * (1 - metal_sharp) * row.metal_sky + white / std::max(brightness, 0.02);
     return finish;
 }
 

@@ -3,7 +3,9 @@
 
 Both engines draw the same grid of squares and balls under one sun and a gray world. What is left
 per patch (root mean square of the display-encoded picture, in 255ths, without its border) is
-bounded by what was measured; povray_export/README.md lists it.
+bounded by what was measured; povray_export/README.md lists it. With LODESTONE_PATCHES=FOLDER the
+pictures stay in that folder (both.png beside each other, Cycles left), and what is left is printed;
+LODESTONE_PATCH_CELL is the width of a patch in pixels.
 """
 
 import math
@@ -19,7 +21,7 @@ import mathutils
 
 import blender_scenes as scenes
 
-CELL = 32  # pixels
+CELL = int(os.environ.get("LODESTONE_PATCH_CELL", "32"))  # pixels
 COLUMNS, ROWS = 5, 4
 SUN = (0.35, 0.3, 0.8)  # the direction to it
 POWER = 2.5
@@ -63,13 +65,13 @@ def waves(width):
 
 
 def normals(width):
-    """Of the hills of waves(), in a square of 1.8 m, .1 m high, as a normal map (green up)."""
+    """Of the hills of waves(), in a square of 1.8 m, .4 m high, as a normal map (green up)."""
     per_metre = 2 * math.pi / 1.8
     for y in range(width):
         for x in range(width):
             turn = 2 * math.pi / width
-            across = 0.1 * 0.25 * 2 * per_metre * math.cos(2 * turn * (x + 0.5))
-            along = 0.1 * 0.25 * 3 * per_metre * math.cos(3 * turn * (y + 0.5))
+            across = 0.4 * 0.25 * 2 * per_metre * math.cos(2 * turn * (x + 0.5))
+            along = 0.4 * 0.25 * 3 * per_metre * math.cos(3 * turn * (y + 0.5))
             length = math.sqrt(across**2 + along**2 + 1)
             yield (*(0.5 + 0.5 * v / length for v in (-across, -along, 1)), 1.0)
 
@@ -95,9 +97,9 @@ PATCHES = [
     principled("gloss", 6, ball=True, color=(0.6, 0.1, 0.1), specular=0.5, roughness=0.1),
     principled("metal", 10, ball=True, color=(0.9, 0.6, 0.3), metallic=1.0, roughness=0.15),
     principled("rough_metal", 12, ball=True, color=(0.9, 0.6, 0.3), metallic=1.0),
-    principled("half_metal", 12, ball=True, color=(0.6, 0.6, 0.7), metallic=0.5, roughness=0.6),
-    principled("rough", 8, ball=True, color=(0.5, 0.5, 0.5), specular=0.5, roughness=1.0),
-    principled("coat", 10, ball=True, color=(0.3, 0.05, 0.05), clearcoat=1.0),
+    principled("half_metal", 7, ball=True, color=(0.6, 0.6, 0.7), metallic=0.5, roughness=0.6),
+    principled("rough", 6, ball=True, color=(0.5, 0.5, 0.5), specular=0.5, roughness=1.0),
+    principled("coat", 6, ball=True, color=(0.3, 0.05, 0.05), clearcoat=1.0),
     principled(
         "glass",
         14,
@@ -108,8 +110,8 @@ PATCHES = [
         roughness=0.0,
         transmission=1.0,
     ),
-    principled("bump", 5),
-    principled("normal", 5),
+    principled("bump", 9, color=(0.5, 0.5, 0.5)),
+    principled("normal", 7, color=(0.5, 0.5, 0.5)),
     principled("mixed", 3, color=(0.8, 0.1, 0.1)),
 ]
 
@@ -182,7 +184,7 @@ def blender_material(patch):
         image = made("ShaderNodeTexImage", image=blender_image("Waves", list(waves(32)), True))
         bump = made("ShaderNodeBump")
         bump.inputs["Strength"].default_value = 1.0
-        bump.inputs["Distance"].default_value = 0.1
+        bump.inputs["Distance"].default_value = 0.4
         tree.links.new(image.outputs["Color"], bump.inputs["Height"])
         tree.links.new(bump.outputs["Normal"], node.inputs["Normal"])
     if patch.name == "normal":
@@ -286,7 +288,7 @@ def native_material(native, model, patch):
         fields.update(vertex_colors=1, base_color=(1.0, 1.0, 1.0))
     if patch.name == "bump":
         fields["bump_texture"] = native.texture(picture(list(waves(32)), True))
-        fields["bump_distance"] = 0.1
+        fields["bump_distance"] = 0.4
     if patch.name == "normal":
         fields["normal_texture"] = native.texture(picture(list(normals(64)), True))
     if patch.name == "mixed":
@@ -330,6 +332,20 @@ def render_ours(folder):
         native.povray_run(folder, "ours.png", options)
 
 
+def write_both(folder):
+    from lodestone.core.native import lodestone_native as native
+
+    left = native.image_read(os.path.join(folder, "cycles.png"))
+    right = native.image_read(os.path.join(folder, "ours.png"))
+    row = 4 * left.width
+    pixels = array("f")
+    for y in range(left.height):
+        for image in (left, right):
+            pixels.extend(image.pixels[row * y : row * (y + 1)])
+    both = native.Image(2 * left.width, left.height, pixels)
+    native.image_write_png(os.path.join(folder, "both.png"), both)
+
+
 def pixels_of(path):
     """Rows of (r, g, b), 0...255 as the file encodes them, the lowest first."""
     image = bpy.data.images.load(str(path))
@@ -354,6 +370,8 @@ class Patches(unittest.TestCase):
         render_ours(str(folder))
         cls.cycles = pixels_of(folder / "cycles.png")
         cls.ours = pixels_of(folder / "ours.png")
+        if "LODESTONE_PATCHES" in os.environ:
+            write_both(str(folder))
 
     def difference(self, i):
         """Root mean square over a patch, without its border."""
