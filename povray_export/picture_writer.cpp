@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace lodestone::povray {
 namespace {
@@ -217,8 +218,13 @@ std::string PictureWriter::declarations() const {
     for (const auto& [name, file] : files_)
         out += "// " + name + '\n';
     for (const auto& [identifier, inside] : declared_)
-        out += "#ifndef(" + identifier + ") #declare " + identifier + " = pigment{" + inside +
-               "} #end\n";
+        out.append("#ifndef(")
+            .append(identifier)
+            .append(") #declare ")
+            .append(identifier)
+            .append(" = pigment{")
+            .append(inside)
+            .append("} #end\n");
     return out;
 }
 
@@ -268,6 +274,27 @@ PictureFolder::Totals PictureFolder::totals() const {
         totals.written += written ? 1u : 0u;
     }
     return totals;
+}
+
+double brightest_of(const Picture& picture) {
+    static std::mutex mutex;
+    static std::unordered_map<Hash, double> known;
+    if (picture.format != PictureFormat::Exr)
+        return 1;
+    {
+        const std::lock_guard lock(mutex);
+        const auto found = known.find(picture.hash);
+        if (found != known.end())
+            return found->second;
+    }
+    const image::Image image = image::decoded(picture);
+    double most = 1;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        if (i % 4 != 3)
+            most = std::max(most, static_cast<double>(image.pixels[i]));
+    }
+    const std::lock_guard lock(mutex);
+    return known[picture.hash] = most;
 }
 
 std::vector<std::string> pictures_named(std::string_view text) {

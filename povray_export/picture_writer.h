@@ -83,6 +83,9 @@ private:
     std::map<std::string, std::string> declared_;  // identifier: inside of the pigment
 };
 
+/// The largest number of a picture that can hold more than 1 (EXR); else 1. Throws Error(BadFile).
+double brightest_of(const Picture& picture);
+
 /// The names of the files that declarations() listed at the beginning of a text, and no others.
 std::vector<std::string> pictures_named(std::string_view text);
 

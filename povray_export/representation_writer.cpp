@@ -68,7 +68,7 @@ std::string representation_text(const Model& model, const Representation& repres
     std::optional<MeshTextures> textures;
     if (options.textures)
         textures.emplace(model, representation, options.uvs, pictures, job);
-    const std::string text =
+    std::string text =
         mesh_text(mesh, textures.has_value() ? &*textures : nullptr, identifier, job);
     if (text.empty())
         return text;

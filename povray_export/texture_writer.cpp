@@ -135,7 +135,7 @@ private:
 
     /// A share of alpha of the surface, the rest is not there.
     Body covered(const Material& material) {
-        const Body body = rough(material);
+        Body body = rough(material);
         if (material.alpha_mode == AlphaMode::Opaque)
             return body;
         const double paint = material.vertex_colors ? share(surface_.color.w, 1) : 1;
@@ -262,7 +262,8 @@ private:
             // Brighter than 1 is not for a picture: its brightness is left to the finish.
             Texture texture = material.emission_texture;
             const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
-            const double brightest = std::max({most.x, most.y, most.z, 1e-9});
+            const double brightest =
+                std::max({most.x, most.y, most.z, 1e-9}) * brightest_of(*texture.picture);
             texture.scale /= brightest;
             texture.offset /= brightest;
             glow += pigment(texture, Content::Color) + "} ";

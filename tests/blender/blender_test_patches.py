@@ -81,7 +81,12 @@ def spots(width, holes):
     for y in range(width):
         for x in range(width):
             inside = (x - width / 2) ** 2 + (y - width / 2) ** 2 < width**2 / 9
-            yield (0.1 + 0.8 * x / width, 0.2, 0.1 + 0.8 * y / width, 1.0 if inside or not holes else 0.0)
+            yield (
+                0.1 + 0.8 * x / width,
+                0.2,
+                0.1 + 0.8 * y / width,
+                1.0 if inside or not holes else 0.0,
+            )
 
 
 PATCHES = [

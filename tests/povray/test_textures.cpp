@@ -25,20 +25,21 @@ Mesh patch(double low = -1.25, double high = 2.25) {
     return mesh;
 }
 
-/// Under a sun that makes a matte surface as bright as its base color.
+/// Under a sun that makes a matte surface as bright as its base color: one patch for every material,
+/// from left to right.
 scenes::Image shown(const std::vector<Material>& materials, const Mesh& mesh,
                     const std::string& name, const glm::dvec3& world = glm::dvec3(0.0)) {
     Builder builder;
     builder.model.world.color = world;
     builder.model.lights.push_back(scenes::sun(kPi));
-    std::vector<uint32_t> slots;
-    for (const Material& material : materials)
-        slots.push_back(builder.material(material));
-    builder.place_at(builder.mesh(mesh, slots), {-0.4375, -0.4375, 0});
+    const auto count = static_cast<int>(materials.size());
+    for (int i = 0; i < count; ++i)
+        builder.place_at(builder.mesh(mesh, {builder.material(materials[static_cast<size_t>(i)])}),
+                         {0.875 * (i - 0.5 * count), -0.4375, 0});
     ExportOptions options;
     options.folder = scratch(name);
     options.antialiasing = Antialiasing::Off;
-    return render(builder.finish(), above(28, 28), options);
+    return render(builder.finish(), above(28 * count, 28), options);
 }
 
 glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
@@ -48,18 +49,10 @@ glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
 /// The largest difference of each texture to what its sampler says, in one picture.
 std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
                                 double high = 2.25) {
-    Builder builder;
-    builder.model.lights.push_back(scenes::sun(kPi));
-    const auto count = static_cast<int>(textures.size());
-    for (int i = 0; i < count; ++i)
-        builder.place_at(
-            builder.mesh(patch(low, high),
-                         {builder.material(scenes::textured(textures[static_cast<size_t>(i)]))}),
-            {0.875 * (i - 0.5 * count), -0.4375, 0});
-    ExportOptions options;
-    options.folder = scratch("sampler");
-    options.antialiasing = Antialiasing::Off;
-    const scenes::Image image = render(builder.finish(), above(28 * count, 28), options);
+    std::vector<Material> materials;
+    for (const Texture& texture : textures)
+        materials.push_back(scenes::textured(texture));
+    const scenes::Image image = shown(materials, patch(low, high), "sampler");
     std::vector<double> worst;
     for (const Texture& texture : textures) {
         const image::Sampler sampler(texture, glm::dvec3(0.0));
@@ -182,35 +175,35 @@ TEST(PovrayTextures, WithoutTextureCoordinatesThereIsTheMean) {
 TEST(PovrayTextures, AlphaLetsThatShareOfTheSkyThrough) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
-    Material glassy;
-    glassy.base_color = {0.8, 0.8, 0.8};
-    glassy.specular = 1;
-    glassy.roughness = 0.1;
-    glassy.alpha_mode = AlphaMode::Blend;
-    glassy.alpha = 0;
-    const glm::dvec3 sky(0.1, 0.2, 0.4);
-    scenes::Image image = shown({glassy}, patch(), "alpha", sky);
-    EXPECT_NEAR(image.at(14, 14).y, 0.2, 0.002);  // not even a highlight is left
-    Material leaf = scenes::textured({});
-    leaf.base_color = glm::dvec3(0.5);
-    leaf.alpha_mode = AlphaMode::Blend;
-    leaf.alpha = 0.25;
-    image = shown({leaf}, patch(), "alpha", glm::dvec3(0.2));
-    EXPECT_NEAR(image.at(14, 14).y, 0.25 * (0.5 + 0.1) + 0.75 * 0.2, 0.003);
-
-    leaf.alpha_texture.picture = scenes::picture(2, {{1, 1, 1, 0.25F}, {1, 1, 1, 1}});
-    leaf.alpha_texture.channel = Channel::Alpha;
-    leaf.alpha_texture.interpolation = Interpolation::Closest;
-    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
-    EXPECT_NEAR(image.at(7, 14).y, 0.25 * 0.6 + 0.75 * 0.2, 0.004);
-    EXPECT_NEAR(image.at(21, 14).y, 0.6, 0.003);
-    leaf.alpha_mode = AlphaMode::Clip;
-    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
-    EXPECT_NEAR(image.at(7, 14).y, 0.2, 0.002);
-    EXPECT_NEAR(image.at(21, 14).y, 0.6, 0.003);
-    leaf.alpha_mode = AlphaMode::Opaque;
-    image = shown({leaf}, patch(0, 1), "alpha", glm::dvec3(0.2));
-    EXPECT_NEAR(image.at(7, 14).y, 0.6, 0.003);
+    Material invisible;
+    invisible.specular = 1;
+    invisible.roughness = 0.1;
+    invisible.alpha_mode = AlphaMode::Blend;
+    invisible.alpha = 0;
+    Material plain = scenes::textured({});
+    plain.base_color = glm::dvec3(0.5);
+    plain.alpha_mode = AlphaMode::Blend;
+    plain.alpha = 0.25;
+    Material blend = plain;
+    blend.alpha_texture.picture = scenes::picture(2, {{1, 1, 1, 0.25F}, {1, 1, 1, 1}});
+    blend.alpha_texture.channel = Channel::Alpha;
+    blend.alpha_texture.interpolation = Interpolation::Closest;
+    Material clip = blend;
+    clip.alpha_mode = AlphaMode::Clip;
+    Material opaque = blend;
+    opaque.alpha_mode = AlphaMode::Opaque;
+    const scenes::Image image =
+        shown({invisible, plain, blend, clip, opaque}, patch(0, 1), "alpha", glm::dvec3(0.2));
+    const double sky = 0.2;
+    const double solid = 0.5 + 0.1;
+    const double half = 0.25 * solid + 0.75 * sky;
+    EXPECT_NEAR(image.at(14, 14).y, sky, 0.002);  // not even a highlight is left
+    EXPECT_NEAR(image.at(42, 14).y, half, 0.003);
+    EXPECT_NEAR(image.at(63, 14).y, half, 0.004);
+    EXPECT_NEAR(image.at(77, 14).y, solid, 0.003);
+    EXPECT_NEAR(image.at(91, 14).y, sky, 0.002);
+    EXPECT_NEAR(image.at(105, 14).y, solid, 0.003);
+    EXPECT_NEAR(image.at(119, 14).y, solid, 0.003);
 }
 
 TEST(PovrayTextures, ALeafsShadowHasItsHoles) {
@@ -236,26 +229,47 @@ TEST(PovrayTextures, ALeafsShadowHasItsHoles) {
 TEST(PovrayTextures, EmissionAndBaseColorAddUp) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
-    Material lamp = scenes::textured(checker());
-    lamp.base_color_texture.interpolation = Interpolation::Closest;
-    lamp.emission = {0.05, 0.1, 0.02};
-    scenes::Image image = shown({lamp}, patch(0, 1), "emission");
-    EXPECT_NEAR(image.at(7, 7).x, 0.85, 0.004);
-    EXPECT_NEAR(image.at(7, 7).y, 0.1, 0.004);
-    lamp.emission_texture.picture = scenes::picture(1, {{0, .2, 0, 1}, {.1, .3, 1, 1}});
-    lamp.emission_texture.interpolation = Interpolation::Closest;
-    lamp.emission_texture.scale = {2, 1, 0.5};
-    image = shown({lamp}, patch(0, 1), "emission");
-    EXPECT_NEAR(image.at(7, 7).x, 0.8, 0.006);
-    EXPECT_NEAR(image.at(7, 7).y, 0.2, 0.006);
-    EXPECT_NEAR(image.at(21, 21).x, 0.9, 0.01);
-    EXPECT_NEAR(image.at(21, 21).y, 0.8, 0.01);
-    EXPECT_NEAR(image.at(21, 21).z, 0.5, 0.01);
+    Material plain = scenes::textured(checker());
+    plain.base_color_texture.interpolation = Interpolation::Closest;
+    plain.emission = {0.05, 0.1, 0.02};
+    Material both = plain;
+    both.emission_texture.picture = scenes::picture(1, {{0, .2, 0, 1}, {.1, .3, 1, 1}});
+    both.emission_texture.interpolation = Interpolation::Closest;
+    both.emission_texture.scale = {2, 1, 0.5};
+    Material lamp = both;
     lamp.base_color_texture = {};
     lamp.base_color = glm::dvec3(0.0);
-    image = shown({lamp}, patch(0, 1), "emission");
-    EXPECT_NEAR(image.at(21, 21).y, 0.3, 0.006);
-    EXPECT_NEAR(image.at(21, 21).z, 0.5, 0.006);
+    const scenes::Image image = shown({plain, both, lamp}, patch(0, 1), "emission");
+    EXPECT_NEAR(image.at(7, 7).x, 0.85, 0.004);
+    EXPECT_NEAR(image.at(7, 7).y, 0.1, 0.004);
+    EXPECT_NEAR(image.at(35, 7).x, 0.8, 0.006);
+    EXPECT_NEAR(image.at(35, 7).y, 0.2, 0.006);
+    EXPECT_NEAR(image.at(49, 21).x, 0.9, 0.01);
+    EXPECT_NEAR(image.at(49, 21).y, 0.8, 0.01);
+    EXPECT_NEAR(image.at(49, 21).z, 0.5, 0.01);
+    EXPECT_NEAR(image.at(77, 21).y, 0.3, 0.006);
+    EXPECT_NEAR(image.at(77, 21).z, 0.5, 0.006);
+}
+
+TEST(PovrayTextures, APictureBrighterThanWhiteLightsAsMuch) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Material lamp = scenes::textured({});
+    lamp.base_color = glm::dvec3(0.0);
+    lamp.emission = {3, 0.5, 0};
+    shown({lamp}, patch(), "exr");
+    RunOptions how;
+    how.folder = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray/exr";
+    how.output = Output::Exr;
+    Texture texture;
+    texture.picture = image::make_picture(read_file(run(how).picture), ColorSpace::Linear, "lamp");
+    ASSERT_EQ(texture.picture->format, PictureFormat::Exr);
+    EXPECT_NEAR(brightest_of(*texture.picture), 3, 0.01);
+    texture.scale = glm::dvec3(0.25);
+    lamp.emission_texture = texture;
+    const scenes::Image image = shown({lamp}, patch(0, 1), "exr");
+    EXPECT_NEAR(image.at(14, 14).x, 0.75, 0.01);
+    EXPECT_NEAR(image.at(14, 14).y, 0.125, 0.005);
 }
 
 TEST(PovrayTextures, ConstantMapsLookLikeTheirNumbers) {
@@ -271,10 +285,9 @@ TEST(PovrayTextures, ConstantMapsLookLikeTheirNumbers) {
     mapped.roughness_texture.channel = Channel::Green;
     mapped.metallic_texture.picture = scenes::picture(1, {{0.8F, 0.8F, 0.8F, 1}});
     mapped.metallic_texture.scale.x = 0.5;
-    const scenes::Image a = shown({plain}, patch(), "maps", glm::dvec3(0.3));
-    const scenes::Image b = shown({mapped}, patch(), "maps", glm::dvec3(0.3));
+    const scenes::Image image = shown({plain, mapped}, patch(), "maps", glm::dvec3(0.3));
     for (int i = 0; i < 3; ++i)
-        EXPECT_NEAR(a.at(14, 14)[i], b.at(14, 14)[i], 0.02);
+        EXPECT_NEAR(image.at(14, 14)[i], image.at(42, 14)[i], 0.02);
 }
 
 TEST(PovrayTextures, MixedMaterialsAreWeightedMeans) {
@@ -286,14 +299,14 @@ TEST(PovrayTextures, MixedMaterialsAreWeightedMeans) {
     red.base_color = {0.4, 0, 0};
     red.other = blue;
     red.mix = 0.25;
-    scenes::Image image = shown({red}, patch(), "mix");
+    Material halves = red;
+    halves.mix_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
+    halves.mix_texture.interpolation = Interpolation::Closest;
+    const scenes::Image image = shown({red, halves}, patch(0, 1), "mix");
     EXPECT_NEAR(image.at(14, 14).x, 0.3, 0.003);
     EXPECT_NEAR(image.at(14, 14).z, 0.2, 0.003);
-    red.mix_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
-    red.mix_texture.interpolation = Interpolation::Closest;
-    image = shown({red}, patch(0, 1), "mix");
-    EXPECT_NEAR(image.at(7, 14).x, 0.4, 0.003);
-    EXPECT_NEAR(image.at(21, 14).z, 0.8, 0.003);
+    EXPECT_NEAR(image.at(35, 14).x, 0.4, 0.003);
+    EXPECT_NEAR(image.at(49, 14).z, 0.8, 0.003);
 }
 
 TEST(PovrayTextures, BumpsFollowTheTextureCoordinatesHoweverTheSurfaceIsTurned) {
