@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene: rays and closest points against one mesh; the only file pair that sees Embree.
+// Scene: rays and closest points against one mesh.
 #pragma once
 
 #include "model/mesh.h"

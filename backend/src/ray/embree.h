@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Embree's tree over one mesh, in the tree's own frame: the only file pair that sees Embree.
+#pragma once
+
+#include "ray/closest_search.h"
+#include "ray/cover.h"
+
+#include <string>
+
+namespace lodestone::ray {
+
+/// Empty when Embree 3.13 was found and passed its test of known answers, else why not. It is looked
+/// for once per process.
+const std::string& why_no_embree();
+/// Throws Error(RaysUnavailable) with the reason when there is one.
+void require_embree();
+
+class EmbreeTree {
+public:
+    /// `positions` lie in the unit sphere or are not finite, and have one element more than there
+    /// are: Embree loads 16 bytes at a time. With a cover, hits where nothing is do not count. All
+    /// must outlive the tree. Throws Error(RaysUnavailable) or std::bad_alloc.
+    EmbreeTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
+               const Cover* cover);
+    ~EmbreeTree();
+    EmbreeTree(const EmbreeTree&) = delete;
+    EmbreeTree& operator=(const EmbreeTree&) = delete;
+
+    struct Found {
+        uint32_t triangle = kNoTriangle;  // among equally near ones the lowest
+        double u = 0;
+        double v = 0;
+        double t = 0;
+    };
+    /// Directions have unit length.
+    Found first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+    /// Lets the search visit what may be within `radius`.
+    void search(ClosestSearch& search, double radius) const;
+
+private:
+    void* scene_;
+};
+
+}  // namespace lodestone::ray
