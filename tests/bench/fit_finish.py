@@ -16,6 +16,7 @@ import sys
 from pathlib import Path
 
 import bpy
+import mathutils
 import numpy as np
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
@@ -64,7 +65,6 @@ def build_cycles():
     scene.render.image_settings.color_depth = "32"
     materials = list(cycles_materials())
     scene.render.resolution_x, scene.render.resolution_y = CELL * len(materials), CELL
-    scene.render.filter_size = 0.01  # a box of one pixel, as POV-Ray's samples below
     scene.cycles.pixel_filter_type = "BOX"
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type = "ORTHO"
@@ -118,8 +118,6 @@ def render_cycles():
             scene.cycles.max_bounces = 1
         else:
             background.inputs["Color"].default_value = (0, 0, 0, 1)
-            import mathutils
-
             direction = mathutils.Vector(sun_direction(light))
             lamp_object.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
         scene.render.filepath = str(FOLDER / f"cycles_{len(pictures)}.exr")

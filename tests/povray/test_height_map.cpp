@@ -28,7 +28,8 @@ Texture normals(int width, int height, const Slope& slope) {
 
 /// Height of a texel in widths of one.
 double at(const HeightMap& map, int x, int y) {
-    return map.range * map.values[static_cast<size_t>(y * map.width + x)];
+    return map.range * map.values[static_cast<size_t>(y) * static_cast<size_t>(map.width) +
+                                  static_cast<size_t>(x)];
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
 std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
                                 double high = 2.25) {
     std::vector<Material> materials;
+    materials.reserve(textures.size());
     for (const Texture& texture : textures)
         materials.push_back(scenes::textured(texture));
     const scenes::Image image = shown(materials, patch(low, high), "sampler");
@@ -313,6 +314,7 @@ TEST(PovrayTextures, BumpsFollowTheTextureCoordinatesHoweverTheSurfaceIsTurned) 
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
     std::vector<glm::vec4> ramp;
+    ramp.reserve(256);
     for (int i = 0; i < 256; ++i)
         ramp.emplace_back(glm::vec3(static_cast<float>(i) / 255.0F), 1);
     Material material = scenes::textured({});

@@ -261,7 +261,6 @@ typedef enum lds_light_kind {
     LDS_LIGHT_AREA = 3
 } lds_light_kind;
 
-
 typedef struct lds_light {
     uint32_t struct_size;
     const char* name;
