@@ -46,6 +46,11 @@ glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
     return {low + (high - low) * (x + 0.5) / 28, high - (high - low) * (y + 0.5) / 28};
 }
 
+/// A folder's name: tests run at the same time.
+std::string this_test() {
+    return testing::UnitTest::GetInstance()->current_test_info()->name();
+}
+
 /// The largest difference of each texture to what its sampler says, in one picture.
 std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
                                 double high = 2.25) {
@@ -53,7 +58,7 @@ std::vector<double> differences(const std::vector<Texture>& textures, double low
     materials.reserve(textures.size());
     for (const Texture& texture : textures)
         materials.push_back(scenes::textured(texture));
-    const scenes::Image image = shown(materials, patch(low, high), "sampler");
+    const scenes::Image image = shown(materials, patch(low, high), this_test());
     std::vector<double> worst;
     for (const Texture& texture : textures) {
         const image::Sampler sampler(texture, glm::dvec3(0.0));
@@ -127,8 +132,9 @@ TEST(PovrayTextures, ChangedValuesAndTransparentPicturesAreBaked) {
     textures[2].picture = scenes::picture(2, {{.8, 0, 0, 0}, {0, .6, 0, 1}});
     for (const double difference : differences(textures))
         EXPECT_LE(difference, 0.006);
-    EXPECT_EQ(pictures(std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray/sampler").size(),
-              3u);
+    EXPECT_EQ(
+        pictures(std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray" / this_test()).size(),
+        3u);
 }
 
 TEST(PovrayTextures, PlainPicturesAreWrittenAsTheyAreOnce) {
