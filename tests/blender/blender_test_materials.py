@@ -463,35 +463,5 @@ class Materials(MaterialCase):
         self.assertLess(time.process_time() - start, 1.0)
 
 
-class Worlds(MaterialCase):
-    def test_a_world_of_one_color_is_exact(self):
-        from lodestone.bridge import world
-        from lodestone.core.problems import Problems
-
-        made, problems = bpy.data.worlds.new("World"), Problems()
-        made.use_nodes = True
-        background = made.node_tree.nodes["Background"]
-        background.inputs["Color"].default_value = (0.45, 0.6, 0.85, 1.0)
-        background.inputs["Strength"].default_value = 0.5
-        self.close(world.color(made, problems), (0.225, 0.3, 0.425))
-        self.assertEqual(len(problems), 0)
-        self.assertEqual(world.color(None, problems), (0.0, 0.0, 0.0))
-
-    def test_a_world_with_a_texture_is_its_mean_and_named(self):
-        from lodestone.bridge import world
-        from lodestone.core.problems import Problems
-
-        made, problems = bpy.data.worlds.new("World"), Problems()
-        made.use_nodes = True
-        tree = made.node_tree
-        node = tree.nodes.new("ShaderNodeTexEnvironment")
-        node.image = bpy.data.images.new("Sky", 2, 1, float_buffer=True)
-        node.image.colorspace_settings.name = "Linear"
-        node.image.pixels = [0, 0, 1, 1, 0, 1, 0, 1]
-        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
-        self.close(world.color(made, problems), (0.0, 0.5, 0.5))
-        self.assertEqual([p.code for p in problems], ["world_texture_mean"])
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -309,9 +309,8 @@ def render_ours(folder):
         root = model.add_group("root", "root")
         model.set_root(root)
         model.set_world((WORLD, WORLD, WORLD))
-        model.add_light(
-            "sun", native.LightKind.SUN, (1, 1, 1), POWER, direction=tuple(-v for v in SUN)
-        )
+        travels = tuple(-v for v in SUN)
+        model.add_light(native.Light("sun", native.LightKind.SUN, power=POWER, direction=travels))
 
         def place(name, shape, smooth, material, at):
             item = model.add_mesh(name, name, native_mesh(native, shape, smooth), [material])

@@ -50,7 +50,8 @@ def extract(
     motion.sample() found out. A scene that shows nothing gives a model whose root group is empty.
     """
     scene = depsgraph.scene_eval
-    anew = depsgraph.scene.lodestone.deforming == "FRAME"
+    settings = ids.settings_of(depsgraph.scene)  # of the original: writing them tags nothing
+    anew = settings is not None and settings.deforming == "FRAME"
     motion = Still() if anew else Motion(still)
     model, problems, uids = native.Model(), Problems(), ids.Uids()
     try:

@@ -13,6 +13,9 @@ from .node_expressions import NodeExpressions, Note, mean_of
 
 _MAX_DEPTH = 48
 _BLACK = e.ZERO
+# The roughness at which the principled diffuse lobe is nearest to Lambert's law: rougher ones send
+# back more at grazing angles
+LAMBERT = e.number(0.45)
 
 
 @dataclass(frozen=True)
@@ -215,7 +218,7 @@ class Shaders:
         if kind == "BSDF_DIFFUSE" and not _zero(rough):
             self._note(INFO, "diffuse_roughness", "the roughness of diffuse surfaces is left out")
         if kind in _DIFFUSE:
-            return Surface(tint, e.ONE, specular=e.ZERO, relief=relief)
+            return Surface(tint, LAMBERT, specular=e.ZERO, relief=relief)
         if words is None:
             text = f"{node.bl_label} is drawn as a plain surface of its color"
             self._note(WARNING, "shader", text)
