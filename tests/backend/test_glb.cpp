@@ -277,7 +277,7 @@ TEST(Glb, PrimitivesJoinIntoSlotsAndStripsBecomeTriangles) {
     EXPECT_TRUE(has(problems, "not_triangles"));
 }
 
-TEST(Glb, TexturesCountAsTheirMean) {
+TEST(Glb, TexturesAreKeptAndTheConstantIsTheirMean) {
     image::Image board;
     board.width = 2;
     board.height = 1;
@@ -298,7 +298,9 @@ TEST(Glb, TexturesCountAsTheirMean) {
         const Model model = read_model(folder() / "textured.gltf", problems);
         const bool outside = uri[0] == '.';
         EXPECT_EQ(model.materials[0].base_color, glm::dvec3(0.5, 1, 1));
-        EXPECT_TRUE(has(problems, outside ? "texture_missing" : "texture_averaged"));
+        EXPECT_EQ(static_cast<bool>(model.materials[0].base_color_texture), !outside);
+        EXPECT_EQ(problems.size(), outside ? 1u : 0u);
+        EXPECT_EQ(has(problems, "texture_missing"), outside);
     }
 }
 

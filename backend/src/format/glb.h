@@ -13,7 +13,7 @@ namespace lodestone::format {
 
 /// The default scene becomes the root "gltf:scene"; a node with children a group ("gltf:node:7"), a
 /// mesh an object ("gltf:mesh:3", shared by all its nodes), a node with a mesh a placement. Y up is
-/// turned to Z up. Materials keep their factors; textures count as their mean color. Cameras,
+/// turned to Z up. Materials keep their textures, as far as Material has words for them. Cameras,
 /// lights, skins, morphs are not read. Buffers and pictures beside the file are read from below
 /// `folder` (empty: none). What is broken inside a readable file is left out with a problem. Throws
 /// Error(BadFile) naming `name`, also for extensions the file requires and we do not know.
@@ -21,11 +21,14 @@ Model read_glb(std::string_view bytes, const std::filesystem::path& folder, cons
                Problems& problems);
 
 /// The finest representations: placements as nodes, meshes shared, primitives tessellated; a group
-/// used twice is written as two nodes. A placement that shears or flattens becomes two nodes (glTF
+/// used twice is written as two nodes. Pictures are in the file, each once; what of a material glTF
+/// cannot say is approximated for strangers, and in extras for us: materials come back bit for bit
+/// but for names that are no UTF-8. A placement that shears or flattens becomes two nodes (glTF
 /// nodes cannot shear). Throws Error(InvalidArgument) above 4 million nodes or 2 GiB.
 std::string write_glb(const Model& model);
 
-/// One mesh, for a store; valid glTF for everybody else.
+/// One mesh, for a store; valid glTF for everybody else. Pictures are named as the store's files,
+/// "../i/<16 hex>.png"; what glTF cannot say of a texture counts as its mean.
 std::string write_glb_mesh(const Mesh& mesh, std::span<const Material> materials_by_slot,
                            const std::string& name);
 

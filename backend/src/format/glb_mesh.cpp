@@ -22,9 +22,13 @@ std::string write_glb_mesh(const Mesh& mesh, std::span<const Material> materials
         if (mesh.slot(i) < used.size())
             used[mesh.slot(i)] = 1;
     }
-    std::vector<int> materials;
-    for (size_t slot = 0; slot < used.size(); ++slot)
-        materials.push_back(used[slot] ? add_material(out, materials_by_slot[slot]) : -1);
+    MaterialWriter writer(out, false);
+    std::vector<SlotMaterial> materials(used.size());
+    for (size_t slot = 0; slot < used.size(); ++slot) {
+        if (used[slot])
+            materials[slot] = {writer.add(materials_by_slot[slot], !mesh.uvs.empty()),
+                               materials_by_slot[slot].vertex_colors};
+    }
     tinygltf::Node node;
     node.name = valid_utf8(name);
     node.mesh = add_mesh(out, mesh, materials, node.name);

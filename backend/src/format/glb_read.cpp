@@ -50,8 +50,9 @@ Affine transform_of(const tinygltf::Node& node) {
 
 class Reader {
 public:
-    Reader(const tinygltf::Model& from, const std::string& name, Problems& problems, size_t bytes)
-        : from_(from), name_(name), problems_(problems) {
+    Reader(const tinygltf::Model& from, const std::filesystem::path& folder,
+           const std::string& name, Problems& problems, size_t bytes)
+        : from_(from), name_(name), problems_(problems), pictures_(from, folder, name, bytes) {
         // Meshes may share data, and a hostile file would share it a million times.
         budget_.vertices = budget_.triangles = (uint64_t{1} << 24u) + 4 * uint64_t{bytes};
     }
@@ -60,7 +61,7 @@ public:
         check_extensions();
         const std::vector<int> roots = scene_nodes();
         const std::vector<int> order = top_down(roots);
-        model_.materials = read_materials(from_, name_, problems_);
+        model_.materials = read_materials(from_, pictures_, name_, problems_);
         object_of_mesh_.assign(from_.meshes.size(), kUnread);
         placements_.resize(from_.nodes.size());
         // Children before parents.
@@ -245,11 +246,15 @@ private:
                 {name, Severity::Warning, "no_faces", "the mesh has no triangles; it is left out"});
             return kNoObject;
         }
-        const auto standard = static_cast<uint32_t>(from_.materials.size());
+        const auto standard = static_cast<uint32_t>(from_.materials.size());  // as read_materials()
+        const bool colored = std::any_of(
+            from.primitives.begin(), from.primitives.end(), [](const tinygltf::Primitive& p) {
+                return p.material < 0 && p.attributes.contains("COLOR_0");
+            });
         for (const int material : materials)
             finest.materials.push_back(material >= 0 && static_cast<uint32_t>(material) < standard
                                            ? static_cast<uint32_t>(material)
-                                           : standard);
+                                           : standard + (colored ? 1 : 0));
         finest.payload = std::shared_ptr<const Mesh>(std::move(mesh));
         summarize(finest, model_);
         Object object;
@@ -263,6 +268,7 @@ private:
     const tinygltf::Model& from_;
     const std::string& name_;
     Problems& problems_;
+    PictureReader pictures_;
     Budget budget_;
     Model model_;
     std::vector<ObjectIndex> object_of_mesh_;
@@ -275,7 +281,7 @@ Model read_glb(std::string_view bytes, const std::filesystem::path& folder, cons
                Problems& problems) {
     tinygltf::Model from;
     load_gltf(from, bytes, folder, name);
-    return Reader(from, name, problems, bytes.size()).read();
+    return Reader(from, folder, name, problems, bytes.size()).read();
 }
 
 }  // namespace lodestone::format

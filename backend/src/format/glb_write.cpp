@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
 
+#include <array>
 #include <cmath>
 
 namespace lodestone::format {
@@ -17,7 +18,7 @@ constexpr size_t kMostNodes = size_t{1} << 22u;
 
 class Writer {
 public:
-    explicit Writer(const Model& from) : from_(from) {}
+    explicit Writer(const Model& from) : from_(from), materials_(out_, true) {}
 
     std::string write() {
         bottom_up(from_);  // refuses cycles
@@ -26,7 +27,7 @@ public:
         out_.scenes.emplace_back();
         out_.defaultScene = 0;
         mesh_of_.assign(from_.objects.size(), kUnwritten);
-        material_of_.assign(from_.materials.size(), -1);
+        material_of_.assign(from_.materials.size(), {-1, -1});
         if (from_.root != kNoObject)
             write_root();
         return save_glb(out_);
@@ -159,32 +160,36 @@ private:
         if (object.representations.empty())
             return known;
         const Representation& finest = object.representations[0];
-        std::vector<int> materials;
-        for (const uint32_t material : finest.materials)
-            materials.push_back(material_index(material));
-        const std::string name = valid_utf8(object.name);
+        Mesh tessellated;
         if (finest.summary.kind == Kind::Box)
-            known = add_mesh(out_, tessellate_box(finest.primitive()), materials, name);
+            tessellated = tessellate_box(finest.primitive());
         else if (finest.summary.kind == Kind::Ellipsoid)
-            known = add_mesh(out_, tessellate_ellipsoid(finest.primitive(), 3), materials, name);
-        else if (!finest.mesh().empty())
-            known = add_mesh(out_, finest.mesh(), materials, name);
+            tessellated = tessellate_ellipsoid(finest.primitive(), 3);
+        const Mesh& mesh = finest.summary.kind == Kind::Mesh ? finest.mesh() : tessellated;
+        if (mesh.empty())
+            return known;
+        std::vector<SlotMaterial> materials;
+        for (const uint32_t material : finest.materials)
+            materials.push_back(slot_material(material, !mesh.uvs.empty()));
+        known = add_mesh(out_, mesh, materials, valid_utf8(object.name));
         return known;
     }
 
-    int material_index(uint32_t material) {
+    SlotMaterial slot_material(uint32_t material, bool uvs) {
         if (material >= from_.materials.size())
             fail(Status::InvalidArgument, "material ", material, " of ", from_.materials.size());
-        int& known = material_of_[material];
+        const Material& from = from_.materials[material];
+        int& known = material_of_[material][uvs && textured(from) ? 1 : 0];
         if (known < 0)
-            known = add_material(out_, from_.materials[material]);
-        return known;
+            known = materials_.add(from, uvs);
+        return {known, from.vertex_colors};
     }
 
     const Model& from_;
     tinygltf::Model out_;
+    MaterialWriter materials_;
     std::vector<int> mesh_of_;
-    std::vector<int> material_of_;
+    std::vector<std::array<int, 2>> material_of_;  // for meshes without and with uvs
     int last_ = -1;
 };
 

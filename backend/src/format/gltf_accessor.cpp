@@ -101,6 +101,14 @@ uint32_t Elements::index(size_t element) const {
     }
 }
 
+int components_of(const tinygltf::Model& model, int accessor) {
+    if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size())
+        fail(Status::BadFile, "accessor ", accessor, " of ", model.accessors.size());
+    const int type = model.accessors[static_cast<size_t>(accessor)].type;
+    const int found = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
+    return found >= 1 && found <= 4 && type != TINYGLTF_TYPE_MAT2 ? found : 0;
+}
+
 int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target) {
     if (model.buffers.empty())
         model.buffers.emplace_back();

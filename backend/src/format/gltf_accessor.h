@@ -36,9 +36,12 @@ private:
     bool normalized_ = false;
 };
 
+/// How many numbers an element has; 0 for what is no vector. Throws Error(BadFile).
+int components_of(const tinygltf::Model& model, int accessor);
+
 /// Appends data, 4-byte aligned, as one buffer view (`target` 0 = none) of buffer 0.
 int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target);
-/// Floats of 1...3 components; `bounds` adds min and max. The data is one a vertex.
+/// Floats of 1...4 components; `bounds` adds min and max. The data is one a vertex.
 int add_floats(tinygltf::Model& model, std::span<const float> values, int components, bool bounds);
 
 /// The member of an extras or extensions object; null when there is none.

@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <sstream>
 
 namespace lodestone::format {
@@ -47,10 +49,13 @@ std::string_view glb_json(std::string_view bytes, const std::string& name) {
     return bytes.substr(20, json);
 }
 
-/// Walks through the JSON text once: depth, and buffers without a uri (only one can be the chunk).
+/// Walks through the JSON text once: depth, buffers without a uri (only one can be the chunk), and
+/// the files that are pictures.
 class Scan : public nlohmann::json_sax<nlohmann::json> {
 public:
     std::string complaint;
+    std::set<std::string> buffers;   // files
+    std::set<std::string> pictures;  // likewise
 
     bool null() override { return true; }
     bool boolean(bool) override { return true; }
@@ -59,13 +64,18 @@ public:
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool binary(binary_t&) override { return true; }
     bool string(string_t& value) override {
-        if (depth_ == 3 && key_is_uri_ && !value.empty())
+        if (depth_ == 3 && key_is_uri_ && !value.empty()) {
             has_uri_ = true;
+            if ((in_buffers_ || in_images_) && !value.starts_with("data:"))
+                (in_buffers_ ? buffers : pictures).insert(percent_decoded(value));
+        }
         return true;
     }
     bool key(string_t& name) override {
-        if (depth_ == 1)
+        if (depth_ == 1) {
             in_buffers_ = name == "buffers";
+            in_images_ = name == "images";
+        }
         key_is_uri_ = name == "uri";
         return true;
     }
@@ -102,6 +112,7 @@ private:
 
     int depth_ = 0;
     bool in_buffers_ = false;
+    bool in_images_ = false;
     bool key_is_uri_ = false;
     bool has_uri_ = false;
     int without_uri_ = 0;
@@ -109,14 +120,16 @@ private:
 
 /// The one folder that may be read, and how much.
 struct Reach {
-    std::string folder;  // canonical, or empty
+    std::string folder;              // canonical, or empty
+    std::set<std::string> pictures;  // left alone: a hostile file names one a million times
     uint64_t bytes_left = uint64_t{4} << 30u;
 };
 
 std::optional<std::filesystem::path> allowed(const std::string& path, const Reach& reach) {
     // tinygltf also looks in the current folder ("./name"): that has no such beginning.
     const std::string beginning = reach.folder + '/';
-    if (reach.folder.empty() || !path.starts_with(beginning))
+    if (reach.folder.empty() || !path.starts_with(beginning) ||
+        reach.pictures.contains(path.substr(beginning.size())))
         return std::nullopt;
     return sibling(reach.folder, path.substr(beginning.size()));
 }
@@ -177,6 +190,13 @@ void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesy
     if (!nlohmann::json::sax_parse(json.begin(), json.end(), &scan))
         fail(Status::BadFile, "'", name, "' is not read: ", scan.complaint);
     Reach reach;
+    for (std::string file : scan.pictures) {
+        if (scan.buffers.contains(file))
+            continue;
+        reach.pictures.insert(file);
+        std::replace(file.begin(), file.end(), '+', ' ');  // as tinygltf reads them
+        reach.pictures.insert(std::move(file));
+    }
     std::error_code failed;
     if (!folder.empty())
         reach.folder = std::filesystem::canonical(folder, failed).string();
@@ -217,12 +237,59 @@ std::string save_glb(tinygltf::Model& model) {
     std::ostringstream out;
     try {
         tinygltf::TinyGLTF writer;
+        writer.SetImageWriter(nullptr, nullptr);  // they are in buffer views, or files already
         if (!writer.WriteGltfSceneToStream(&model, out, false, true) || !out)
             fail(Status::Internal, "a GLB could not be written");
     } catch (const nlohmann::json::exception& e) {
         fail(Status::Internal, "a GLB could not be written: ", e.what());
     }
     return std::move(out).str();
+}
+
+std::string valid_utf8(const std::string& name) {
+    std::string out;
+    for (size_t i = 0; i < name.size();) {
+        const auto lead = static_cast<unsigned char>(name[i]);
+        const size_t length = lead < 0x80   ? 1
+                              : lead < 0xc2 ? 0
+                              : lead < 0xe0 ? 2
+                              : lead < 0xf0 ? 3
+                              : lead < 0xf5 ? 4
+                                            : 0;
+        bool valid = length > 0 && i + length <= name.size();
+        uint32_t code = length > 1 ? lead & (0x7fu >> length) : lead;
+        for (size_t k = 1; valid && k < length; ++k) {
+            const auto next = static_cast<unsigned char>(name[i + k]);
+            valid = (next & 0xc0u) == 0x80;
+            code = (code << 6u) | (next & 0x3fu);
+        }
+        // Overlong forms, surrogates and numbers above the last.
+        valid = valid && !(length == 3 && (code < 0x800 || (code >= 0xd800 && code < 0xe000))) &&
+                !(length == 4 && (code < 0x10000 || code > 0x10ffff));
+        if (valid)
+            out.append(name, i, length);
+        else
+            out += "\xef\xbf\xbd";
+        i += valid ? length : 1;
+    }
+    return out;
+}
+
+std::string percent_decoded(std::string_view uri) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                      : -1;
+    };
+    std::string out;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        const bool coded =
+            uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
+        out += coded ? static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+        i += coded ? 2 : 0;
+    }
+    return out;
 }
 
 }  // namespace lodestone::format

@@ -12,14 +12,21 @@ class Model;
 
 namespace lodestone::format {
 
-/// GLB or glTF text, told by the first bytes. Buffers and pictures in files of their own are read
-/// only from below `folder` (empty: none). Pictures stay encoded, in Image::image. References
-/// inside the model are not checked. Throws Error(BadFile) naming `name`.
+/// GLB or glTF text, told by the first bytes. Buffers in files of their own are read only from below
+/// `folder` (empty: none); pictures in files of their own are not read, those of data: URIs stay
+/// encoded, in Image::image. References inside the model are not checked. Throws Error(BadFile)
+/// naming `name`.
 void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesystem::path& folder,
                const std::string& name);
 
-/// The model as GLB (a scene of nothing is removed first); its first buffer becomes the binary chunk. Throws Error(InvalidArgument) when
-/// that has 2 GiB or more.
+/// The model as GLB (a scene of nothing is removed first); its first buffer becomes the binary
+/// chunk. Throws Error(InvalidArgument) when that has 2 GiB or more.
 std::string save_glb(tinygltf::Model& model);
+
+/// The same text with bytes that are no UTF-8 replaced by U+FFFD.
+std::string valid_utf8(const std::string& name);
+
+/// What a URI names: %41 becomes A.
+std::string percent_decoded(std::string_view uri);
 
 }  // namespace lodestone::format

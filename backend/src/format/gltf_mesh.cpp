@@ -49,6 +49,9 @@ void check_finite(const Mesh& mesh, const std::string& name) {
 
 using Attributes = std::map<std::string, int>;
 
+constexpr const char* kColors = "COLOR_0";
+constexpr const char* kUnusedColors = "_LODESTONE_COLOR";
+
 Attributes add_attributes(tinygltf::Model& model, const Mesh& mesh) {
     Attributes attributes;
     std::vector<glm::vec3> turned(mesh.positions.size());
@@ -72,7 +75,7 @@ Attributes add_attributes(tinygltf::Model& model, const Mesh& mesh) {
             attributes["_LODESTONE_V"] = add_floats(model, true_v, 1, false);
     }
     if (!mesh.colors.empty())
-        attributes["COLOR_0"] = add_floats(model, floats<4>(mesh.colors), 4, false);
+        attributes[kColors] = add_floats(model, floats<4>(mesh.colors), 4, false);
     return attributes;
 }
 
@@ -161,13 +164,15 @@ Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes)
         for (size_t i = 0; i < count; ++i)
             mesh.uvs[i] = {uvs.number(i, 0), 1 - uvs.number(i, 1)};
     }
-    if (accessor("COLOR_0") >= 0) {
-        const Elements colors(model, accessor("COLOR_0"), 4);
+    const int color = accessor(kColors) >= 0 ? accessor(kColors) : accessor(kUnusedColors);
+    if (color >= 0) {
+        const bool alpha = components_of(model, color) == 4;
+        const Elements colors(model, color, alpha ? 4 : 3);
         check_count(colors.count(), "colors");
         mesh.colors.resize(count);
         for (size_t i = 0; i < count; ++i)
             mesh.colors[i] = {colors.number(i, 0), colors.number(i, 1), colors.number(i, 2),
-                              colors.number(i, 3)};
+                              alpha ? colors.number(i, 3) : 1.0f};
     }
     if (accessor("_LODESTONE_V") >= 0 && !mesh.uvs.empty()) {
         const Elements true_v(model, accessor("_LODESTONE_V"), 1);
@@ -239,6 +244,15 @@ bool reorder(const std::vector<Group>& groups, const std::vector<uint16_t>& slot
     return true;
 }
 
+/// With colors called the same whether they are used or not.
+Attributes by_one_name(Attributes attributes) {
+    if (auto unused = attributes.extract(kUnusedColors)) {
+        unused.key() = kColors;
+        attributes.insert(std::move(unused));
+    }
+    return attributes;
+}
+
 /// own_mesh() without the safety net.
 std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& from) {
     const tinygltf::Value& mark = member(from.extras, "lodestone");
@@ -252,7 +266,7 @@ std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& 
     for (size_t i = 0; i < from.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = from.primitives[i];
         if (primitive.mode != TINYGLTF_MODE_TRIANGLES || primitive.indices < 0 ||
-            primitive.attributes != from.primitives[0].attributes)
+            by_one_name(primitive.attributes) != by_one_name(from.primitives[0].attributes))
             return std::nullopt;
         groups.push_back({0, triangles_of(read_indices(model, primitive, mesh.positions.size()),
                                           primitive.mode)});
@@ -290,7 +304,7 @@ std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& 
 
 }  // namespace
 
-int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const int> materials,
+int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMaterial> materials,
              const std::string& name) {
     check(mesh);
     check_finite(mesh, name);
@@ -300,7 +314,16 @@ int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const int> mate
     out.name = name;
     tinygltf::Value::Object mark{{"version", tinygltf::Value(1)}};
     tinygltf::Primitive primitive;
-    primitive.attributes = add_attributes(model, mesh);
+    const Attributes attributes = add_attributes(model, mesh);
+    const auto use = [&](const SlotMaterial& material) {
+        primitive.material = material.index;
+        primitive.attributes = attributes;
+        if (auto colors = primitive.attributes.extract(kColors)) {
+            colors.key() = material.vertex_colors ? kColors : kUnusedColors;
+            primitive.attributes.insert(std::move(colors));
+        }
+    };
+    use({});
     if (mesh.triangles.empty()) {
         primitive.mode = TINYGLTF_MODE_POINTS;
         out.primitives.push_back(primitive);
@@ -310,7 +333,7 @@ int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const int> mate
     std::vector<uint16_t> sorted;
     for (const Group& group : groups_of(mesh)) {
         primitive.indices = add_indices(model, group.triangles, mesh.positions.size());
-        primitive.material = group.slot < materials.size() ? materials[group.slot] : -1;
+        use(group.slot < materials.size() ? materials[group.slot] : SlotMaterial{});
         slots.emplace_back(static_cast<int>(group.slot));
         sorted.insert(sorted.end(), group.triangles.size(), group.slot);
         out.primitives.push_back(primitive);
@@ -351,7 +374,7 @@ ForeignMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& fro
         }
         try {
             Attributes used;
-            for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0"}) {
+            for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", kColors}) {
                 const auto found = primitive.attributes.find(attribute);
                 if (found != primitive.attributes.end())
                     used.insert(*found);

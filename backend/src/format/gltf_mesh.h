@@ -5,7 +5,8 @@
 //   version  1
 //   slots    the slot of each primitive, in order of first use (absent: the mesh has no slots)
 //   order    accessor of the slot of each triangle (absent: triangles are sorted as primitives are)
-// Where v does not survive 1 - (1 - v), the attribute _LODESTONE_V has the true one.
+// Where v does not survive 1 - (1 - v), the attribute _LODESTONE_V has the true one. Colors that the
+// material does not use are _LODESTONE_COLOR: glTF would multiply by COLOR_0.
 #pragma once
 
 #include "model/mesh.h"
@@ -21,10 +22,16 @@ struct Mesh;
 
 namespace lodestone::format {
 
-/// `materials[slot]` is an index into the file's materials or -1. A mesh without triangles becomes
+/// What a slot of a mesh is written as.
+struct SlotMaterial {
+    int index = -1;  // into the file's materials, or none
+    bool vertex_colors = false;
+};
+
+/// Slots without a material have none. A mesh without triangles becomes
 /// points. Returns the index of the mesh, or -1 for one without vertices. Throws
 /// Error(InvalidArgument) for numbers that are not finite.
-int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const int> materials,
+int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMaterial> materials,
              const std::string& name);
 
 /// The mesh when all is as add_mesh() writes it (not repaired); else nothing.

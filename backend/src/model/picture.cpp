@@ -15,4 +15,8 @@ const char* suffix_of(PictureFormat format) {
     return "png";
 }
 
+std::string file_name(const Picture& picture) {
+    return hex16(picture.hash) + "." + suffix_of(picture.format);
+}
+
 }  // namespace lodestone

@@ -37,4 +37,7 @@ using PicturePtr = std::shared_ptr<const Picture>;
 /// "png", "jpg" or "exr": how the names of its files end.
 const char* suffix_of(PictureFormat format);
 
+/// "<16 hex>.png" (or .jpg, .exr): the name of its file wherever it is written, by its hash.
+std::string file_name(const Picture& picture);
+
 }  // namespace lodestone

@@ -348,7 +348,7 @@ Model model_of_tileset(const std::string& text) {
 }
 
 std::string file_of(const Picture& picture) {
-    return "i/" + hex16(picture.hash) + "." + suffix_of(picture.format);
+    return "i/" + file_name(picture);
 }
 
 std::set<std::string> files_of(const Model& model) {

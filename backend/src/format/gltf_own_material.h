@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Materials in extras.lodestone: what glTF has no words for, so that ours come back bit for bit.
+//
+//   of     16 hex: the hash of the material as its glTF words alone read. When they read otherwise
+//          now, somebody has edited the file, and the rest is not believed.
+//   <key>  every member of Material that differs from those words; a texture names its picture by
+//          "image" or "view" (a buffer view) and by its hash; false is none.
+#pragma once
+
+#include "model/material.h"
+
+#include <tiny_gltf.h>
+
+namespace lodestone::format {
+
+class PictureReader;
+class PictureWriter;
+
+/// What is to be added to `seen` to have `material`; null when nothing is. Pictures that are needed
+/// are added to the file; textures whose picture is not resident, numbers that are not finite and
+/// mixtures of more than 32 are left out.
+tinygltf::Value own_words(const Material& material, const Material& seen, PictureWriter& pictures);
+
+/// Adds them to what was seen; false, and nothing done, when they make no sense or are of another.
+bool add_own_words(const tinygltf::Value& words, PictureReader& pictures, Material& seen);
+
+}  // namespace lodestone::format
