@@ -5,10 +5,11 @@
 #include "format/format.h"
 #include "format/mtl.h"
 #include "format/obj.h"
-#include "image/image.h"
+#include "image/sampler.h"
 #include "mutate.h"
 #include "shapes.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace lodestone::format {
@@ -104,9 +105,170 @@ TEST(Obj, MaterialsComeFromTheLibraryBesideTheFile) {
     EXPECT_EQ(red.emission, glm::dvec3(2, 0, 0));
     EXPECT_EQ(red.roughness, 0.25);
     EXPECT_EQ(red.metallic, 1);
-    EXPECT_NEAR(model.materials[finest.materials[1]].base_color.x, 0.5, 1e-6);
-    EXPECT_TRUE(has(problems, "texture_averaged"));
+    const Material& wood = model.materials[finest.materials[1]];
+    EXPECT_NEAR(wood.base_color.x, 0.5, 1e-6);
+    ASSERT_TRUE(wood.base_color_texture);
+    EXPECT_EQ(wood.base_color_texture.to_picture, (std::array<double, 6>{2, 0, 0, 0, 2, 0}));
+    ASSERT_EQ(problems.size(), 1u);
     EXPECT_TRUE(has(problems, "material_missing"));  // lost
+}
+
+/// The materials of an MTL text.
+std::vector<Material> library(const std::string& text, Problems& problems) {
+    return read_mtl(text, folder(), "thing", problems);
+}
+
+std::string written(const image::Image& image, const std::string& name) {
+    image::write_png(folder() / name, image);
+    return name;
+}
+
+image::Image two_texels(std::vector<float> pixels) {
+    image::Image image;
+    image.width = 2;
+    image.height = 1;
+    image.pixels = std::move(pixels);
+    return image;
+}
+
+TEST(Obj, MapsHaveOptionsChannelsAndKinds) {
+    written(two_texels({1, 1, 1, 1, 0.5f, 0, 0, 0.5f}), "leaf.png");
+    written(two_texels({0.5f, 0.5f, 1, 1, 0.4f, 0.6f, 0.95f, 1}), "normals.png");
+    written(two_texels({0.2f, 0.2f, 0.2f, 1, 0.8f, 0.8f, 0.8f, 1}), "my 2 heights.png");
+    Problems problems;
+    const std::vector<Material> m = library(
+        "newmtl leaf\nmap_Kd leaf.png\nmap_d -imfchan m leaf.png\nd 0.5\n"
+        "newmtl rough\nmap_Pr -clamp on -mm 0.25 0.5 -o 0.5 my 2 heights.png\n"
+        "map_Pm -imfchan r -blendu on -t 1 2 3 leaf.png\nKe 2 2 2\nmap_Ke leaf.png\n"
+        "newmtl bumpy\nmap_Bump -bm 0.5 my 2 heights.png\n"
+        "newmtl turned\nbump -bm 2 normals.png\n"
+        "newmtl named\nnorm my 2 heights.png\n"
+        "newmtl mask\nmap_d leaf.png\n",
+        problems);
+    ASSERT_EQ(m.size(), 6u);
+    EXPECT_EQ(m[0].alpha_mode, AlphaMode::Blend);
+    EXPECT_EQ(m[0].alpha_texture.channel, Channel::Alpha);
+    EXPECT_NEAR(m[0].alpha, 0.5 * 0.75, 0.01);
+    EXPECT_EQ(m[1].roughness_texture.extension, Extension::Extend);
+    EXPECT_EQ(m[1].roughness_texture.channel, Channel::Luma);
+    EXPECT_EQ(m[1].roughness_texture.to_picture[2], 0.5);
+    EXPECT_NEAR(m[1].roughness, 0.25 + 0.5 * 0.5, 0.01);
+    EXPECT_EQ(m[1].metallic_texture.channel, Channel::Red);
+    EXPECT_EQ(m[1].emission_texture.scale, glm::dvec3(2.0));
+    EXPECT_TRUE(m[2].bump_texture);
+    EXPECT_DOUBLE_EQ(m[2].bump_distance, 0.005);
+    EXPECT_TRUE(m[3].normal_texture);
+    EXPECT_FALSE(m[3].bump_texture);
+    EXPECT_EQ(m[3].normal_strength, 2);
+    EXPECT_TRUE(m[4].normal_texture);
+    EXPECT_EQ(m[5].alpha_texture.channel, Channel::Alpha);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "bump_height_guessed");
+}
+
+TEST(Obj, DissolveIsAlphaUnlessTheLightIsRefracted) {
+    Problems problems;
+    const std::vector<Material> m = library(
+        "newmtl thin\nKd 1 0 0\nd 0.25\nillum 9\nnewmtl inverse\nTr 0.75\n"
+        "newmtl glass\nKd 0 0 0\nd 0.25\nNi 1.5\nillum 4\n"
+        "newmtl filter\nKd 0 0 0\nillum 7\nNi 1.33\nTf 0.5 1 0.75\n"
+        "newmtl solid\nKd 0.5 0 0\nillum 7\nNi 1.5\nTf oops\n",
+        problems);
+    ASSERT_EQ(m.size(), 5u);
+    EXPECT_EQ(m[0].alpha, 0.25);
+    EXPECT_EQ(m[0].alpha_mode, AlphaMode::Blend);
+    EXPECT_EQ(m[0].transmission, 0);
+    EXPECT_EQ(m[1].alpha, 0.25);
+    EXPECT_EQ(m[2].transmission, 0.75);
+    EXPECT_EQ(m[2].alpha, 1);
+    EXPECT_EQ(m[2].ior, 1.5);
+    EXPECT_EQ(m[2].base_color, glm::dvec3(1.0));
+    EXPECT_EQ(m[3].transmission, 0.75);
+    EXPECT_EQ(m[3].base_color, glm::dvec3(0.5, 1, 0.75));
+    EXPECT_EQ(m[4].transmission, 0);
+    EXPECT_EQ(m[4].base_color.x, 0.5);
+    EXPECT_TRUE(problems.empty());
+}
+
+TEST(Obj, TexturedMaterialsAreWrittenWithTheirPictures) {
+    image::Image image;
+    image.width = image.height = 2;
+    image.pixels = {0.1f, 0.2f, 0.3f, 1, 0.9f, 0.2f, 0.6f, 1, 0, 1, 0, 0.5f, 1, 1, 0, 0};
+    const PicturePtr picture =
+        image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "../../evil");
+    Material m;
+    m.base_color_texture.picture = picture;
+    m.base_color_texture.to_picture = {2, 0, 0.5, 0, 3, 0.25};
+    m.base_color_texture.interpolation = Interpolation::Closest;
+    m.alpha_texture = m.base_color_texture;
+    m.alpha_texture.channel = Channel::Alpha;
+    m.alpha_mode = AlphaMode::Blend;
+    m.emission_texture = m.base_color_texture;
+    m.emission_texture.scale = glm::dvec3(3, 1, 0.5);
+    m.roughness_texture = m.base_color_texture;
+    m.roughness_texture.channel = Channel::Blue;
+    m.clearcoat = 0.5;
+    m.normal_texture = m.base_color_texture;
+    m.normal_texture.to_picture[1] = 1;  // sheared: MTL has no word for it
+    Model model;
+    Object object;
+    object.representations.emplace_back();
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.uvs.resize(4);
+    object.representations[0].payload = std::make_shared<const Mesh>(mesh);
+    object.representations[0].materials = {0};
+    model.materials = {m};
+    model.objects.push_back(object);
+    model.root = 0;
+    const std::filesystem::path place = folder() / "written";
+    std::filesystem::create_directories(place);
+    write_model(place / "quad.obj", model);
+    EXPECT_TRUE(std::filesystem::exists(place / file_name(*picture)));
+    Problems problems;
+    const Model back = read_model(place / "quad.obj", problems);
+    EXPECT_TRUE(problems.empty());
+    const Material& seen = back.materials[back.objects[0].representations[0].materials[0]];
+    EXPECT_EQ(seen.base_color_texture.picture->hash, picture->hash);  // as it is, not drawn anew
+    EXPECT_EQ(seen.clearcoat, 0.5);
+    EXPECT_EQ(seen.alpha_mode, AlphaMode::Blend);
+    EXPECT_FALSE(seen.normal_texture);
+    const auto texels = [](Texture texture) {
+        texture.interpolation = Interpolation::Closest;  // MTL cannot say it
+        std::vector<glm::dvec4> out;
+        const image::Sampler sampler(texture, {});
+        for (int i = 0; i < 30; ++i) {
+            const glm::dvec2 uv(0.13 * i, 0.071 * i);
+            out.emplace_back(sampler.color(uv), sampler.number(uv));
+        }
+        return out;
+    };
+    const auto compare = [&](const Texture& ours, const Texture& theirs, bool color) {
+        ASSERT_TRUE(theirs);
+        const auto a = texels(ours), b = texels(theirs);
+        for (size_t i = 0; i < a.size(); ++i) {
+            for (int c = color ? 0 : 3; c < (color ? 3 : 4); ++c)
+                EXPECT_NEAR(a[i][c], b[i][c], 0.02) << i;
+        }
+    };
+    compare(m.base_color_texture, seen.base_color_texture, true);
+    compare(m.emission_texture, seen.emission_texture, true);
+    compare(m.alpha_texture, seen.alpha_texture, false);
+    compare(m.roughness_texture, seen.roughness_texture, false);
+    EXPECT_GT(seen.emission.x, 1.0);
+}
+
+TEST(Obj, BrokenPicturesAreNamedAndTheColorStays) {
+    write_file(folder() / "words.png", "no picture");
+    write_file(folder() / "inner" / "hidden.png", "no picture");
+    for (const std::string file :
+         {"words.png", "nothing.png", "../obj/words.png", "/dev/zero", "-s 1", "", "."}) {
+        Problems problems;
+        const std::vector<Material> m =
+            library("newmtl a\nKd 1 0 0\nmap_Kd " + file + "\n", problems);
+        EXPECT_EQ(m[0].base_color, glm::dvec3(1, 0, 0)) << file;
+        ASSERT_EQ(problems.size(), 1u) << file;
+        EXPECT_EQ(problems[0].code, "texture_missing");
+    }
 }
 
 TEST(Obj, NothingOutsideTheFolderIsOpened) {
@@ -138,7 +300,7 @@ TEST(Obj, RoundTripIsExactInOrderAndBits) {
     materials[1].name = "two words";
     materials[1].base_color = {0.1f, 0.2f, 0.3f};
     Problems problems;
-    write_file(folder() / "round.mtl", write_mtl(materials));
+    write_file(folder() / "round.mtl", write_mtl(materials).text);
     const Model model = read(write_obj(mesh, materials, "ball", "round.mtl"), problems);
     EXPECT_TRUE(problems.empty());
     EXPECT_EQ(hash_of(only_mesh(model)), hash_of(mesh));
@@ -224,6 +386,25 @@ TEST(Obj, DamagedFilesNeverCrash) {
                          Problems problems;
                          bottom_up(read(bytes, problems));
                      });
+}
+
+TEST(Obj, DamagedLibrariesNeverCrash) {
+    written(two_texels({1, 1, 1, 1, 0.5f, 0, 0, 0.5f}), "leaf.png");
+    const std::string good =
+        "newmtl a\nKd 1 0 0\nKe 1 1 1\nmap_Kd -s 2 2 2 -o 1 1 -mm 0 1 -clamp on leaf.png\n"
+        "map_d -imfchan m leaf.png\nd 0.5\nTf 1 1 1\nillum 7\nNi 1.5\nmap_Bump -bm 1 leaf.png\n";
+    hostile::survive(good, 600, [](const std::string& bytes) {
+        Problems problems;
+        const std::vector<Material> materials = library(bytes, problems);
+        for (const Material& m : materials) {
+            EXPECT_TRUE(std::isfinite(m.alpha) && m.ior > 0);
+            for_each_texture(m, [](const Texture& texture) {
+                for (const double x : texture.to_picture)
+                    EXPECT_TRUE(std::isfinite(x));
+            });
+        }
+        write_mtl(materials);
+    });
 }
 
 TEST(Obj, PizzaHasItsTriangles) {

@@ -23,7 +23,11 @@ std::string extension_of(const std::filesystem::path& path) {
 
 Model model_of(Mesh mesh, const std::string& name) {
     Model model;
-    model.materials.emplace_back();
+    Material& material = model.materials.emplace_back();
+    if (!mesh.colors.empty()) {
+        material.vertex_colors = true;
+        material.base_color = glm::dvec3(1.0);
+    }
     Object object;
     object.uid = "ply:0";
     object.name = name;
@@ -97,18 +101,24 @@ void write_model(const std::filesystem::path& path, const Model& model) {
         fail(Status::InvalidArgument, "'", path.string(),
              "' is not written: only .glb, .obj and .ply are");
     std::vector<uint32_t> slots;
-    const Mesh mesh = flattened(model, slots);
-    if (extension == ".ply") {
-        write_file(path, write_ply(mesh));
-        return;
-    }
+    Mesh mesh = flattened(model, slots);
     std::vector<Material> materials;
     materials.reserve(slots.size());
     for (const uint32_t index : slots)
         materials.push_back(index < model.materials.size() ? model.materials[index] : Material{});
+    if (extension == ".ply") {
+        if (std::none_of(materials.begin(), materials.end(),
+                         [](const Material& material) { return material.vertex_colors; }))
+            mesh.colors.clear();  // nobody sees them
+        write_file(path, write_ply(mesh));
+        return;
+    }
     std::filesystem::path library = path;
     library.replace_extension(".mtl");
-    write_file(library, write_mtl(materials));
+    const MaterialLibrary written = write_mtl(materials);
+    for (const auto& [name, picture] : written.pictures)
+        write_file(path.parent_path() / name, picture->bytes);
+    write_file(library, written.text);
     write_file(path, write_obj(mesh, materials, path.stem().string(), library.filename().string()));
 }
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// MTL maps: "-option value ... file" <-> Texture.
+#pragma once
+
+#include "model/texture.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lodestone::format {
+
+/// MTL's -bm is a factor of no unit; 1 is taken as the largest dents of plaster or bark.
+inline constexpr double kBumpMetres = 0.01;
+
+/// A map line after its keyword.
+struct MapLine {
+    std::string file;
+    Texture texture;       // without a picture
+    bool channel = false;  // -imfchan was there
+    double bump = 1;       // -bm
+};
+
+/// Numbers that are none, and options we do not know, are skipped.
+MapLine map_line(std::string_view words);
+
+/// " -s 2 2 1 -clamp on": of a texture's layout; nothing for one that is turned or clipped.
+std::optional<std::string> map_options(const Texture& texture);
+
+/// Pictures by their names in the file; each is read once for a color space.
+class MapPictures {
+public:
+    /// Files are read from below `folder` only.
+    explicit MapPictures(const std::filesystem::path& folder) : folder_(folder) {}
+
+    /// Throws Error(BadFile or Io) with a sentence that names it.
+    PicturePtr find(const std::string& file, ColorSpace space);
+
+private:
+    const std::filesystem::path& folder_;
+    std::map<std::pair<std::string, ColorSpace>, PicturePtr> known_;  // by path
+    std::map<std::string, std::string> broken_;                       // by path
+};
+
+/// " -123.5", so that it reads back as the nearest float.
+void put_number(std::string& out, double value);
+
+}  // namespace lodestone::format
