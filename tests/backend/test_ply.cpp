@@ -94,6 +94,64 @@ TEST(Ply, RoundTripIsExact) {
     expect_same(read(write_ply(mesh)), mesh);
 }
 
+TEST(Ply, IntegerColorsAreDecodedAndFloatsAreLinear) {
+    const auto with_colors = [](const std::string& type, const std::string& red,
+                                const std::string& alpha) {
+        std::string header = kXyz;
+        for (const char* name : {"red", "green", "blue"})
+            header += "property " + type + " " + name + "\n";
+        if (!alpha.empty())
+            header += "property " + type + " alpha\n";
+        std::string body;
+        for (const char* at : {"0 0 0 ", "1 0 0 ", "1 1 0 ", "0 1 0 "})
+            body += at + red + " 0 0 " + alpha + "\n";
+        return read(ascii(header, kFaces, body + "4 0 1 2 3\n"));
+    };
+    EXPECT_NEAR(with_colors("uchar", "188", "").colors.at(0).x, 0.503f, 0.001f);
+    EXPECT_EQ(with_colors("uchar", "255", "").colors.at(3), glm::vec4(1, 0, 0, 1));
+    EXPECT_EQ(with_colors("uchar", "255", "51").colors.at(0).w, 0.2f);
+    EXPECT_NEAR(with_colors("ushort", "48316", "65535").colors.at(0).x, 0.503f, 0.001f);
+    EXPECT_EQ(with_colors("float", "0.25", "0.5").colors.at(0), glm::vec4(0.25f, 0, 0, 0.5f));
+    const Mesh half = read(ascii(kXyz + "property uchar red\n", kFaces,
+                                 "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n"));
+    EXPECT_TRUE(half.colors.empty());  // no green, no blue
+}
+
+TEST(Ply, ColorsComeBackAsBytesOrFloats) {
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.colors = {{1, 0, 1, 1}, {0, 1, 0, 0}, {0, 0, 1, 1}, {1, 1, 1, 1}};
+    EXPECT_NE(write_ply(mesh).find("property uchar red"), std::string::npos);
+    expect_same(read(write_ply(mesh)), mesh);
+    mesh = read(write_ply(mesh));
+    mesh.colors[2] = {0.1f, 2, 1e-9f, 0.5f};  // no bytes say this
+    EXPECT_NE(write_ply(mesh).find("property float red"), std::string::npos);
+    expect_same(read(write_ply(mesh)), mesh);
+    const Mesh byte = read(ascii(kXyz + "property uchar red\nproperty uchar green\nproperty uchar "
+                                        "blue\n",
+                                 kFaces,
+                                 "0 0 0 1 2 3\n1 0 0 128 129 130\n1 1 0 77 9 5\n0 1 0 9 8 7\n"
+                                 "4 0 1 2 3\n"));
+    EXPECT_NE(write_ply(byte).find("property uchar red"), std::string::npos);
+    expect_same(read(write_ply(byte)), byte);
+}
+
+TEST(Ply, ModelsUseTheirColors) {
+    const std::filesystem::path path =
+        std::filesystem::path(LODESTONE_TEST_SCRATCH) / "colored.ply";
+    Mesh mesh = shapes::quad(1, 1);
+    mesh.colors = {{1, 0, 1, 1}, {0, 1, 0, 0}, {0, 0, 1, 1}, {1, 1, 1, 1}};
+    write_file(path, write_ply(mesh));
+    Problems problems;
+    Model model = read_model(path, problems);
+    EXPECT_TRUE(model.materials[0].vertex_colors);
+    EXPECT_EQ(model.materials[0].base_color, glm::dvec3(1.0));
+    write_model(path, model);
+    EXPECT_TRUE(read_model(path, problems).materials[0].vertex_colors);
+    model.materials[0].vertex_colors = false;  // nobody sees them
+    write_model(path, model);
+    EXPECT_FALSE(read_model(path, problems).materials[0].vertex_colors);
+}
+
 TEST(Ply, FacesThatMakeNoSenseAreLeftOutWithAProblem) {
     Problems problems;
     const Mesh mesh =
@@ -134,6 +192,8 @@ TEST(Ply, DamagedFilesNeverCrash) {
     const int accepted = hostile::survive(write_ply(mesh), 400, read_it);
     EXPECT_GT(accepted, 20);
     EXPECT_LT(accepted, 400);
+    mesh.colors.assign(mesh.positions.size(), glm::vec4(0.5f));
+    hostile::survive(write_ply(mesh), 200, read_it);
     hostile::survive(ascii(kXyz, kFaces, kQuad), 400, read_it);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/ply.h"
 
+#include "image/image.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -273,22 +275,55 @@ private:
         }
     }
 
-    /// Where a vertex property goes: 0...2 position, 3...5 normal, 6...7 uv, -1 nowhere.
+    /// Where a vertex property goes: 0...2 position, 3...5 normal, 6...7 uv, 8...11 color, -1
+    /// nowhere.
     static int place_of(const Property& property) {
-        constexpr std::array<std::string_view, 12> kNames{
-            "x", "y", "z", "nx", "ny", "nz", "s", "t", "u", "v", "texture_u", "texture_v"};
+        struct Place {
+            std::string_view name;
+            int place;
+        };
+        constexpr std::array<Place, 20> kPlaces{{{"x", 0},
+                                                 {"y", 1},
+                                                 {"z", 2},
+                                                 {"nx", 3},
+                                                 {"ny", 4},
+                                                 {"nz", 5},
+                                                 {"s", 6},
+                                                 {"t", 7},
+                                                 {"u", 6},
+                                                 {"v", 7},
+                                                 {"texture_u", 6},
+                                                 {"texture_v", 7},
+                                                 {"red", 8},
+                                                 {"green", 9},
+                                                 {"blue", 10},
+                                                 {"alpha", 11},
+                                                 {"diffuse_red", 8},
+                                                 {"diffuse_green", 9},
+                                                 {"diffuse_blue", 10},
+                                                 {"diffuse_alpha", 11}}};
         if (property.count)
             return -1;
-        const auto found = std::find(kNames.begin(), kNames.end(), property.name);
-        if (found == kNames.end())
-            return -1;
-        const auto place = static_cast<int>(found - kNames.begin());
-        return place < 6 ? place : 6 + place % 2;
+        const auto found = std::find_if(kPlaces.begin(), kPlaces.end(), [&](const Place& place) {
+            return place.name == property.name;
+        });
+        return found == kPlaces.end() ? -1 : found->place;
+    }
+
+    /// Integers are display-encoded, as every program writes them; floats are linear.
+    static float channel_of(double value, Type type, bool alpha) {
+        double most = 1;
+        if (type == Type::Uint8)
+            most = 255;
+        else if (type == Type::Uint16)
+            most = 65535;
+        const auto share = static_cast<float>(value / most);
+        return most == 1 || alpha ? share : image::decode_srgb(share);
     }
 
     void read_vertices(const Element& element) {
         std::vector<int> places;
-        std::array<bool, 8> present{};
+        std::array<bool, 12> present{};
         for (const Property& property : element.properties) {
             places.push_back(place_of(property));
             if (places.back() >= 0)
@@ -300,25 +335,34 @@ private:
             bad("it has two lists of vertices");
         const bool normals = present[3] && present[4] && present[5];
         const bool uvs = present[6] && present[7];
+        const bool colors = present[8] && present[9] && present[10];
         mesh_.positions.reserve(element.count);
         if (normals)
             mesh_.normals.reserve(element.count);
         if (uvs)
             mesh_.uvs.reserve(element.count);
+        if (colors)
+            mesh_.colors.reserve(element.count);
         for (uint64_t i = 0; i < element.count; ++i) {
-            std::array<float, 8> values{};
+            std::array<float, 12> values{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
             for (size_t p = 0; p < places.size(); ++p) {
-                if (places[p] < 0)
-                    skip_property(element.properties[p]);
-                else
-                    values[static_cast<size_t>(places[p])] =
-                        static_cast<float>(number(element.properties[p].type));
+                const Property& property = element.properties[p];
+                if (places[p] < 0) {
+                    skip_property(property);
+                    continue;
+                }
+                const double value = number(property.type);
+                values[static_cast<size_t>(places[p])] =
+                    places[p] < 8 ? static_cast<float>(value)
+                                  : channel_of(value, property.type, places[p] == 11);
             }
             mesh_.positions.emplace_back(values[0], values[1], values[2]);
             if (normals)
                 mesh_.normals.emplace_back(values[3], values[4], values[5]);
             if (uvs)
                 mesh_.uvs.emplace_back(values[6], values[7]);
+            if (colors)
+                mesh_.colors.emplace_back(values[8], values[9], values[10], values[11]);
         }
     }
 
@@ -389,6 +433,34 @@ private:
     size_t bad_faces_ = 0;
 };
 
+/// The byte that reads back as the same bits, if there is one.
+std::optional<uint8_t> byte_of(float value, bool alpha) {
+    const float share = alpha ? value : image::encode_srgb(value);
+    if (!(share >= 0 && share <= 1))
+        return std::nullopt;
+    const auto byte = static_cast<uint8_t>(std::lround(255.0f * share));
+    const float back = static_cast<float>(byte / 255.0);
+    if ((alpha ? back : image::decode_srgb(back)) != value)
+        return std::nullopt;
+    return byte;
+}
+
+/// One a vertex, or nothing when bytes would lose a bit.
+std::optional<std::vector<std::array<uint8_t, 4>>> bytes_of(const std::vector<glm::vec4>& colors) {
+    std::vector<std::array<uint8_t, 4>> out;
+    out.reserve(colors.size());
+    for (const glm::vec4& color : colors) {
+        std::array<uint8_t, 4>& bytes = out.emplace_back();
+        for (int c = 0; c < 4; ++c) {
+            const auto byte = byte_of(color[c], c == 3);
+            if (!byte)
+                return std::nullopt;
+            bytes[static_cast<size_t>(c)] = *byte;
+        }
+    }
+    return out;
+}
+
 template <typename T>
 void put(std::string& out, const T& value) {
     out.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -409,15 +481,24 @@ std::string write_ply(const Mesh& mesh) {
         out += "property float nx\nproperty float ny\nproperty float nz\n";
     if (!mesh.uvs.empty())
         out += "property float s\nproperty float t\n";
+    const auto bytes = bytes_of(mesh.colors);
+    if (!mesh.colors.empty()) {
+        for (const char* name : {"red", "green", "blue", "alpha"})
+            out += text("property ", bytes ? "uchar " : "float ", name, '\n');
+    }
     out += text("element face ", mesh.triangles.size(),
                 "\nproperty list uchar uint vertex_indices\nend_header\n");
-    out.reserve(out.size() + mesh.positions.size() * 32 + mesh.triangles.size() * 13);
+    out.reserve(out.size() + mesh.positions.size() * 48 + mesh.triangles.size() * 13);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         put(out, mesh.positions[i]);
         if (!mesh.normals.empty())
             put(out, mesh.normals[i]);
         if (!mesh.uvs.empty())
             put(out, mesh.uvs[i]);
+        if (!mesh.colors.empty() && bytes)
+            put(out, (*bytes)[i]);
+        else if (!mesh.colors.empty())
+            put(out, mesh.colors[i]);
     }
     for (const Triangle& triangle : mesh.triangles) {
         out.push_back(3);
