@@ -6,6 +6,8 @@
 #include "format/gltf_file.h"
 #include "format/gltf_picture.h"
 
+#include <tiny_gltf.h>
+
 #include <bit>
 #include <cmath>
 #include <span>

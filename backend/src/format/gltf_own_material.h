@@ -9,7 +9,9 @@
 
 #include "model/material.h"
 
-#include <tiny_gltf.h>
+namespace tinygltf {
+class Value;
+}
 
 namespace lodestone::format {
 
