@@ -183,7 +183,8 @@ class FileRun:
             try:
                 built = {}
                 if self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests):
-                    built = {"build": self._build(model, store)} if self.job.frames else {}
+                    part = self._build(model, store)
+                    built = {"build": part} if self.job.frames else {}
                 made, used = [], set()
                 for picture, (view, size) in zip(requests, request.frames):
                     made.append(
