@@ -7,6 +7,7 @@
 #include "povray_export/finish.h"
 #include "povray_export/light_writer.h"
 #include "povray_export/number.h"
+#include "povray_export/penumbra.h"
 #include "povray_export/representation_writer.h"
 #include "povray_export/sky_writer.h"
 #include "povray_export/texture_writer.h"
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <span>
 #include <unordered_map>
 
 namespace lodestone::povray {
@@ -283,15 +285,26 @@ private:
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
 
+    /// A sun without its disk where no pixel could tell.
+    Light seen(const Light& light, std::span<const Bound> occluders) const {
+        Light out = light;
+        if (light.kind == LightKind::Sun &&
+            widest_penumbra(light, view_, occluders) <= view_.pixel_error)
+            out.angle = 0;
+        return out;
+    }
+
     std::string scene() {
         std::string objects;
         Bound bound;
+        std::vector<Bound> occluders;
         for (const Use& use : uses_) {
             if (!includes_[use.file].drawn)
                 continue;
             const quality::Node& node = cut_.nodes[use.node];
             const Summary& summary = includes_[use.file].representation->summary;
-            bound = merged(bound, transformed(summary.bound, use.world));
+            occluders.push_back(transformed(summary.bound, use.world));
+            bound = merged(bound, occluders.back());
             objects += "object{" + identifier_of(includes_[use.file].hash) + ' ';
             if (options_.false_color) {
                 append_flat_texture(objects, color_of(summary.kind, node.lod));
@@ -328,7 +341,7 @@ private:
         append_camera(out, view_.camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights)
-                append_light(out, light, bound, options_.antialiasing, problems_);
+                append_light(out, seen(light, occluders), bound, options_.antialiasing, problems_);
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)
