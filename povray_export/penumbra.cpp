@@ -3,15 +3,20 @@
 
 #include "quality/criterion.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace lodestone::povray {
+namespace {
 
-double widest_penumbra(const Light& sun, const View& view, std::span<const Bound> occluders) {
+constexpr double kPi = std::numbers::pi;
+
+double of_sun(const Light& sun, const View& view, std::span<const Bound> occluders) {
     constexpr double kFlattest = 0.1;  // sine of the elevation; below it shadows cross the scene
-    if (!(sun.angle > 0) || occluders.empty())
-        return 0;
     Bound all;
     for (const Bound& bound : occluders)
         all = merged(all, bound);
@@ -25,6 +30,32 @@ double widest_penumbra(const Light& sun, const View& view, std::span<const Bound
         widest = std::max(widest, way * across / quality::pixel_size(view, z));
     }
     return widest;
+}
+
+double of_lamp(const Light& lamp, const View& view) {
+    constexpr double kMagnified = 2;
+    constexpr double kDarkest = 0.004;  // about one step of a display
+    const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * kPi);
+    const double reach = std::sqrt(std::max({shining.x, shining.y, shining.z}) / kDarkest);
+    const double z = std::max(0.0, glm::length(lamp.position - view.camera.position) - reach);
+    return kMagnified * 2 * lamp.radius / quality::pixel_size(view, z);
+}
+
+}  // namespace
+
+double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders) {
+    if (occluders.empty())
+        return 0;
+    switch (light.kind) {
+        case LightKind::Sun:
+            return light.angle > 0 ? of_sun(light, view, occluders) : 0;
+        case LightKind::Point:
+        case LightKind::Spot:
+            return light.radius > 0 ? of_lamp(light, view) : 0;
+        case LightKind::Area:
+            break;
+    }
+    return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace lodestone::povray

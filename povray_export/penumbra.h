@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Penumbra: how wide a sun's soft shadows can be in a picture. Where no pixel could tell, they are
-// drawn sharp: lights are approximated too (dissertation 5.4.1).
+// Penumbra: how wide soft shadows can be in a picture. Where no pixel could tell, they are drawn
+// sharp: lights are approximated too (dissertation 5.4.1).
 #pragma once
 
 #include "model/view.h"
@@ -9,10 +9,11 @@
 
 namespace lodestone::povray {
 
-/// The widest penumbra in pixels that a sun gives in a view of these occluders (world frame): what
-/// stands above the lowest point of all of them by h throws its shadow at most h / sin(elevation)
-/// far, seen no nearer than its bound less that way. 0 for suns without an angle and without
-/// occluders.
-double widest_penumbra(const Light& sun, const View& view, std::span<const Bound> occluders);
+/// The widest penumbra in pixels that a light gives in a view of these occluders (world frame).
+/// Sun: what stands above the lowest point of all of them by h throws its shadow at most
+/// h / sin(elevation) far, seen no nearer than its bound less that way. Point and spot: twice their
+/// size (by occluders a third of the way from the light), seen no nearer than where they still
+/// light. 0 without a size and without occluders; infinite for areas, which are no points anywhere.
+double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders);
 
 }  // namespace lodestone::povray

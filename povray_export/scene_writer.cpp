@@ -285,12 +285,12 @@ private:
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
 
-    /// A sun without its disk where no pixel could tell.
+    /// A light without its size where no pixel could tell.
     Light seen(const Light& light, std::span<const Bound> occluders) const {
+        constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
         Light out = light;
-        if (light.kind == LightKind::Sun &&
-            widest_penumbra(light, view_, occluders) <= view_.pixel_error)
-            out.angle = 0;
+        if (widest_penumbra(light, view_, occluders) <= std::max(kLeast, view_.pixel_error))
+            out.angle = out.radius = 0;
         return out;
     }
 

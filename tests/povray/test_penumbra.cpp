@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <vector>
 
 using namespace lodestone;
@@ -58,6 +59,19 @@ TEST(Penumbra, ATowersIsItsHeightTimesTheAngleInPixelsThere) {
     const double slanted =
         povray::widest_penumbra(sun(0.01, {std::sqrt(0.75), 0, -0.5}), from(1000), scene());
     EXPECT_NEAR(slanted, 0.2 * 640 / 979, 0.001);
+}
+
+TEST(Penumbra, ALampsIsTwiceItsSizeAsNearAsItStillLights) {
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = {0, 0, 5};
+    lamp.power = 4 * std::numbers::pi * std::numbers::pi * 0.4;  // lights 10 m far
+    lamp.radius = 0.1;
+    EXPECT_NEAR(povray::widest_penumbra(lamp, from(1010), scene()), 0.4 * 640 / 1000, 1e-6);
+    lamp.radius = 0;
+    EXPECT_EQ(povray::widest_penumbra(lamp, from(1010), scene()), 0);
+    lamp.kind = LightKind::Area;
+    EXPECT_GT(povray::widest_penumbra(lamp, from(1010), scene()), 1e9);
 }
 
 TEST(Penumbra, NearerAndFlatterIsWider) {
