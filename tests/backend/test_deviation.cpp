@@ -386,12 +386,13 @@ TEST(DeviationTexels, RepaintedTrianglesShowTheRightPartOfTheTexture) {
     const auto repainted = [&](bool whole) {
         Mesh floor = foliage::card(4, 4);
         for (int i = 0; i < 64; ++i) {
+            const int row = i / 8;
             Mesh tile = foliage::card(0.5f, 0.5f);
             for (glm::vec2& uv : tile.uvs)
-                uv = whole ? (uv + glm::vec2(i % 8, i / 8)) / 8.0f
+                uv = whole ? (uv + glm::vec2(i % 8, row)) / 8.0f
                            : (uv + glm::vec2((i * 37) % 8, (i * 53) % 7)) / 8.0f;
             for (const double height : {-0.01, 0.01})
-                append(floor, tile, {glm::dmat3(1.0), {0.5 * (i % 8), 0.5 * (i / 8), height}}, 1);
+                append(floor, tile, {glm::dmat3(1.0), {0.5 * (i % 8), 0.5 * row, height}}, 1);
         }
         measure::Looks palette;
         const std::vector<uint16_t> looks = palette.of(floor, materials);

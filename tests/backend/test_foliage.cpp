@@ -101,8 +101,11 @@ TEST_F(Foliage, WoodHasAStandInThatOneCanSeeThrough) {
     Model model;
     const ObjectIndex tree = add_tree(model, 60, 16);
     std::vector<Placement> placements;
-    for (int i = 0; i < 9; ++i)
-        placements.push_back({tree, models::moved(3.0 * (i % 3), 3.0 * (i / 3), 0), "tree"});
+    placements.reserve(9);
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row)
+            placements.push_back({tree, models::moved(3.0 * column, 3.0 * row, 0), "tree"});
+    }
     model.root = models::add_group(model, "wood", std::move(placements));
     summarize_assemblies(model, bottom_up(model));
     build_in(model, "wood");

@@ -104,7 +104,7 @@ TEST(Ply, IntegerColorsAreDecodedAndFloatsAreLinear) {
             header += "property " + type + " alpha\n";
         std::string body;
         for (const char* at : {"0 0 0 ", "1 0 0 ", "1 1 0 ", "0 1 0 "})
-            body += at + red + " 0 0 " + alpha + "\n";
+            body += text(at, red, " 0 0 ", alpha, '\n');
         return read(ascii(header, kFaces, body + "4 0 1 2 3\n"));
     };
     EXPECT_NEAR(with_colors("uchar", "188", "").colors.at(0).x, 0.503f, 0.001f);

@@ -137,7 +137,7 @@ TEST(Texels, CacheSharesWhatIsTheSameAndForgetsTheLeastUsed) {
             image.pixels.insert(image.pixels.end(), {gray, gray, gray, 1});
         return closest(image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "gray"));
     };
-    const size_t each = 8 * 8 * 4 * sizeof(float);
+    const size_t each = size_t{8} * 8 * 4 * sizeof(float);
     image::TexelCache cache(256, 2 * each);
     const Texture first = one_of(0);
     const image::TexelsPtr kept = cache.of(first);
