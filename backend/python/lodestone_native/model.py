@@ -233,15 +233,8 @@ class Model(Handle):
         role: int = Role.ORDINARY,
         deforms: bool = False,
     ) -> Object:
-        out = Object()
         info = _info(uid, name, role, deforms)
-        slots = (ctypes.c_uint32 * len(materials))(*materials)
-        check(
-            library().lds_model_add_mesh(
-                self.handle, info, mesh.struct(), slots, len(materials), ctypes.byref(out)
-            )
-        )
-        return out
+        return self._add_leaf(library().lds_model_add_mesh, info, mesh.struct(), materials)
 
     def add_strands(
         self,
@@ -253,14 +246,15 @@ class Model(Handle):
         deforms: bool = False,
     ) -> Object:
         """One mesh of a tapered tube for each strand."""
-        out = Object()
         info = _info(uid, name, role, deforms)
+        return self._add_leaf(library().lds_model_add_strands, info, strands.struct(), materials)
+
+    def _add_leaf(
+        self, add: Any, info: structs.ObjectInfo, shape: Any, materials: Sequence[int]
+    ) -> Object:
+        out = Object()
         slots = (ctypes.c_uint32 * len(materials))(*materials)
-        check(
-            library().lds_model_add_strands(
-                self.handle, info, strands.struct(), slots, len(materials), ctypes.byref(out)
-            )
-        )
+        check(add(self.handle, info, shape, slots, len(materials), ctypes.byref(out)))
         return out
 
     def add_group(

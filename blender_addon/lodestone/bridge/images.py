@@ -84,7 +84,10 @@ def _is_there(image: Any) -> bool:
         return False
 
 
-def _mean(image: Any) -> Color | None:
+def read_pixels(image: Any) -> tuple[int, int, array, int, bool] | None:
+    """Its width, height, pixels (array 'f', lowest row first), channels, and whether they are
+    sRGB-encoded, by Blender's own reader; None when it cannot be read. An image that was not loaded
+    is not kept."""
     loaded = image.has_data
     width, height = image.size  # loads it
     channels = image.channels
@@ -96,6 +99,14 @@ def _mean(image: Any) -> Color | None:
     encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
     if not loaded and not image.is_dirty and image.source == "FILE":
         image.buffers_free()
+    return width, height, pixels, channels, encoded
+
+
+def _mean(image: Any) -> Color | None:
+    found = read_pixels(image)
+    if found is None:
+        return None
+    _, _, pixels, channels, encoded = found
     if channels != 4:
         pixels = _with_four_channels(pixels, channels)
     return mean_of_pixels(pixels, encoded)

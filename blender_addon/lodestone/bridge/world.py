@@ -13,7 +13,7 @@ from mathutils import Vector
 from ..core import exr
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
-from .images import ImageHeads, ImageMeans, to_linear
+from .images import ImageHeads, ImageMeans, read_pixels, to_linear
 from .node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
 
@@ -172,17 +172,10 @@ class _Reader:
 
     def _pixels(self, image: Any) -> Any | None:
         """Width, height and linear RGB (array 'f', lowest row first) by Blender's own reader."""
-        loaded = image.has_data
-        width, height = image.size  # loads it
-        channels = image.channels
-        count = width * height * channels
-        if count == 0 or len(image.pixels) != count:
+        found = read_pixels(image)
+        if found is None:
             return None
-        pixels = array("f", bytes(4 * count))
-        image.pixels.foreach_get(pixels)
-        encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
-        if not loaded and not image.is_dirty and image.source == "FILE":
-            image.buffers_free()
+        width, height, pixels, channels, encoded = found
         if encoded:
             table = [to_linear(i / 255.0) for i in range(256)]
             pixels = array("f", (table[min(255, max(0, int(255.0 * p + 0.5)))] for p in pixels))
