@@ -8,6 +8,7 @@
 #include "build/stand_ins.h"
 #include "measure/visible.h"
 #include "ray/scene.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ protected:
 };
 
 void build_in(Model& model, const std::string& name) {
-    const fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "foliage" / name;
+    const fs::path folder = own_scratch() / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     Problems problems;

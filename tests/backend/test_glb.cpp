@@ -7,6 +7,7 @@
 #include "gltf_text.h"
 #include "image/image.h"
 #include "mutate.h"
+#include "scratch.h"
 #include "shapes.h"
 
 #include <cstring>
@@ -18,7 +19,7 @@ namespace {
 using namespace gltf_text;
 
 std::filesystem::path folder() {
-    std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "glb";
+    const std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path / "inner");
     return path;
 }

@@ -6,6 +6,7 @@
 #include "format/format.h"
 #include "gltf_textured.h"
 #include "mutate.h"
+#include "scratch.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ using namespace gltf_text;
 using image::Sampler;
 
 std::filesystem::path folder() {
-    std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "gltf_written";
+    const std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path);
     return path;
 }

@@ -6,6 +6,7 @@
 #include "build/hierarchy.h"
 #include "quality/cut.h"
 #include "ray/scene.h"
+#include "scratch.h"
 #include "segment/json.h"
 
 #include <nlohmann/json.hpp>
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scratch(const std::string& name) {
-    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "hidden" / name;
+    fs::path folder = own_scratch() / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     return folder;

@@ -8,6 +8,7 @@
 #include "build/stand_ins.h"
 #include "quality/cut.h"
 #include "ray/scene.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scratch(const std::string& name) {
-    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "hierarchy" / name;
+    fs::path folder = own_scratch() / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     return folder;

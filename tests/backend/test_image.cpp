@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "image/image.h"
 #include "mutate.h"
+#include "scratch.h"
 
 #include <jpeglib.h>
 #include <png.h>
@@ -23,7 +24,7 @@ namespace lodestone::image {
 namespace {
 
 std::filesystem::path scratch(const std::string& name) {
-    return std::filesystem::path(LODESTONE_TEST_SCRATCH) / ("image_" + name);
+    return own_scratch() / name;
 }
 
 /// A PNG of any layout; `rows` as libpng packs them.

@@ -7,6 +7,7 @@
 #include "format/obj.h"
 #include "image/sampler.h"
 #include "mutate.h"
+#include "scratch.h"
 #include "shapes.h"
 
 #include <cmath>
@@ -18,7 +19,7 @@ namespace {
 const std::string kPoints = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 std::filesystem::path folder() {
-    std::filesystem::path path = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "obj";
+    const std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path / "inner");
     return path;
 }

@@ -4,6 +4,7 @@
 #include "format/format.h"
 #include "format/ply.h"
 #include "mutate.h"
+#include "scratch.h"
 #include "shapes.h"
 
 #include <algorithm>
@@ -136,8 +137,7 @@ TEST(Ply, ColorsComeBackAsBytesOrFloats) {
 }
 
 TEST(Ply, ModelsUseTheirColors) {
-    const std::filesystem::path path =
-        std::filesystem::path(LODESTONE_TEST_SCRATCH) / "colored.ply";
+    const std::filesystem::path path = own_scratch() / "colored.ply";
     Mesh mesh = shapes::quad(1, 1);
     mesh.colors = {{1, 0, 1, 1}, {0, 1, 0, 0}, {0, 0, 1, 1}, {1, 1, 1, 1}};
     write_file(path, write_ply(mesh));

@@ -2,6 +2,7 @@
 // Guards the store: model -> files -> model is identical, nothing outside is trusted, nothing torn.
 #include "backend/models.h"
 #include "base/files.h"
+#include "scratch.h"
 #include "segment/json.h"
 #include "segment/store.h"
 
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scratch(const std::string& name) {
-    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "store" / name;
+    fs::path folder = own_scratch() / name;
     fs::remove_all(folder);
     fs::create_directories(folder.parent_path());
     return folder;

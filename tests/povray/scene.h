@@ -7,6 +7,7 @@
 #include "image/sampler.h"
 #include "povray_export/runner.h"
 #include "povray_export/scene_writer.h"
+#include "scratch.h"
 
 #include <algorithm>
 #include <charconv>
@@ -18,7 +19,7 @@
 namespace lodestone::povray::scenes {
 
 inline std::filesystem::path scratch(const std::string& name) {
-    const auto folder = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray" / name;
+    const auto folder = own_scratch() / name;
     std::filesystem::remove_all(folder);
     return folder;
 }

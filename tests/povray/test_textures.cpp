@@ -47,10 +47,6 @@ glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
 }
 
 /// A folder's name: tests run at the same time.
-std::string this_test() {
-    return testing::UnitTest::GetInstance()->current_test_info()->name();
-}
-
 /// The largest difference of each texture to what its sampler says, in one picture.
 std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
                                 double high = 2.25) {
@@ -58,7 +54,7 @@ std::vector<double> differences(const std::vector<Texture>& textures, double low
     materials.reserve(textures.size());
     for (const Texture& texture : textures)
         materials.push_back(scenes::textured(texture));
-    const scenes::Image image = shown(materials, patch(low, high), this_test());
+    const scenes::Image image = shown(materials, patch(low, high), "scene");
     std::vector<double> worst;
     for (const Texture& texture : textures) {
         const image::Sampler sampler(texture, glm::dvec3(0.0));
@@ -132,9 +128,7 @@ TEST(PovrayTextures, ChangedValuesAndTransparentPicturesAreBaked) {
     textures[2].picture = scenes::picture(2, {{.8, 0, 0, 0}, {0, .6, 0, 1}});
     for (const double difference : differences(textures))
         EXPECT_LE(difference, 0.006);
-    EXPECT_EQ(
-        pictures(std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray" / this_test()).size(),
-        3u);
+    EXPECT_EQ(pictures(own_scratch() / "scene").size(), 3u);
 }
 
 TEST(PovrayTextures, PlainPicturesAreWrittenAsTheyAreOnce) {
@@ -266,7 +260,7 @@ TEST(PovrayTextures, APictureBrighterThanWhiteLightsAsMuch) {
     lamp.emission = {3, 0.5, 0};
     shown({lamp}, patch(), "exr");
     RunOptions how;
-    how.folder = std::filesystem::path(LODESTONE_TEST_SCRATCH) / "povray/exr";
+    how.folder = own_scratch() / "exr";
     how.output = Output::Exr;
     Texture texture;
     texture.picture = image::make_picture(read_file(run(how).picture), ColorSpace::Linear, "lamp");
