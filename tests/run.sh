@@ -46,9 +46,6 @@ export LODESTONE_DATA=${LODESTONE_DATA:-$root/../shared/data}
 export LODESTONE_CACHE=$logs/scratch/cache
 export BLENDER_USER_CONFIG=$logs/scratch/config
 export BLENDER_USER_DATAFILES=$logs/scratch/datafiles
-if [ "$fast" = 1 ]; then
-    export LODESTONE_FAST=1
-fi
 
 # stop NAME LOG: a step without which no test can run has failed.
 stop() {
@@ -120,6 +117,28 @@ ctest_step() {
         --no-tests=error --output-junit "$logs/$name.xml" "$@"
 }
 
+# behind: begins the long work that has no time limits, the sanitized build and clang-tidy, on what
+# the tests in front leave of the processors. Linux shares them between sessions first and looks at
+# nice within one only, so this is a session of its own that asks for little.
+behind() {
+    setsid nice -n 19 bash -c '
+        echo 19 2>/dev/null >/proc/self/autogroup || true
+        cmake --preset sanitize -DLODESTONE_TESTS=ON && ninja -C build/sanitize || exit 1
+        PYTHONPATH=tests timeout --kill-after=10 1500 /usr/bin/python3 tests/run_python.py \
+            --junit "$1/tidy.xml" tests/lint/test_tidy.py >"$1/tidy.log" 2>&1 || true
+    ' behind "$logs" >"$logs/sanitize-build.log" 2>&1 &
+    behind=$!
+    trap 'kill -- "-$behind" 2>/dev/null || true' EXIT
+    behind_start=$SECONDS
+}
+
+# caught_up: waits for it.
+caught_up() {
+    wait "$behind" || stop "The sanitized build" "$logs/sanitize-build.log"
+    trap - EXIT
+    finish tidy $((SECONDS - behind_start))
+}
+
 if [ "$install" = 1 ]; then
     bash samples/install_packages.sh samples/packages.txt tests/packages.txt
 fi
@@ -130,33 +149,28 @@ build release "$logs/build.log" || stop "The build" "$logs/build.log"
 printf '%-12s %4d s\n' build $((SECONDS - start))
 
 shopt -s nullglob
+lint=()
+for file in tests/lint/test_*.py; do
+    [[ $file == */test_tidy.py ]] || lint+=("$file")
+done
 if [ "$fast" = 1 ]; then
     ctest_step backend release --label-exclude povray
-    python_step lint tests/lint/test_*.py
+    python_step lint "${lint[@]}"
     python_step python tests/python/test_*.py
     python_step capi tests/capi/test_*.py
 else
     ctest_step backend release
 
-    # The sanitized build takes what lint leaves of the processor; it is waited for before the
-    # tests that have time limits begin.
-    nice -n 19 bash -c 'cmake --preset sanitize && exec ninja -C build/sanitize' \
-        >"$logs/sanitize-build.log" 2>&1 &
-    sanitize=$!
-    trap 'kill "$sanitize" 2>/dev/null || true' EXIT
-    python_step lint tests/lint/test_*.py
+    python_step lint "${lint[@]}"
     python_step python tests/python/test_*.py
     python_step capi tests/capi/test_*.py
-    start=$SECONDS
-    wait "$sanitize" || stop "The sanitized build" "$logs/sanitize-build.log"
-    trap - EXIT
-    printf '%-12s %4d s   (the rest of the sanitized build)\n' waited $((SECONDS - start))
-    ctest_step sanitize sanitize --label-exclude povray
-
+    behind
     python_step blender tests/blender/test_*.py
     blender_step in-blender tests/blender/blender_test_*.py
     python_step povray tests/povray/test_*.py
     python_step end_to_end tests/end_to_end/test_*.py
+    caught_up
+    ctest_step sanitize sanitize --label-exclude povray
 fi
 
 echo "Logs: build/tests/; $SECONDS s in all"

@@ -324,7 +324,7 @@ Model model_of(const Json& json) {
 }  // namespace
 
 std::string file_of(Hash hash) {
-    return "r/" + hex16(hash) + ".glb";
+    return text("r/", hex16(hash), ".glb");
 }
 
 std::string tileset_text(const Model& model) {
