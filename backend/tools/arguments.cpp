@@ -11,6 +11,11 @@ Arguments::Arguments(const std::vector<std::string>& words,
                      const std::vector<OptionHelp>& options) {
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
+        if (word == "--") {  // what follows are names, however they begin
+            positional_.insert(positional_.end(),
+                               words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end());
+            break;
+        }
         if (word.rfind("--", 0) != 0) {
             positional_.push_back(word);
             continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The `lodestone` command. Exit codes: 0 done, 1 failed, 2 usage, 4 input unreadable, 130 cancelled.
 #include "session.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include <cstdio>
@@ -62,6 +63,8 @@ int run(const std::vector<std::string>& words) {
             continue;
         const std::vector<std::string> rest(words.begin() + 1, words.end());
         for (const std::string& word : rest) {
+            if (word == "--")
+                break;
             if (word == "--help" || word == "-h") {
                 print_help(stdout, verb);
                 return 0;
@@ -81,13 +84,13 @@ int main(int argc, char** argv) {
     try {
         return run(std::vector<std::string>(argv + 1, argv + argc));
     } catch (const UsageError& error) {
-        std::fprintf(stderr, "lodestone: %s\n", error.what());
+        std::fprintf(stderr, "lodestone: %s\n", shown(error.what()).c_str());
         return 2;
     } catch (const Failure& failure) {
-        std::fprintf(stderr, "lodestone: %s\n", failure.what());
+        std::fprintf(stderr, "lodestone: %s\n", shown(failure.what()).c_str());
         return exit_code_of(failure.status);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "lodestone: %s\n", error.what());
+        std::fprintf(stderr, "lodestone: %s\n", shown(error.what()).c_str());
         return 1;
     }
 }

@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include "session.h"
+#include "terminal.h"
 
 #include <nlohmann/json.hpp>
 
@@ -68,7 +69,8 @@ List problems_of(const lds_model* model) {
                                      {"severity", severity},
                                      {"code", problem.code},
                                      {"message", problem.message}});
-        std::fprintf(stderr, "%s: %s: %s\n", severity, problem.object, problem.message);
+        std::fprintf(stderr, "%s: %s: %s\n", severity, shown(problem.object).c_str(),
+                     shown(problem.message).c_str());
     }
     return problems;
 }
@@ -76,7 +78,7 @@ List problems_of(const lds_model* model) {
 void write_report(const std::string* path, const Fields& report) {
     if (path == nullptr)
         return;
-    const std::string temporary = *path + ".tmp";
+    const std::string temporary = temporary_beside(*path);
     {
         std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
         file << json_of(report).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

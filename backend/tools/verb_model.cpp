@@ -2,6 +2,7 @@
 // measure, simplify, build, info.
 #include "report.h"
 #include "session.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -87,9 +88,9 @@ int run_measure(const Arguments& arguments) {
         a.struct_size = sizeof a;
         Progress progress("measuring");
         check(lds_model_measure(model.get(), object, &options, progress.job(), &a));
-        std::printf("%-32.32s %12.6g %12.6g  %8.4g %8.4g %8.4g %5.2f %5.2f %5.2f\n", name.c_str(),
-                    a.visible_area, a.surface_area, a.centroid[0], a.centroid[1], a.centroid[2],
-                    a.color[0], a.color[1], a.color[2]);
+        std::printf("%-32s %12.6g %12.6g  %8.4g %8.4g %8.4g %5.2f %5.2f %5.2f\n",
+                    shown(name, 32).c_str(), a.visible_area, a.surface_area, a.centroid[0],
+                    a.centroid[1], a.centroid[2], a.color[0], a.color[1], a.color[2]);
         objects.emplace_back(Fields{{"name", name},
                                     {"visible_area", a.visible_area},
                                     {"surface_area", a.surface_area},
@@ -209,7 +210,7 @@ int run_info(const Arguments& arguments) {
         const lds_object_summary summary = summary_of(model.get(), object);
         List levels;
         if (i < most)
-            std::printf("%s%s\n", summary.name,
+            std::printf("%s%s\n", shown(summary.name).c_str(),
                         summary.role == LDS_ROLE_ENVIRONMENT ? "  (environment)" : "");
         for (uint32_t lod = 0; lod < summary.representation_count; ++lod) {
             lds_representation level{};

@@ -3,6 +3,7 @@
 #include "cameras.h"
 #include "report.h"
 #include "session.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include <array>
@@ -95,7 +96,7 @@ void deliver(const fs::path& picture, const std::string& out) {
     fs::rename(picture, out, error);
     if (!error)
         return;
-    const std::string beside = out + ".tmp";  // on another disk
+    const std::string beside = temporary_beside(out);  // on another disk
     fs::copy_file(picture, beside, fs::copy_options::overwrite_existing, error);
     if (!error)
         fs::rename(beside, out, error);
@@ -157,9 +158,9 @@ int run_povray(const Arguments& arguments) {
     deliver(picture, *out);
 
     std::printf("%s: %d x %d, camera %s; %llu triangles, largest error %.3f px (%s)\n%.1f s\n",
-                out->c_str(), view.width, view.height, camera.c_str(),
+                out->c_str(), view.width, view.height, shown(camera).c_str(),
                 static_cast<unsigned long long>(summary.triangles), summary.largest_error_px,
-                largest.c_str(), rendered.wall_s);
+                shown(largest).c_str(), rendered.wall_s);
     Fields report = report_of("povray", input);
     report.push_back({"picture", *out});
     report.push_back({"pixel_error", view.pixel_error});

@@ -3,6 +3,7 @@
 #include "cameras.h"
 #include "report.h"
 #include "session.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include <cstdio>
@@ -29,7 +30,7 @@ int run_cut(const Arguments& arguments) {
         static_cast<unsigned long long>(summary.ellipsoid),
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
-        summary.largest_error_name);
+        shown(summary.largest_error_name).c_str());
     Fields report = report_of("cut", input);
     report.push_back({"pixel_error", view.pixel_error});
     report.push_back({"cut", fields_of(summary)});
@@ -38,7 +39,7 @@ int run_cut(const Arguments& arguments) {
         check(lds_cut_choice_copy(cut.get(), choices.data(), choices.size()));
         for (size_t i = 0; i < choices.size(); ++i)
             std::printf("LOD %-2u %8.3f px  %s\n", choices[i].lod, choices[i].error_px,
-                        lds_cut_choice_path(cut.get(), i));
+                        shown(lds_cut_choice_path(cut.get(), i)).c_str());
     }
     report.push_back({"problems", problems_of(model.get())});
     const auto path = arguments.text("json");

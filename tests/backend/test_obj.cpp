@@ -6,12 +6,14 @@
 #include "format/mtl.h"
 #include "format/obj.h"
 #include "image/sampler.h"
+#include "models.h"
 #include "mutate.h"
 #include "scratch.h"
 #include "shapes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <set>
 
 namespace lodestone::format {
 namespace {
@@ -288,6 +290,37 @@ TEST(Obj, NothingOutsideTheFolderIsOpened) {
         const uint32_t material = model.objects[0].representations[0].materials[0];
         EXPECT_EQ(model.materials[material].base_color, glm::dvec3(0.8)) << name;
     }
+}
+
+TEST(Obj, NamesNeverBecomeLines) {
+    const std::string evil = "x\r\nmtllib ../secret.mtl\nusemtl y\\";
+    std::vector<Material> materials(1);
+    materials[0].name = evil;
+    const std::string written = write_obj(shapes::cube(), materials, evil, evil);
+    for (const char* line : {"\nmtllib ../", "\nusemtl y", "\r", "\\\n"})
+        EXPECT_EQ(written.find(line), std::string::npos) << line;
+}
+
+TEST(Obj, AMaterialLibraryIsFoundAgainWhateverItsModelIsCalled) {
+    Model model = models::row_of_balls(2);
+    model.materials[0].base_color = {0.25, 0.5, 1};
+    for (const char* name : {" leading.obj", "two\nlines.obj", "back\\slash.obj", "a #b.obj"}) {
+        write_model(folder() / name, model);
+        Problems problems;
+        const Model back = read_model(folder() / name, problems);
+        EXPECT_TRUE(problems.empty()) << name << ": " << problems[0].message;
+        EXPECT_NEAR(back.materials.back().base_color.y, 0.5, 1e-6) << name;
+    }
+}
+
+TEST(Obj, ThousandsOfMaterialsOfOneNameAreNamedAtOnce) {
+    std::vector<Material> materials(20'000);
+    for (Material& material : materials)
+        material.name = "same";
+    const std::vector<std::string> names = mtl_names(materials);
+    EXPECT_EQ(names.front(), "same");
+    EXPECT_EQ(names.back(), "same_20000");
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
 TEST(Obj, RoundTripIsExactInOrderAndBits) {

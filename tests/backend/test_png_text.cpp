@@ -48,6 +48,12 @@ TEST(PngText, OnlyPrintableAsciiIsWritten) {
     EXPECT_EQ(image::text_of(with, "it"), (TextLines{{"K?", "a?b??"}}));
 }
 
+TEST(PngText, ALineOfTenKilobytesComesBack) {
+    const std::string lengthy(10'000, '%');
+    const std::string with = image::with_text(picture(), {{"Note", lengthy}}, "it");
+    EXPECT_EQ(image::text_of(with, "it"), (TextLines{{"Note", lengthy}}));
+}
+
 TEST(PngText, BadKeywordsAndFilesAreRefused) {
     EXPECT_THROW(image::with_text(picture(), {{"", "x"}}, "it"), Error);
     EXPECT_THROW(image::with_text(picture(), {{std::string(80, 'k'), "x"}}, "it"), Error);

@@ -212,6 +212,34 @@ TEST(Store, ModelComesBackIdentical) {
     EXPECT_EQ(texture.picture, back.materials.back().alpha_texture.picture);
 }
 
+TEST(Store, NamesOfTenKilobytesAndOfAnyBytesAreStored) {
+    const segment::Store store(scratch("names"));
+    Model model = models::row_of_balls(2);
+    const std::string lengthy(10'000, '"');
+    model.objects[0].name = lengthy;
+    model.objects[1].name = "caf\xe9";
+    model.materials.resize(2);
+    model.materials[0].name = lengthy;
+    model.materials[1].name = "\xff\xed\xa0\x80\xc3";
+    store.write(model, {});
+    const Model back = store.read();
+    EXPECT_EQ(back.objects[0].name, lengthy);
+    EXPECT_EQ(back.objects[1].name, "caf\xef\xbf\xbd");
+    EXPECT_EQ(back.materials[0].name, lengthy);
+    EXPECT_EQ(back.materials[1].name.find_first_not_of("\xef\xbf\xbd"), std::string::npos);
+}
+
+TEST(Store, AFolderMayBeCalledLikeTheFileInIt) {
+    const fs::path folder = scratch("called") / "tileset.json";
+    const segment::Store missing(folder);
+    EXPECT_EQ(missing.folder(), folder.parent_path());  // the file, which is not there yet
+    fs::create_directories(folder);
+    segment::Store(folder).write(Model{}, {});
+    EXPECT_TRUE(fs::is_regular_file(folder / "tileset.json"));
+    EXPECT_FALSE(fs::exists(folder.parent_path() / "lock"));
+    EXPECT_TRUE(segment::Store(folder / "tileset.json").read().objects.empty());
+}
+
 TEST(Store, AChangedPictureFileIsNamed) {
     const segment::Store store(scratch("picture"));
     store.write(rich_model(), {});

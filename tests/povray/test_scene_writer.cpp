@@ -220,6 +220,24 @@ TEST(PovrayWriter, NamesOfUsersNeverReachTheText) {
     EXPECT_EQ(count(text, "// a____"), 1u);
 }
 
+TEST(PovrayWriter, NamesOfTenKilobytesAreCutShort) {
+    Builder builder;
+    builder.model.lights.push_back(scenes::sun(1));
+    Material material;
+    material.name = builder.model.lights[0].name = std::string(10'000, '/');
+    const ObjectIndex cube = builder.mesh(shapes::cube(), {builder.material(material)});
+    builder.model.objects[cube].name = std::string(10'000, '*');
+    builder.place(cube, {}, std::string(10'000, '\n'));
+    ExportOptions options;
+    options.folder = scratch("lengthy");
+    Problems problems;
+    scenes::write(builder.finish(), above(), options, problems);
+    const std::string text = scene_text(options.folder) + read_file(includes(options.folder)[0]);
+    EXPECT_LT(text.size(), 6000u);
+    EXPECT_EQ(count(text, std::string(60, '_')), 1u);
+    EXPECT_EQ(count(text, std::string(61, '_')), 0u);
+}
+
 TEST(PovrayWriter, TrianglesWithoutAreaAreLeftOut) {
     Builder builder;
     Mesh mesh = shapes::quad(1, 1);

@@ -56,10 +56,15 @@ std::string read_file(const std::filesystem::path& path, uint64_t limit) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
+    // Short whatever the path's own name is, which may be as long as a file system allows.
     static std::atomic<uint32_t> counter{0};
-    const std::filesystem::path temporary =
-        path.string() + text(".", getpid(), "-", counter++, ".tmp");
-    const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    std::filesystem::path temporary;
+    int file = -1;
+    do {  // a killed process of our number may have left one
+        temporary = path;
+        temporary.replace_filename(text(".lodestone-", getpid(), "-", counter++, ".tmp"));
+        file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (file < 0 && errno == EEXIST);
     if (file < 0)
         fail(Status::Io, "cannot write '", path.string(), "': ", reason(errno));
     int number = 0;

@@ -202,7 +202,8 @@ lds_status lds_model_read(const char* path, lds_model** out_model) {
         require(out_model, "out_model");
         std::unique_ptr<lds_model> model(new_model());
         const std::filesystem::path file(path);
-        if (file.filename() == "tileset.json" || std::filesystem::is_directory(file)) {
+        std::error_code error;
+        if (file.filename() == "tileset.json" || std::filesystem::is_directory(file, error)) {
             model->store.emplace(file);
             model->model = model->store->read();
             model->summarized = true;

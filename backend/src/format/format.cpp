@@ -2,6 +2,7 @@
 #include "format/format.h"
 
 #include "base/files.h"
+#include "base/hash.h"
 #include "format/glb.h"
 #include "format/mtl.h"
 #include "format/obj.h"
@@ -40,6 +41,19 @@ Model model_of(Mesh mesh, const std::string& name) {
     model.root = 0;
     summarize_assemblies(model, bottom_up(model));
     return model;
+}
+
+/// The file of the materials beside an OBJ file, by a name that a line of that can say.
+std::filesystem::path library_of(const std::filesystem::path& path) {
+    std::filesystem::path library = path;
+    library.replace_extension(".mtl");
+    const std::string name = library.filename().string();
+    const bool odd = name.front() == ' ' || std::any_of(name.begin(), name.end(), [](char c) {
+                         return static_cast<unsigned char>(c) < ' ' || c == '\\' || c == '#';
+                     });
+    if (odd)
+        library.replace_filename("materials-" + hex16(Hasher().text(name).result()) + ".mtl");
+    return library;
 }
 
 }  // namespace
@@ -113,8 +127,7 @@ void write_model(const std::filesystem::path& path, const Model& model) {
         write_file(path, write_ply(mesh));
         return;
     }
-    std::filesystem::path library = path;
-    library.replace_extension(".mtl");
+    const std::filesystem::path library = library_of(path);
     const MaterialLibrary written = write_mtl(materials);
     for (const auto& [name, picture] : written.pictures)
         write_file(path.parent_path() / name, picture->bytes);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace lodestone::format {
@@ -119,6 +120,7 @@ private:
 std::vector<std::string> mtl_names(std::span<const Material> materials) {
     std::vector<std::string> names;
     std::set<std::string> taken;
+    std::map<std::string, size_t> counts;  // of equal names: thousands must not be tried in turn
     for (size_t i = 0; i < materials.size(); ++i) {
         std::string name = materials[i].name;
         for (char& c : name) {
@@ -128,8 +130,8 @@ std::vector<std::string> mtl_names(std::span<const Material> materials) {
         if (name.empty())
             name = "material";
         std::string unique = name;
-        for (size_t k = 2; !taken.insert(unique).second; ++k)
-            unique = text(name, "_", k);
+        for (size_t& k = counts[name]; !taken.insert(unique).second;)
+            unique = text(name, "_", ++k + 1);
         names.push_back(std::move(unique));
     }
     return names;

@@ -380,6 +380,16 @@ void put_line(std::string& out, const char* word, const glm::vec<N, float>& valu
     out += '\n';
 }
 
+/// A name that ends no line and begins no other.
+std::string in_one_line(const std::string& name) {
+    std::string out = name;
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '_');
+    if (!out.empty() && out.back() == '\\')
+        out.back() = '_';
+    return out;
+}
+
 }  // namespace
 
 Model read_obj(std::string_view bytes, const std::filesystem::path& path, Problems& problems) {
@@ -391,14 +401,8 @@ std::string write_obj(const Mesh& mesh, std::span<const Material> materials,
     check(mesh);
     std::string out = "# Lodestone\n";
     if (!library.empty())
-        out += "mtllib " + library + '\n';
-    std::string plain = name;
-    std::replace_if(
-        plain.begin(), plain.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; },
-        '_');
-    if (!plain.empty() && plain.back() == '\\')
-        plain.back() = '_';
-    out += "o " + plain + '\n';
+        out += "mtllib " + in_one_line(library) + '\n';
+    out += "o " + in_one_line(name) + '\n';
     for (const glm::vec3& position : mesh.positions)
         put_line<3>(out, "v", position);
     for (const glm::vec2& uv : mesh.uvs)

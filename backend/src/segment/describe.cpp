@@ -227,7 +227,8 @@ Json describe(const Model& model) {
 }  // namespace
 
 std::string description_text(const Model& model) {
-    return describe(model).dump();
+    // Names may be any bytes; JSON holds UTF-8.
+    return describe(model).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace lodestone::segment

@@ -76,8 +76,11 @@ void use_pictures(Material& material, const std::map<Hash, PicturePtr>& pictures
 
 }  // namespace
 
-Store::Store(const fs::path& folder)
-    : folder_(folder.filename() == "tileset.json" ? folder.parent_path() : folder) {}
+Store::Store(const fs::path& folder) : folder_(folder) {
+    std::error_code error;  // a folder may be called so too
+    if (folder.filename() == "tileset.json" && !fs::is_directory(folder, error))
+        folder_ = folder.parent_path();
+}
 
 bool Store::exists() const {
     std::error_code error;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Terminal: names from files, so that they steer no terminal and stay on their line.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace lodestone::tools {
+
+/// The text with '?' for each character that controls a terminal, ends a line or turns the direction
+/// of reading; of at most that many bytes, cut between characters.
+std::string shown(std::string_view text, size_t most = std::string_view::npos);
+
+/// A name of a file that is written beside `path` and then renamed to it.
+std::string temporary_beside(const std::string& path);
+
+}  // namespace lodestone::tools
