@@ -22,7 +22,7 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, process_session  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
 from lodestone.core import motion_file, progress, report, store_path  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
@@ -122,6 +122,7 @@ class FileRun:
             raise Failed(ExitCode.UNREADABLE, f"Blender cannot read the file: {text}") from None
         others = bpy.utils.blend_paths(absolute=True, packed=False, local=False)
         self._tell(inputs={**blend, "others": batch_inputs.stamps(others)})
+        blend_check.repair_names(self.problems)
         blend_check.check_file(self.problems, self.job.trust_scripts)
 
     # ---- Pictures ----
@@ -237,7 +238,7 @@ class FileRun:
             return {**about, **parts, "scene": str(folder / "scene.pov")}
         kept = store_path.scene_folder(store)
         if self.job.keep == "always" and self.job.many_pictures:
-            kept = kept / Path(picture.out).stem
+            kept = kept / file_names.folder_name(picture.out)
         with self._scene_folder(kept) as folder:
             try:
                 made = self._long(
@@ -359,7 +360,7 @@ def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
 
 
 def _replace_by_copy(source: Path, target: Path) -> None:
-    temporary = target.with_name(f".{target.name}-{os.getpid()}")
+    temporary = target.with_name(report.temporary_name(".exr"))
     try:
         shutil.copyfile(source, temporary)
         os.replace(temporary, target)

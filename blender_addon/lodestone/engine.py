@@ -19,6 +19,7 @@ from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
 from .core.picture import SceneFolder, Settings, make_picture
 from .core.problems import ERROR, Problems
+from .core.text import printable, unreadable, valid
 from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
@@ -54,6 +55,8 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
                 run.fail(error.code, str(error))
             except native.LodestoneError as error:
                 run.fail("picture_failed", str(error))
+            except UnicodeDecodeError as error:
+                run.fail("unreadable_name", unreadable(error))
         except Stopped:
             pass
         except native.LodestoneError as error:  # the library itself is missing
@@ -204,12 +207,12 @@ class _Run:
         """No picture: the reason is reported and stays in the panel."""
         self.problems.add("", ERROR, code, text)
         self._remember_check()
-        self.engine.report({"ERROR"}, text)
+        self.engine.report({"ERROR"}, valid(text))
 
     def _report(self):
         self._remember_check()
         for problem in self.problems:
-            print(f"Lodestone: {problem.severity}: {problem.sentence}")
+            print(f"Lodestone: {problem.severity}: {printable(problem.sentence)}")
         wrong = [problem for problem in self.problems.wrong if problem.key not in self.ignored]
         if wrong:
             more = f" (and {len(wrong) - 1} more, see the console)" if len(wrong) > 1 else ""

@@ -10,6 +10,8 @@ import bpy
 
 from .bridge import camera, check, scene
 from .bridge.requirements import NO_CAMERA
+from .core.native import lodestone_native as native
+from .core.text import unreadable
 from .core.work import Stopped
 
 _request = None
@@ -63,6 +65,8 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
                 extraction.model.close()
                 raise
             request.extraction = extraction
+        except UnicodeDecodeError as error:
+            request.error = native.LodestoneError(native.Status.BAD_FILE, unreadable(error))
         except Exception as error:
             if not isinstance(error, (Stopped, CameraMissing)):
                 traceback.print_exc()

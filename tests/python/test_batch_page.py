@@ -9,8 +9,9 @@ from urllib.parse import unquote
 
 import addon_path  # noqa: F401
 from lodestone.core import batch_page, report
-from lodestone.core.batch_rows import printable, rows_of, table, tally
+from lodestone.core.batch_rows import rows_of, table, tally
 from lodestone.core.exit_codes import ExitCode
+from lodestone.core.text import printable
 
 HOSTILE = (
     "<script>alert(1)</script>",

@@ -7,7 +7,8 @@ from typing import Any
 
 import bpy
 
-from ..core.problems import ERROR, Problems
+from ..core.problems import ERROR, INFO, Problems
+from ..core.text import readable
 
 
 def check_file(problems: Problems, scripts_ran: bool) -> None:
@@ -33,19 +34,34 @@ def check_file(problems: Problems, scripts_ran: bool) -> None:
             problems.add(owner, ERROR, "driver_not_run", text)
 
 
+def repair_names(problems: Problems) -> None:
+    """Gives what is called by bytes that are no UTF-8 a name that Blender can tell. Only for a file
+    that is not saved afterwards."""
+    for item in list(_datablocks()):  # renaming sorts them anew
+        try:
+            item.name
+        except UnicodeDecodeError as error:
+            item.name = readable(error.object)
+            text = f'"{item.name}" has a name that is not valid text (UTF-8) in the file'
+            problems.add(item.name, INFO, "unreadable_name", text)
+
+
+def _datablocks() -> Iterator[Any]:
+    for value in bpy.data.bl_rna.properties:
+        if value.type == "COLLECTION":
+            yield from getattr(bpy.data, value.identifier)
+
+
 def _owners_of_scripts() -> Iterator[Any]:
     """Datablocks with drivers that Blender runs as Python: it works out simple ones itself."""
-    for value in bpy.data.bl_rna.properties:
-        if value.type != "COLLECTION":
-            continue
-        for item in getattr(bpy.data, value.identifier):
-            for owner in (
-                item,
-                getattr(item, "node_tree", None),
-                getattr(item, "shape_keys", None),
-            ):
-                animation = getattr(owner, "animation_data", None)
-                for curve in animation.drivers if animation else ():
-                    driver = curve.driver
-                    if driver.type == "SCRIPTED" and not driver.is_simple_expression:
-                        yield item
+    for item in _datablocks():
+        for owner in (
+            item,
+            getattr(item, "node_tree", None),
+            getattr(item, "shape_keys", None),
+        ):
+            animation = getattr(owner, "animation_data", None)
+            for curve in animation.drivers if animation else ():
+                driver = curve.driver
+                if driver.type == "SCRIPTED" and not driver.is_simple_expression:
+                    yield item

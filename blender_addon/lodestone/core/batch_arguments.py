@@ -10,6 +10,7 @@ from . import batch_values
 from .batch_jobs import FileJob, PictureRequest
 from .batch_profile import read_profile
 from .batch_views import ANTIALIAS, VIEW_KEYS, read_views
+from .file_names import LONGEST, fitting, folder_name
 
 KEEP = ("failed", "never", "always")
 _EPILOG = (
@@ -137,7 +138,7 @@ def _job(options: argparse.Namespace, file: Path) -> FileJob:
     several = len(options.files) > 1
     store = options.store or ""
     if store and several:
-        store = str(Path(store) / file.stem)
+        store = str(Path(store) / folder_name(file))
     frames = getattr(options, "frames", None)
     pictures: tuple[PictureRequest, ...] = ()
     if getattr(options, "views", None):
@@ -172,7 +173,7 @@ def _in_folders(
     """The views of one of several files: their names, in a folder of the file's."""
     if not out:
         raise ValueError("--views of several files needs --out, a folder: theirs go into it")
-    folder = Path(out).absolute() / file.stem
+    folder = Path(out).absolute() / folder_name(file)
     moved = tuple(replace(p, out=str(folder / Path(p.out).name)) for p in pictures)
     if len({picture.out for picture in moved}) < len(moved):
         raise ValueError("--views: two pictures have the same name, so they need one file each")
@@ -182,7 +183,8 @@ def _in_folders(
 def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> PictureRequest:
     out = Path(options.out).absolute()
     if in_folder:
-        out = out / (file.stem + (".png" if options.verb == "render" else ""))
+        picture = options.verb == "render"
+        out = out / (fitting(file.stem, LONGEST - 4) + ".png" if picture else folder_name(file))
     elif options.verb == "render" and out.suffix.lower() != ".png":
         raise ValueError(f"--out {options.out}: the picture is a .png")
     return PictureRequest(

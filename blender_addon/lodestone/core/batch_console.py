@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from . import progress
-from .batch_rows import printable
 from .problems import Problem
+from .text import printable
 
 
 class Console:

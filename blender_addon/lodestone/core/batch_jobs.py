@@ -3,10 +3,13 @@
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
+
+from .file_names import LONGEST, fitting
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,8 @@ class PictureRequest:
     def for_frame(self, frame: int) -> "PictureRequest":
         """out.png -> out_0001.png"""
         path = Path(self.out)
-        return replace(self, out=str(path.with_name(f"{path.stem}_{frame:04}{path.suffix}")))
+        name = fitting(f"{path.stem}_{frame:04}", LONGEST - len(os.fsencode(path.suffix)))
+        return replace(self, out=str(path.with_name(name + path.suffix)))
 
 
 @dataclass(frozen=True)

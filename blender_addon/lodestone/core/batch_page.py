@@ -11,9 +11,10 @@ from pathlib import Path
 from urllib.parse import quote
 
 from . import progress
-from .batch_rows import Row, printable, tally
+from .batch_rows import Row, tally
 from .exit_codes import ExitCode
 from .problems import Problem
+from .text import printable
 
 _LARGEST_THUMBNAIL = 200_000
 _MOST_PROBLEMS = 200

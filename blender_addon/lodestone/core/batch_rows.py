@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One row for each file of a run, for the table on the terminal and the page."""
 
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,9 +8,9 @@ from typing import Any
 
 from . import progress
 from .exit_codes import ExitCode
+from .text import printable
 
 _ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # any failure: 0
-_JOINERS = "\u200c\u200d"  # of Persian, Hindi and others
 
 
 @dataclass(frozen=True)
@@ -66,18 +65,6 @@ class Row:
 def rows_of(reports: Iterable[dict[str, Any]]) -> list[Row]:
     """Failed ones first, then what is not done, incomplete and done; else in their order."""
     return sorted(map(Row.of, reports), key=lambda row: _ORDER.get(row.code, 0))
-
-
-def printable(text: str) -> str:
-    """On one line, and without what steers a terminal or turns the direction of reading."""
-
-    def shown(c: str) -> str:
-        if c in "\r\n\t":
-            return " "
-        steers = unicodedata.category(c) in ("Cc", "Cf", "Cs") and c not in _JOINERS
-        return "\ufffd" if steers else c
-
-    return "".join(map(shown, text))
 
 
 def table(rows: Iterable[Row]) -> str:

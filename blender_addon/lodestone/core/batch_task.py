@@ -19,6 +19,7 @@ from .batch_jobs import FileJob
 from .batch_resume import Found
 from .child_log import ChildLog
 from .exit_codes import STATUS, ExitCode
+from .file_names import fitting
 from .locked_folder import LockedFolder
 from .problems import ERROR, Problem
 from .store_levels import INDEX
@@ -262,8 +263,7 @@ class FileTask:
         if self.around.files is None:
             return self._store.with_name(self._store.name + suffix)
         key = hashlib.blake2b(os.fsencode(self.job.file), digest_size=4).hexdigest()
-        stem = os.fsencode(Path(self.job.file).stem)[:200].decode("utf-8", "ignore")
-        return self.around.files / f"{stem}-{key}{suffix}"
+        return self.around.files / f"{fitting(Path(self.job.file).stem, 200)}-{key}{suffix}"
 
     def _end(self, made: dict[str, Any]) -> None:
         """Completes the report by what was there before, and tells of it."""

@@ -3,6 +3,7 @@
 
 import argparse
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,9 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
     out = entry.get("out")
     if not isinstance(out, str) or not out.lower().endswith(".png"):
         raise ValueError(f"{where}: out must name a .png")
+    camera = entry.get("camera") or options.camera
+    if not _possible(out) or not isinstance(camera, str) or not _possible(camera):
+        raise ValueError(f"{where}: out and camera must be text that can be a name")
     antialias = entry.get("antialias", options.antialias)
     if antialias is not None and antialias not in ANTIALIAS:
         raise ValueError(f"{where}: antialias is one of {', '.join(ANTIALIAS)}")
@@ -55,7 +59,7 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
         error = entry.get("pixel_error", options.pixel_error)
         return PictureRequest(
             out=str(Path(out).absolute()),
-            camera=str(entry.get("camera") or options.camera),
+            camera=camera,
             pixel_error=None if error is None else batch_values.pixels(str(error)),
             antialias=antialias,
             false_color=bool(entry.get("false_color", options.false_color)),
@@ -64,6 +68,14 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
         )
     except argparse.ArgumentTypeError as error:
         raise ValueError(f"{where}: {error}") from None
+
+
+def _possible(name: str) -> bool:
+    """JSON can say more than any file or thing can be called."""
+    try:
+        return b"\0" not in os.fsencode(name)
+    except UnicodeEncodeError:
+        return False
 
 
 def size_text(value: Any) -> str:

@@ -3,12 +3,13 @@
 next one. While a folder is in use its owner holds a lock that the system drops when it dies."""
 
 import fcntl
-import hashlib
 import os
 import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+
+from .file_names import fitting
 
 MARK = "in_use"
 _LONGEST = 200  # bytes of a prefix: file names end at 255
@@ -16,11 +17,7 @@ _LONGEST = 200  # bytes of a prefix: file names end at 255
 
 def prefix_of(name: str) -> str:
     """What the names of the folders begin with; short enough for any name of a file."""
-    whole = name + "-"
-    if len(os.fsencode(whole)) <= _LONGEST:
-        return whole
-    short = os.fsencode(name)[:100].decode("utf-8", "ignore")
-    return f"{short}-{hashlib.blake2b(os.fsencode(name), digest_size=8).hexdigest()}-"
+    return fitting(name, _LONGEST) + "-"
 
 
 class LockedFolder:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from . import identity
+from .text import valid
 
 INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)
@@ -73,6 +74,7 @@ class Problems:
     ) -> None:
         """Where `kind` is not given, the word before the quoted name in the message tells it:
         'Material "Bark": ...', 'Shadows of light "Lamp" ...'."""
+        message = valid(message)
         self._take(Problem(name, severity, code, message, kind or _kind(name, message), library))
 
     def _take(self, problem: Problem) -> None:

@@ -81,14 +81,14 @@ def povray_part(report: Any) -> dict[str, Any]:
     }
 
 
-def temporary_name() -> str:
+def temporary_name(ending: str = ".png") -> str:
     """Of a picture that is being written by this process."""
-    return f".lodestone-{os.getpid()}.png"
+    return f".lodestone-{os.getpid()}{ending}"
 
 
 def temporary_owner(name: str) -> int:
     """The process that was writing a picture of that name; 0 of other names."""
-    found = re.fullmatch(r"\.lodestone-(\d{1,9})\.png", name)
+    found = re.fullmatch(r"\.lodestone-(\d{1,9})\.(png|exr)", name)
     return int(found[1]) if found else 0
 
 
@@ -112,7 +112,8 @@ def write(path: str | Path, report: dict[str, Any]) -> None:
     target = Path(path)
     handle, name = tempfile.mkstemp(dir=target.parent or ".", prefix=".report-")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", errors="replace") as file:
+        # What is no UTF-8 in a path becomes JSON's own escape, so that reading gives the path again.
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
             json.dump(report, file, indent=1, ensure_ascii=False)
             file.write("\n")
         os.chmod(name, 0o666 & ~_umask())

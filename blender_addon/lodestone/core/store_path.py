@@ -6,6 +6,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from . import file_names
+
 FOLDER = "lodestone"
 
 
@@ -29,11 +31,12 @@ def store_folder(
     if not blend:
         return cache_folder(environment) / "unsaved"
     path = Path(os.path.abspath(blend))
-    beside = path.parent / FOLDER / path.stem
+    name = file_names.folder_name(path)
+    beside = path.parent / FOLDER / name
     if writable(beside):
         return beside
     key = hashlib.blake2b(os.fsencode(str(path)), digest_size=8).hexdigest()
-    return cache_folder(environment) / f"{path.stem}-{key}"
+    return cache_folder(environment) / f"{file_names.fitting(name, 200)}-{key}"
 
 
 def scene_folder(store: Path) -> Path:

@@ -8,6 +8,7 @@ from ..bridge import ignored, requirements, scene_check
 from ..core import causes, last_check, last_render, store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
+from ..core.text import unreadable
 
 
 def check_scene(context):
@@ -42,6 +43,9 @@ class LODESTONE_OT_check_scene(bpy.types.Operator):
             found = check_scene(context)
         except native.LodestoneError as error:
             self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except UnicodeDecodeError as error:
+            self.report({"ERROR"}, unreadable(error))
             return {"CANCELLED"}
         self.report({"INFO"}, causes.headline(found.split(ignored.keys(context.scene))))
         for area in context.screen.areas if context.screen else ():

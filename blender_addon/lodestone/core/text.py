@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names and paths of others, made fit to be shown."""
+
+import unicodedata
+
+_JOINERS = "\u200c\u200d"  # of Persian, Hindi and others
+_LINES = "\r\n\t\u2028\u2029"
+
+
+def printable(text: str) -> str:
+    """On one line, and without what steers a terminal or turns the direction of reading."""
+
+    def shown(c: str) -> str:
+        if c in _LINES:
+            return " "
+        steers = unicodedata.category(c) in ("Cc", "Cf", "Cs") and c not in _JOINERS
+        return "\ufffd" if steers else c
+
+    return "".join(map(shown, text))
+
+
+def valid(text: str) -> str:
+    """Without what UTF-8, and so Blender, cannot hold: paths may be any bytes."""
+    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+
+
+def readable(name: bytes) -> str:
+    """A name out of a damaged or very old file, whose bytes need not be text."""
+    return name.decode("utf-8", "backslashreplace")
+
+
+def unreadable(error: UnicodeDecodeError) -> str:
+    """What to do where Blender gives no name: it does so only of what is UTF-8."""
+    return f'The name "{readable(error.object)}" is not valid text (UTF-8): rename what has it'
