@@ -19,7 +19,7 @@ from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
 from .core.picture import SceneFolder, Settings, make_picture
 from .core.problems import ERROR, Problems
-from .core.text import printable, unreadable, valid
+from .core.text import printable, sentence, valid
 from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
@@ -56,7 +56,7 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
             except native.LodestoneError as error:
                 run.fail("picture_failed", str(error))
             except UnicodeDecodeError as error:
-                run.fail("unreadable_name", unreadable(error))
+                run.fail("unreadable_name", sentence(error))
         except Stopped:
             pass
         except native.LodestoneError as error:  # the library itself is missing

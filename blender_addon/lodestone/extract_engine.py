@@ -11,7 +11,7 @@ import bpy
 from .bridge import camera, check, scene
 from .bridge.requirements import NO_CAMERA
 from .core.native import lodestone_native as native
-from .core.text import unreadable
+from .core.text import sentence, valid
 from .core.work import Stopped
 
 _request = None
@@ -66,7 +66,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
                 raise
             request.extraction = extraction
         except UnicodeDecodeError as error:
-            request.error = native.LodestoneError(native.Status.BAD_FILE, unreadable(error))
+            request.error = native.LodestoneError(native.Status.BAD_FILE, sentence(error))
         except Exception as error:
             if not isinstance(error, (Stopped, CameraMissing)):
                 traceback.print_exc()
@@ -80,10 +80,12 @@ class CameraMissing(Exception):
 def _frame(depsgraph, name, size, problems):
     """(camera, (width, height)) of one picture."""
     evaluated = depsgraph.scene_eval
-    found = evaluated.objects.get(name) if name else evaluated.camera
+    found = evaluated.camera
+    if name:  # not by get(), which crashes Blender over a name that is no UTF-8
+        found = next((item for item in evaluated.objects if item.name == name), None)
     if found is None or found.type != "CAMERA":
         if name:
-            raise CameraMissing(f'Scene "{evaluated.name}" has no camera "{name}"')
+            raise CameraMissing(f'Scene "{evaluated.name}" has no camera "{valid(name)}"')
         raise CameraMissing(NO_CAMERA.format(evaluated.name))
     frame = camera.Frame.of(evaluated.render)
     if size is not None:

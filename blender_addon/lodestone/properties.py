@@ -64,7 +64,7 @@ class LODESTONE_PG_linked(bpy.types.PropertyGroup):
     its kind, its library's path and its name (the group's own)."""
 
     kind: StringProperty(options={"HIDDEN"})  # "collection" or "object"
-    library: StringProperty(options={"HIDDEN"})
+    library: StringProperty(subtype="FILE_PATH", options={"HIDDEN"})  # may be any bytes
     role: EnumProperty(items=ROLES, default="ORDINARY", options={"HIDDEN"})
 
 

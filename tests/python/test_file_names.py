@@ -14,7 +14,7 @@ from lodestone.core.batch_arguments import jobs, parser
 from lodestone.core.batch_jobs import PictureRequest
 from lodestone.core.file_names import fitting, folder_name
 from lodestone.core.problems import WARNING, Problems
-from lodestone.core.text import printable, unreadable, valid
+from lodestone.core.text import printable, sentence, valid
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
 import hostile_names as hostile  # noqa: E402
@@ -141,8 +141,8 @@ class Text(unittest.TestCase):
         for name in hostile.BYTES:
             with self.assertRaises(UnicodeDecodeError) as caught:
                 name.decode()
-            self.assertIn("rename", unreadable(caught.exception))
-        self.assertIn("caf\\xe9", unreadable(UnicodeDecodeError("utf-8", b"caf\xe9", 3, 4, "")))
+            self.assertIn("rename", sentence(caught.exception))
+        self.assertIn("caf\\xe9", sentence(UnicodeDecodeError("utf-8", b"caf\xe9", 3, 4, "")))
 
 
 if __name__ == "__main__":

@@ -112,7 +112,7 @@ def write(path: str | Path, report: dict[str, Any]) -> None:
     target = Path(path)
     handle, name = tempfile.mkstemp(dir=target.parent or ".", prefix=".report-")
     try:
-        # What is no UTF-8 in a path becomes JSON's own escape, so that reading gives the path again.
+        # What is no UTF-8 in a path becomes JSON's own escape: reading gives the path again
         with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
             json.dump(report, file, indent=1, ensure_ascii=False)
             file.write("\n")

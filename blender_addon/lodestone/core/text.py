@@ -29,6 +29,8 @@ def readable(name: bytes) -> str:
     return name.decode("utf-8", "backslashreplace")
 
 
-def unreadable(error: UnicodeDecodeError) -> str:
-    """What to do where Blender gives no name: it does so only of what is UTF-8."""
-    return f'The name "{readable(error.object)}" is not valid text (UTF-8): rename what has it'
+def sentence(error: Exception) -> str:
+    """What to tell of it. Blender gives names only of what is UTF-8, else a UnicodeDecodeError."""
+    if isinstance(error, UnicodeDecodeError):
+        return f'The name "{readable(error.object)}" is not valid text (UTF-8): rename what has it'
+    return valid(str(error))

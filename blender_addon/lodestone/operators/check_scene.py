@@ -8,7 +8,7 @@ from ..bridge import ignored, requirements, scene_check
 from ..core import causes, last_check, last_render, store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
-from ..core.text import unreadable
+from ..core.text import sentence
 
 
 def check_scene(context):
@@ -45,7 +45,7 @@ class LODESTONE_OT_check_scene(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         except UnicodeDecodeError as error:
-            self.report({"ERROR"}, unreadable(error))
+            self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
         self.report({"INFO"}, causes.headline(found.split(ignored.keys(context.scene))))
         for area in context.screen.areas if context.screen else ():

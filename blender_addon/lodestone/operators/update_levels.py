@@ -16,6 +16,7 @@ from .. import extract_engine
 from ..bridge import decisions
 from ..core import motion_file, progress, store_path, work
 from ..core.native import lodestone_native as native
+from ..core.text import sentence
 
 UNDO_NAME = "Update Levels"
 INTERVAL_S = 0.1
@@ -25,7 +26,7 @@ class NothingThere(Exception):
     """The scope holds nothing with faces that renders show."""
 
 
-FAILURES = (native.LodestoneError, NothingThere, OSError, RuntimeError)
+FAILURES = (native.LodestoneError, NothingThere, OSError, RuntimeError, UnicodeDecodeError)
 _running = None  # the one session in the window
 
 
@@ -197,7 +198,7 @@ class _InWindow:
                 return {"RUNNING_MODAL"}
         session.close(keep=False)
         if error is not None and not isinstance(error, work.Stopped):
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, sentence(error))
         return self.end(context, {"CANCELLED"})
 
     def end(self, context, outcome):
@@ -238,7 +239,7 @@ class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
         try:
             report = update_levels(context, context.scene.lodestone.scope)
         except FAILURES as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
         if not bpy.app.background:
             bpy.ops.ed.undo_push(message=UNDO_NAME)
@@ -252,7 +253,7 @@ class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
             session.start_reading(context)
         except FAILURES as error:
             session.close(keep=False)
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
         _running = session
         return self.begin(context)
