@@ -106,17 +106,6 @@ class Engine(unittest.TestCase):
         self.render()
         self.assertTrue((self.folder / "lodestone" / "file.scene" / "scene.pov").is_file())
 
-    def test_a_border_draws_only_its_part(self):
-        scenes.cube(size=5.0)
-        render = self.scene.render
-        render.use_border = True
-        render.border_min_x, render.border_max_x = 0.25, 0.5
-        render.border_min_y, render.border_max_y = 0.5, 0.75
-        rows = self.render()
-        covered = [(x, y) for y, row in enumerate(rows) for x, p in enumerate(row) if p[3] > 0.5]
-        self.assertTrue(all(16 <= x < 32 and 18 <= y < 27 for x, y in covered))
-        self.assertGreater(len(covered), 40)
-
     def test_every_frame_of_an_animation_is_its_own(self):
         cube = scenes.cube()
         for frame, x in ((1, -2.0), (2, 2.0)):
@@ -138,16 +127,6 @@ class Engine(unittest.TestCase):
 
     def test_without_objects_nothing_is_written(self):
         self.refused("Nothing to render")
-
-    def test_a_missing_povray_is_a_sentence(self):
-        scenes.cube()
-        self.with_environment(LODESTONE_POVRAY="/nowhere/povray")
-        self.refused("/nowhere/povray")
-
-    def test_a_failing_povray_is_a_sentence(self):
-        scenes.cube()
-        self.povray("echo 'Parse Error: no such thing' >&2; exit 1\n")
-        self.refused("no such thing")
 
     def test_a_killed_povray_is_a_sentence(self):
         scenes.cube()

@@ -321,15 +321,6 @@ class CommandLine(unittest.TestCase):
         self.said = done.stdout + done.stderr
         return done.returncode
 
-    def test_a_frame(self):
-        self.assertEqual(self.render(), 0, self.said)
-        self.assertEqual(size_of(self.folder / "frame_0001.png"), (64, 36))
-
-    def test_a_failure_is_no_black_picture(self):
-        self.assertEqual(self.render(LODESTONE_POVRAY="/nowhere/povray"), 1, self.said)
-        self.assertIn("/nowhere/povray", self.said)
-        self.assertFalse((self.folder / "frame_0001.png").exists())
-
     def test_no_camera_and_no_objects_are_failures(self):
         for kind in ("no_camera", "no_objects"):
             self.assertEqual(self.render(kind), 1, self.said)

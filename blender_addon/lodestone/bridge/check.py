@@ -6,7 +6,7 @@ from typing import Any
 
 from mathutils import Matrix
 
-from .leaves import DRAWN, material_slots
+from .leaves import DRAWN, material_slots, undrawn
 from .scene import Extraction
 
 TOLERANCE = 1e-5  # of the largest number in a transform
@@ -26,7 +26,7 @@ def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
     triangles: dict[int, int] = {}
     for instance in depsgraph.object_instances:
         shown = instance.object
-        if shown.type not in DRAWN:
+        if shown.type not in DRAWN or undrawn(shown):
             continue
         names = tuple(m.name if m else "" for m in material_slots(shown))
         matrix = instance.matrix_world

@@ -16,7 +16,7 @@ from mathutils import Matrix
 
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
-from .leaves import DRAWN, UNDRAWN, Leaf, Leaves, Look
+from .leaves import DRAWN, Leaf, Leaves, Look, undrawn
 from .motion import Motion
 from .visibility import Visibility
 
@@ -99,10 +99,11 @@ class Instances:
         if kind == "LIGHT":
             self.lights.append((shown.data, instance.matrix_world.copy(), shown.name))
             return
-        if kind not in DRAWN:
-            if kind in UNDRAWN:
-                text = f'Object "{shown.name}" is left out: {UNDRAWN[kind]} cannot be drawn'
-                self._problems.add(shown.name, ERROR, "object_kind", text)
+        what = undrawn(shown)
+        if what is not None:
+            text = f'Object "{shown.name}" is left out: {what} cannot be drawn'
+            self._problems.add(shown.name, ERROR, "object_kind", text)
+        if what is not None or kind not in DRAWN:
             return
         matrix = instance.matrix_world
         if not math.isfinite(sum(rows(matrix))):

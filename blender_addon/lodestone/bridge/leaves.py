@@ -16,6 +16,17 @@ POINT = "point"
 Color = tuple[float, float, float, float]
 
 
+def undrawn(shown: Any) -> str | None:
+    """What an object shows that cannot be drawn, in the plural. Of a domain of smoke Cycles draws
+    the smoke alone: as a mesh it would be a box around what burns."""
+    if shown.type == "MESH":
+        for modifier in shown.modifiers:
+            if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
+                if modifier.domain_settings.domain_type == "GAS":
+                    return "smoke and fire"
+    return UNDRAWN.get(shown.type)
+
+
 @dataclass(frozen=True)
 class Leaf:
     """An added object, and what it shows by Blender's names."""
