@@ -19,7 +19,7 @@ namespace {
 using namespace gltf_text;
 
 std::filesystem::path folder() {
-    const std::filesystem::path path = own_scratch();
+    std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path / "inner");
     return path;
 }

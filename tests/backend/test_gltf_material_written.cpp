@@ -18,7 +18,7 @@ using namespace gltf_text;
 using image::Sampler;
 
 std::filesystem::path folder() {
-    const std::filesystem::path path = own_scratch();
+    std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path);
     return path;
 }

@@ -21,7 +21,7 @@ namespace {
 const std::string kPoints = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 std::filesystem::path folder() {
-    const std::filesystem::path path = own_scratch();
+    std::filesystem::path path = own_scratch();
     std::filesystem::create_directories(path / "inner");
     return path;
 }
