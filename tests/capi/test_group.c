@@ -125,7 +125,101 @@ static void test_hidden_placements_hide_all_below(void) {
     lds_model_destroy(model);
 }
 
+static void test_many_are_placed_at_once_or_not_at_all(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_object_info info = info_of("many", "Many");
+    lds_object many;
+    EXPECT(lds_model_add_group(model, &info, &many) == LDS_OK);
+    const lds_object children[2] = {cube, cube};
+    const lds_object strangers[2] = {cube, {7, 9}};
+    double places[2][12];
+    memcpy(places[0], kIdentity, sizeof places[0]);
+    memcpy(places[1], kIdentity, sizeof places[1]);
+    places[1][3] = 5;
+    const char* names[2] = {"near", "far"};
+    const uint32_t hidden[2] = {0, LDS_RAY_SHADOW};
+    const uint32_t unknown[2] = {0, 16};
+    const double* rows = &places[0][0];
+    EXPECT(lds_model_add_placements(model, many, 0, NULL, NULL, NULL, NULL) == LDS_OK);
+    EXPECT(lds_model_add_placements(model, cube, 2, children, rows, names, NULL) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_add_placements(model, many, 2, NULL, rows, names, NULL) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_add_placements(model, many, 2, strangers, rows, names, NULL) ==
+           LDS_ERROR_STALE_ID);
+    EXPECT(lds_model_add_placements(model, many, 2, children, rows, names, unknown) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    places[1][7] = NAN;
+    EXPECT(lds_model_add_placements(model, many, 2, children, rows, names, hidden) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "far") != NULL);
+    places[1][7] = 0;
+    EXPECT(lds_model_add_placements(model, many, 2, children, rows, names, hidden) == LDS_OK);
+    EXPECT(lds_model_set_root(model, many) == LDS_OK);
+    lds_occurrence found[3];
+    size_t count = 0;
+    EXPECT(lds_model_occurrence_count(model, &count) == LDS_OK && count == 2);
+    EXPECT(lds_model_occurrence_copy(model, found, 3) == LDS_OK);
+    EXPECT(found[0].world[3] == 0 && found[1].world[3] == 5);
+    uint32_t seen[2] = {9, 9};
+    EXPECT(lds_model_occurrence_hidden(model, seen, 2) == LDS_OK);
+    EXPECT(seen[0] == 0 && seen[1] == LDS_RAY_SHADOW);
+    lds_model_destroy(model);
+}
+
+static void test_faces_become_triangles(void) {
+    const uint32_t corners[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4,
+                                  1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+    const uint32_t starts[6] = {0, 4, 8, 12, 16, 20};
+    lds_faces_view faces;
+    memset(&faces, 0, sizeof faces);
+    faces.struct_size = sizeof faces;
+    faces.positions = &kPositions[0][0];
+    faces.vertex_count = 8;
+    faces.corner_vertices = corners;
+    faces.corner_count = 24;
+    faces.face_starts = starts;
+    faces.face_count = 6;
+    EXPECT(lds_faces_largest(starts, 6, 24) == 4);
+    EXPECT(lds_faces_largest(starts, 6, 26) == 6);
+    EXPECT(lds_faces_largest(starts, 6, 19) == 0);
+    EXPECT(lds_faces_largest(NULL, 6, 24) == 0);
+    lds_object cube, made;
+    lds_model* model = two_cubes(&cube);
+    const lds_object_info info = info_of("faces", "Faces");
+    faces.vertex_count = 7;
+    EXPECT(lds_model_add_faces(model, &info, &faces, NULL, 0, &made) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strcmp(lds_last_error_text(), "corner 7 uses vertex 7 of 7") == 0);
+    faces.vertex_count = 8;
+    faces.face_starts = NULL;
+    EXPECT(lds_model_add_faces(model, &info, &faces, NULL, 0, &made) == LDS_ERROR_INVALID_ARGUMENT);
+    faces.face_starts = starts;
+    faces.corner_vertices = NULL;
+    EXPECT(lds_model_add_faces(model, &info, &faces, NULL, 0, &made) == LDS_ERROR_INVALID_ARGUMENT);
+    faces.corner_vertices = corners;
+    EXPECT(lds_model_add_faces(model, &info, &faces, NULL, 0, &made) == LDS_OK);
+    lds_representation a;
+    memset(&a, 0, sizeof a);
+    a.struct_size = sizeof a;
+    EXPECT(lds_model_representation(model, made, 0, &a) == LDS_OK);
+    EXPECT(a.triangles == 12);
+    float uvs[24][2] = {{9, 9}};
+    lds_uv_projection flat;
+    memset(&flat, 0, sizeof flat);
+    flat.struct_size = sizeof flat;
+    memcpy(flat.to_space, kIdentity, sizeof flat.to_space);
+    flat.slot = -1;
+    EXPECT(lds_faces_project_uvs(&faces, &flat, &uvs[0][0]) == LDS_OK);
+    for (int i = 0; i < 24; ++i)
+        EXPECT(uvs[i][0] == kPositions[corners[i]][0] && uvs[i][1] == kPositions[corners[i]][1]);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
 int main(void) {
+    test_many_are_placed_at_once_or_not_at_all();
+    test_faces_become_triangles();
     test_strands_become_tubes();
     test_equal_meshes_are_one_content();
     test_grouping_keeps_every_occurrence();

@@ -223,6 +223,31 @@ typedef struct lds_mesh_view {
                                     counts as the nearest slot (Blender's rule) */
 } lds_mesh_view;
 
+/* A mesh of polygons as modelers keep it: the backend makes triangles and normals of it. A corner is
+   one vertex of one face; those of a face follow each other around it, those of the next face follow
+   them. */
+typedef struct lds_faces_view {
+    uint32_t struct_size;
+    const float* positions; /* float32[vertex_count][3] metres */
+    size_t vertex_count;
+    const uint32_t* corner_vertices; /* uint32[corner_count], < vertex_count */
+    size_t corner_count;
+    const uint32_t* face_starts; /* uint32[face_count]: first corner of each, rising from 0; null:
+                                    all have three */
+    size_t face_count;
+    const uint32_t* triangles; /* uint32[triangle_count][3] corners, in the order of the faces; null:
+                                  no face has more than four */
+    size_t triangle_count;
+    const uint8_t* face_smooth; /* uint8[face_count]; null: all flat */
+    const int32_t* face_slots;  /* int32[face_count]; null: all 0. Outside 0...material_count-1
+                                   counts as the nearest slot */
+    const float* corner_normals; /* float32[corner_count][3]; null: smooth faces have at each vertex
+                                    the mean of the faces' normals there, weighted by their angles.
+                                    Given ones that are these but for rounding become these */
+    const float* corner_uvs;     /* float32[corner_count][2]; null: none */
+    const float* corner_colors;  /* float32[corner_count][4] linear RGBA, straight; null: white */
+} lds_faces_view;
+
 /* Hair or grass: lines with radii. Points of all strands in a row, each strand's root first. */
 typedef struct lds_strands_view {
     uint32_t struct_size;
@@ -381,11 +406,21 @@ LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* 
    float32[vertex_count][2]); corners of other slots are left as they are. Not finite ones become 0. */
 LDS_API lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh,
                                         const lds_uv_projection* projection, float* out_corner_uvs);
+LDS_API lds_status lds_faces_project_uvs(const lds_faces_view* faces,
+                                         const lds_uv_projection* projection,
+                                         float* out_corner_uvs);
+/* The most corners that a face has (as in lds_faces_view; above four the faces need triangles), or 0
+   when the starts are not rising. */
+LDS_API size_t lds_faces_largest(const uint32_t* face_starts, size_t face_count,
+                                 size_t corner_count);
 /* Adds an object with one mesh; materials[slot] are indices of added materials (none: a grey one).
    Vertices that are not numbers, and the triangles that use them, are left out with a problem. */
 LDS_API lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
                                       const lds_mesh_view* mesh, const uint32_t* materials,
                                       size_t material_count, lds_object* out_object);
+LDS_API lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
+                                       const lds_faces_view* faces, const uint32_t* materials,
+                                       size_t material_count, lds_object* out_object);
 /* Adds an object with one mesh: a closed, tapered, smooth tube a strand, through its points in a
    curve; three-sided, as wide on average as a round one. What has no length or no radius draws
    nothing; runs that are straight to a quarter of the strand's radius cost one segment. */
@@ -398,6 +433,11 @@ LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* 
 /* Places child in group. An object never becomes its own descendant: found when it is used. */
 LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
                                            const double transform[12], const char* name);
+/* Places many, in this order: children[count], transforms float64[count][12], names[count] (UTF-8), and
+   the ray classes (lds_ray_class bits) each is hidden from as below; null: none is. All or none. */
+LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
+                                            const lds_object* children, const double* transforms,
+                                            const char* const* names, const uint32_t* hidden);
 /* Hides a group's newest placement, with all below it, from the ray classes in the mask (lds_ray_class
    bits). Groups with something hidden in them are drawn by their children, never by stand-ins. */
 LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,

@@ -6,6 +6,7 @@ call does, and says in one sentence when it cannot.
 """
 
 from .bake import BakeStep
+from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
 from .cut import Cut
 from .enums import (
     AlphaMode,
@@ -37,10 +38,8 @@ from .measure import surface_inertia
 from .model import (
     BuildOptions,
     MeasureOptions,
-    MeshBuffers,
     Model,
     SimplifyOptions,
-    StrandBuffers,
     texture,
 )
 from .povray import (
@@ -65,6 +64,7 @@ __all__ = [
     "Channel",
     "Cut",
     "Extension",
+    "FaceBuffers",
     "Image",
     "Job",
     "Kind",
@@ -91,6 +91,7 @@ __all__ = [
     "image_read",
     "image_size",
     "image_write_png",
+    "largest_face",
     "library_path",
     "povray_empty_bytes",
     "povray_export",

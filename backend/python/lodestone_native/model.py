@@ -4,99 +4,18 @@
 import ctypes
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from . import structs
 from .bake import BakeStep, bake
+from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, address, count
 from .handle import Handle
 from .enums import Channel, Extension, Role
 from .job import Job
 from .library import check, library
 from .structs import Object, record, text_in
 from .view import Camera, Light, Vector
-
-
-@dataclass
-class MeshBuffers:
-    """A triangle mesh in flat buffers of 4-byte items (array.array 'f', 'i' or 'I').
-
-    positions [vertex][3], triangles [triangle][3]; normals and uvs belong to corners: entry
-    corners[3 t + c] is that of corner c of triangle t (None: corners = triangles).
-    """
-
-    positions: array
-    triangles: array
-    corners: array | None = None
-    corner_normals: array | None = None  # [corner][3]; None: flat shaded
-    corner_uvs: array | None = None  # [corner][2]
-    corner_colors: array | None = None  # [corner][4] linear RGBA, straight
-    slots: array | None = None  # [triangle]
-
-    def struct(self) -> structs.MeshView:
-        """Points into the buffers: keep them until the call is over. Raises ValueError when the
-        lengths do not fit together, so that the library never reads past an end."""
-        vertices = _count("positions", self.positions, 3)
-        triangles = _count("triangles", self.triangles, 3)
-        if self.corners is not None and _count("corners", self.corners, 3) != triangles:
-            raise ValueError("corners and triangles differ in length")
-        counts = set()
-        if self.corner_normals is not None:
-            counts.add(_count("corner_normals", self.corner_normals, 3))
-        if self.corner_uvs is not None:
-            counts.add(_count("corner_uvs", self.corner_uvs, 2))
-        if self.corner_colors is not None:
-            counts.add(_count("corner_colors", self.corner_colors, 4))
-        if self.corners is None:
-            counts.add(vertices)
-        if len(counts) > 1:
-            raise ValueError("normals, uvs and colors differ in their number of corners")
-        if self.slots is not None and _count("slots", self.slots, 1) != triangles:
-            raise ValueError("slots and triangles differ in length")
-        return structs.MeshView(
-            positions=_address(self.positions),
-            vertex_count=vertices,
-            triangles=_address(self.triangles),
-            triangle_count=triangles,
-            corners=_address(self.corners),
-            corner_count=counts.pop() if counts else 0,
-            corner_normals=_address(self.corner_normals),
-            corner_uvs=_address(self.corner_uvs),
-            corner_colors=_address(self.corner_colors),
-            slots=_address(self.slots),
-        )
-
-
-@dataclass
-class StrandBuffers:
-    """Hair or grass in flat buffers of 4-byte items: points [point][3] and radii [point] of all
-    strands in a row, each strand's root first; counts [strand] points of each."""
-
-    points: array
-    radii: array
-    counts: array
-    slots: array | None = None  # [strand]
-    uvs: array | None = None  # [strand][2], of the surface at the root
-
-    def struct(self) -> structs.StrandsView:
-        """As MeshBuffers.struct()."""
-        points = _count("points", self.points, 3)
-        strands = _count("counts", self.counts, 1)
-        if _count("radii", self.radii, 1) != points:
-            raise ValueError("points and radii differ in length")
-        if self.slots is not None and _count("slots", self.slots, 1) != strands:
-            raise ValueError("slots and counts differ in length")
-        if self.uvs is not None and _count("uvs", self.uvs, 2) != strands:
-            raise ValueError("uvs and counts differ in length")
-        return structs.StrandsView(
-            points=_address(self.points),
-            radii=_address(self.radii),
-            point_count=points,
-            counts=_address(self.counts),
-            strand_count=strands,
-            slots=_address(self.slots),
-            uvs=_address(self.uvs),
-        )
 
 
 IDENTITY_MAPPING = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -179,14 +98,14 @@ class Model(Handle):
     ) -> int:
         """A PNG, JPEG or EXR by path or content, or pixels [height][width][4] (array 'f', lowest
         row first, straight alpha). linear: linear color or data, else sRGB. Its index."""
-        if pixels is not None and _count("pixels", pixels, 4) != size[0] * size[1]:
+        if pixels is not None and count("pixels", pixels, 4) != size[0] * size[1]:
             raise ValueError("the pixels do not fit the size of the picture")
         picture = structs.Picture(
             name=text_in(name),
             path=text_in(path),
             bytes=data,
             byte_count=len(data) if data is not None else 0,
-            pixels=_address(pixels),
+            pixels=address(pixels),
             width=size[0],
             height=size[1],
             linear=int(linear),
@@ -236,6 +155,18 @@ class Model(Handle):
         info = _info(uid, name, role, deforms)
         return self._add_leaf(library().lds_model_add_mesh, info, mesh.struct(), materials)
 
+    def add_faces(
+        self,
+        uid: str,
+        name: str,
+        faces: FaceBuffers,
+        materials: Sequence[int] = (),
+        role: int = Role.ORDINARY,
+        deforms: bool = False,
+    ) -> Object:
+        info = _info(uid, name, role, deforms)
+        return self._add_leaf(library().lds_model_add_faces, info, faces.struct(), materials)
+
     def add_strands(
         self,
         uid: str,
@@ -278,6 +209,26 @@ class Model(Handle):
         check(library().lds_model_add_placement(self.handle, group, child, rows, text_in(name)))
         if hidden:
             check(library().lds_model_hide_placement(self.handle, group, hidden))
+
+    def add_placements(
+        self, group: Object, placements: Sequence[tuple[Object, Sequence[float], str, int]]
+    ) -> None:
+        """(child, transform, name, hidden) each, as add_placement() takes them; all or none."""
+        number = len(placements)
+        rows = array("d", chain.from_iterable(place for _, place, _, _ in placements))
+        if len(rows) != 12 * number:
+            raise ValueError("a transform has other than 12 numbers")
+        check(
+            library().lds_model_add_placements(
+                self.handle,
+                group,
+                number,
+                (Object * number)(*(child for child, _, _, _ in placements)),
+                rows.buffer_info()[0] if number else None,
+                (ctypes.c_char_p * number)(*(text_in(name) for _, _, name, _ in placements)),
+                (ctypes.c_uint32 * number)(*(hidden for _, _, _, hidden in placements)),
+            )
+        )
 
     def group_by_position(self, group: Object, most_children: int = 64) -> int:
         """Gives a group of more children groups of neighbors; returns how many were added."""
@@ -429,15 +380,3 @@ def _changed(options: Any, changes: dict[str, Any]) -> Any:
             raise TypeError(f"{type(options).__name__} has no {name}")
         setattr(options, name, value)
     return options
-
-
-def _count(name: str, buffer: array, width: int) -> int:
-    if buffer.itemsize != 4:
-        raise ValueError(f"{name} needs 4-byte items, not {buffer.itemsize}")
-    if len(buffer) % width:
-        raise ValueError(f"{name} has {len(buffer)} items, not a multiple of {width}")
-    return len(buffer) // width
-
-
-def _address(buffer: array | None) -> int | None:
-    return None if buffer is None else buffer.buffer_info()[0] or None

@@ -155,6 +155,25 @@ class MeshView(Sized):
     ]
 
 
+class FacesView(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("positions", c_void_p),
+        ("vertex_count", c_size_t),
+        ("corner_vertices", c_void_p),
+        ("corner_count", c_size_t),
+        ("face_starts", c_void_p),
+        ("face_count", c_size_t),
+        ("triangles", c_void_p),
+        ("triangle_count", c_size_t),
+        ("face_smooth", c_void_p),
+        ("face_slots", c_void_p),
+        ("corner_normals", c_void_p),
+        ("corner_uvs", c_void_p),
+        ("corner_colors", c_void_p),
+    ]
+
+
 class StrandsView(Sized):
     _fields_ = [
         ("struct_size", c_uint32),

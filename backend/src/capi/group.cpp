@@ -4,6 +4,9 @@
 #include "capi/handles.h"
 #include "group/position.h"
 
+#include <algorithm>
+#include <iterator>
+
 using namespace lodestone;
 using namespace lodestone::capi;
 
@@ -16,6 +19,31 @@ Assembly& own_assembly(Object& group) {
     if (held.use_count() != 1)
         held = std::make_shared<Assembly>(*held);
     return const_cast<Assembly&>(*held);
+}
+
+Assembly& group_at(lds_model& model, lds_object group) {
+    Object& into = model.at(group);
+    if (!into.group())
+        fail(Status::InvalidArgument, "'", into.name, "' is not a group");
+    return own_assembly(into);
+}
+
+Placement placement_of(const lds_model& model, lds_object child, const double* transform,
+                       const char* name) {
+    Placement placement;
+    placement.object = model.index_of(child);
+    placement.transform = Affine::from_rows(transform);
+    placement.name = name_of(name);
+    if (!placement.transform.finite())
+        fail(Status::InvalidArgument, "the transform of '", placement.name,
+             "' holds numbers that are not finite");
+    return placement;
+}
+
+RayMask ray_mask(uint32_t ray_classes) {
+    if (ray_classes > kAllRays)
+        fail(Status::InvalidArgument, "ray classes ", ray_classes, " are unknown");
+    return static_cast<RayMask>(ray_classes);
 }
 
 }  // namespace
@@ -37,17 +65,31 @@ lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_objec
     return guard([&] {
         require(model, "model");
         require(transform, "transform");
-        Object& into = model->at(group);
-        Placement placement;
-        placement.object = model->index_of(child);
-        placement.transform = Affine::from_rows(transform);
-        placement.name = name_of(name);
-        if (!into.group())
-            fail(Status::InvalidArgument, "'", into.name, "' is not a group");
-        if (!placement.transform.finite())
-            fail(Status::InvalidArgument, "the transform of '", placement.name,
-                 "' holds numbers that are not finite");
-        own_assembly(into).placements.push_back(std::move(placement));
+        Assembly& into = group_at(*model, group);
+        into.placements.push_back(placement_of(*model, child, transform, name));
+        model->summarized = false;
+    });
+}
+
+lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
+                                    const lds_object* children, const double* transforms,
+                                    const char* const* names, const uint32_t* hidden) {
+    return guard([&] {
+        require(model, "model");
+        Assembly& into = group_at(*model, group);
+        if (count == 0)
+            return;
+        require(children, "children");
+        require(transforms, "transforms");
+        require(names, "names");
+        std::vector<Placement> added;
+        added.reserve(count);
+        for (size_t i = 0; i < count; ++i) {
+            added.push_back(placement_of(*model, children[i], transforms + 12 * i, names[i]));
+            if (hidden != nullptr)
+                added.back().hidden = ray_mask(hidden[i]);
+        }
+        std::move(added.begin(), added.end(), std::back_inserter(into.placements));
         model->summarized = false;
     });
 }
@@ -56,11 +98,10 @@ lds_status lds_model_hide_placement(lds_model* model, lds_object group, uint32_t
     return guard([&] {
         require(model, "model");
         Object& into = model->at(group);
-        if (ray_classes > kAllRays)
-            fail(Status::InvalidArgument, "ray classes ", ray_classes, " are unknown");
+        const RayMask mask = ray_mask(ray_classes);
         if (!into.group() || into.representations[0].assembly().placements.empty())
             fail(Status::InvalidArgument, "'", into.name, "' places nothing");
-        own_assembly(into).placements.back().hidden = static_cast<RayMask>(ray_classes);
+        own_assembly(into).placements.back().hidden = mask;
         model->summarized = false;
     });
 }

@@ -5,6 +5,7 @@
 #include "lodestone/lodestone.h"
 
 #include "build/settings.h"
+#include "model/faces.h"
 #include "quality/cut.h"
 #include "segment/store.h"
 
@@ -51,6 +52,8 @@ glm::dvec3 vector(const double values[3], const char* what);
 void copy(const glm::dvec3& from, double to[3]);
 std::string name_of(const char* text);
 View view_of(const lds_view* view);
+/// Views into the caller's memory; throws for lengths and indices that do not fit.
+Faces faces_of(const lds_faces_view* view);
 lds_model* new_model();
 /// Adds an object of that uid; throws when the uid is empty or taken.
 ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);

@@ -31,19 +31,84 @@ void check_indices(const lds_mesh_view& mesh, const uint32_t* corners, size_t co
     }
 }
 
+/// Writes the coordinates of one slot's corners.
+class Projector {
+public:
+    Projector(const lds_uv_projection* projection, const float* positions, float* out_corner_uvs)
+        : given_(checked(projection, "projection")), positions_(positions), out_(out_corner_uvs) {
+        require(out_corner_uvs, "out_corner_uvs");
+        if (given_.projection < LDS_PROJECTION_FLAT || given_.projection > LDS_PROJECTION_TUBE)
+            fail(Status::InvalidArgument, "projection ", given_.projection, " is unknown");
+        to_space_ = Affine::from_rows(given_.to_space);
+        if (!to_space_.finite())
+            fail(Status::InvalidArgument, "projection.to_space holds numbers that are not finite");
+        points_ = given_.points != nullptr ? given_.points : positions;
+        last_ = static_cast<int32_t>(std::max(given_.slot_count, 1u)) - 1;
+    }
+
+    void write(int32_t slot, const uint32_t vertices[3], const uint32_t corners[3]) const {
+        if (given_.slot >= 0 && std::clamp(slot, 0, last_) != given_.slot)
+            return;
+        const glm::dvec3 a = point_at(positions_, vertices[0]);
+        const glm::dvec3 normal = glm::cross(point_at(positions_, vertices[1]) - a,
+                                             point_at(positions_, vertices[2]) - a);
+        const std::array<glm::dvec2, 3> uvs = project(
+            static_cast<Projection>(given_.projection),
+            {to_space_(point_at(points_, vertices[0])), to_space_(point_at(points_, vertices[1])),
+             to_space_(point_at(points_, vertices[2]))},
+            normal);
+        for (size_t i = 0; i < 3; ++i) {
+            float* to = out_ + 2 * size_t{corners[i]};
+            to[0] = std::isfinite(uvs[i].x) ? static_cast<float>(uvs[i].x) : 0.0f;
+            to[1] = std::isfinite(uvs[i].y) ? static_cast<float>(uvs[i].y) : 0.0f;
+        }
+    }
+
+private:
+    const lds_uv_projection& given_;
+    const float* positions_;
+    const float* points_ = nullptr;
+    float* out_;
+    Affine to_space_;
+    int32_t last_ = 0;
+};
+
+template <typename T>
+std::span<const T> span_of(const T* values, size_t count) {
+    return values == nullptr ? std::span<const T>() : std::span<const T>(values, count);
+}
+
 }  // namespace
+
+Faces lodestone::capi::faces_of(const lds_faces_view* view) {
+    const lds_faces_view& given = checked(view, "faces");
+    if (given.corner_count > 0) {
+        require(given.positions, "faces.positions");
+        require(given.corner_vertices, "faces.corner_vertices");
+    }
+    if (given.face_starts == nullptr && given.face_count != given.corner_count / 3)
+        fail(Status::InvalidArgument, given.face_count, " faces of ", given.corner_count,
+             " corners are not triangles");
+    Faces out;
+    out.positions = given.positions;
+    out.vertex_count = given.vertex_count;
+    out.vertices = span_of(given.corner_vertices, given.corner_count);
+    out.starts = span_of(given.face_starts, given.face_count);
+    out.triangles = span_of(given.triangles, 3 * given.triangle_count);
+    out.smooth = span_of(given.face_smooth, given.face_count);
+    out.slots = span_of(given.face_slots, given.face_count);
+    out.normals = given.corner_normals;
+    out.uvs = given.corner_uvs;
+    out.colors = given.corner_colors;
+    check(out);
+    return out;
+}
 
 lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh, const lds_uv_projection* projection,
                                 float* out_corner_uvs) {
     return guard([&] {
         const lds_mesh_view& view = checked(mesh, "mesh");
-        const lds_uv_projection& given = checked(projection, "projection");
-        require(out_corner_uvs, "out_corner_uvs");
-        if (given.projection < LDS_PROJECTION_FLAT || given.projection > LDS_PROJECTION_TUBE)
-            fail(Status::InvalidArgument, "projection ", given.projection, " is unknown");
-        const Affine to_space = Affine::from_rows(given.to_space);
-        if (!to_space.finite())
-            fail(Status::InvalidArgument, "projection.to_space holds numbers that are not finite");
+        const Projector projector(projection, view.positions, out_corner_uvs);
         if (view.triangle_count == 0)
             return;
         require(view.positions, "mesh.positions");
@@ -51,26 +116,29 @@ lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh, const lds_uv_projecti
         const uint32_t* corners = view.corners != nullptr ? view.corners : view.triangles;
         check_indices(view, corners,
                       view.corners != nullptr ? view.corner_count : view.vertex_count);
-        const float* points = given.points != nullptr ? given.points : view.positions;
-        const int32_t last = static_cast<int32_t>(std::max(given.slot_count, 1u)) - 1;
-        for (size_t t = 0; t < view.triangle_count; ++t) {
-            const int32_t slot = view.slots != nullptr ? std::clamp(view.slots[t], 0, last) : 0;
-            if (given.slot >= 0 && slot != given.slot)
-                continue;
-            const uint32_t* triangle = view.triangles + 3 * t;
-            const glm::dvec3 a = point_at(view.positions, triangle[0]);
-            const glm::dvec3 normal = glm::cross(point_at(view.positions, triangle[1]) - a,
-                                                 point_at(view.positions, triangle[2]) - a);
-            const std::array<glm::dvec2, 3> uvs = project(
-                static_cast<Projection>(given.projection),
-                {to_space(point_at(points, triangle[0])), to_space(point_at(points, triangle[1])),
-                 to_space(point_at(points, triangle[2]))},
-                normal);
-            for (size_t i = 0; i < 3; ++i) {
-                float* to = out_corner_uvs + 2 * size_t{corners[3 * t + i]};
-                to[0] = std::isfinite(uvs[i].x) ? static_cast<float>(uvs[i].x) : 0.0f;
-                to[1] = std::isfinite(uvs[i].y) ? static_cast<float>(uvs[i].y) : 0.0f;
-            }
+        for (size_t t = 0; t < view.triangle_count; ++t)
+            projector.write(view.slots != nullptr ? view.slots[t] : 0, view.triangles + 3 * t,
+                            corners + 3 * t);
+    });
+}
+
+lds_status lds_faces_project_uvs(const lds_faces_view* faces, const lds_uv_projection* projection,
+                                 float* out_corner_uvs) {
+    return guard([&] {
+        const Faces given = faces_of(faces);
+        const Projector projector(projection, given.positions, out_corner_uvs);
+        const FaceTriangles triangles = triangulated(given);
+        for (size_t t = 0; t < triangles.corners.size(); ++t) {
+            const Triangle& at = triangles.corners[t];
+            const uint32_t corners[3] = {at.x, at.y, at.z};
+            const uint32_t vertices[3] = {given.vertices[at.x], given.vertices[at.y],
+                                          given.vertices[at.z]};
+            projector.write(given.slots.empty() ? 0 : given.slots[triangles.faces[t]], vertices,
+                            corners);
         }
     });
+}
+
+size_t lds_faces_largest(const uint32_t* face_starts, size_t face_count, size_t corner_count) {
+    return face_starts == nullptr ? 0 : largest_face({face_starts, face_count}, corner_count);
 }

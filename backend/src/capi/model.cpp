@@ -119,12 +119,13 @@ lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&&
         finest.materials.push_back(static_cast<uint32_t>(model.model.materials.size()));
         model.model.materials.emplace_back();
     }
-    auto& held = model.meshes[hash_of(mesh)];
+    const Hash hash = hash_of(mesh);
+    auto& held = model.meshes[hash];
     std::shared_ptr<const Mesh> made = held.lock();
     if (made == nullptr)
         held = made = std::make_shared<const Mesh>(std::move(mesh));
     finest.payload = std::move(made);
-    summarize(finest, model.model);
+    summarize(finest, model.model, hash);
     return model.id_of(add_object(model, info, std::move(finest)));
 }
 
@@ -234,6 +235,19 @@ lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
         if (material_count > 0)
             require(materials, "materials");
         *out_object = add_mesh_object(*model, info, mesh_of(checked(mesh, "mesh"), material_count),
+                                      materials, material_count);
+    });
+}
+
+lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
+                               const lds_faces_view* faces, const uint32_t* materials,
+                               size_t material_count, lds_object* out_object) {
+    return guard([&] {
+        require(model, "model");
+        require(out_object, "out_object");
+        if (material_count > 0)
+            require(materials, "materials");
+        *out_object = add_mesh_object(*model, info, mesh_of(faces_of(faces), material_count),
                                       materials, material_count);
     });
 }

@@ -18,10 +18,10 @@ bool finite(const glm::vec3& v) {
 void compact(Mesh& mesh) {
     constexpr uint32_t kUnused = ~uint32_t{0};
     std::vector<uint32_t> moved(mesh.positions.size(), kUnused);
-    for (const Triangle& t : mesh.triangles) {
-        for (int corner = 0; corner < 3; ++corner)
-            moved[t[corner]] = 0;
-    }
+    for (const Triangle& t : mesh.triangles)
+        moved[t.x] = moved[t.y] = moved[t.z] = 0;
+    if (std::find(moved.begin(), moved.end(), kUnused) == moved.end())
+        return;
     uint32_t count = 0;
     for (size_t i = 0; i < moved.size(); ++i) {
         if (moved[i] == kUnused)
@@ -122,14 +122,17 @@ void check(const Mesh& mesh) {
 }
 
 void repair(Mesh& mesh, const std::string& object, Problems& problems) {
-    std::vector<uint8_t> keep(mesh.triangles.size(), 1);
+    std::vector<uint8_t> keep;
     size_t dropped = 0;
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const Triangle& t = mesh.triangles[i];
-        if (!finite(mesh.positions[t.x]) || !finite(mesh.positions[t.y]) ||
-            !finite(mesh.positions[t.z])) {
-            keep[i] = 0;
-            ++dropped;
+    if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+        keep.assign(mesh.triangles.size(), 1);
+        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const Triangle& t = mesh.triangles[i];
+            if (!finite(mesh.positions[t.x]) || !finite(mesh.positions[t.y]) ||
+                !finite(mesh.positions[t.z])) {
+                keep[i] = 0;
+                ++dropped;
+            }
         }
     }
     if (dropped > 0) {

@@ -98,7 +98,8 @@ std::vector<uint8_t> with_hidden(const Model& model) {
     return out;
 }
 
-void summarize(Representation& representation, const Model& model) {
+void summarize(Representation& representation, const Model& model,
+               std::optional<Hash> mesh_hash) {
     Summary& summary = representation.summary;
     Hasher hasher;
     hasher.value(summary.kind);
@@ -106,7 +107,7 @@ void summarize(Representation& representation, const Model& model) {
         const Mesh& mesh = representation.mesh();
         summary.bound = bound_of(mesh.positions);
         summary.cost = {mesh.triangles.size(), mesh.triangles.size() * kBytesPerTriangle};
-        hasher.value(hash_of(mesh));
+        hasher.value(mesh_hash ? *mesh_hash : hash_of(mesh));
     } else {
         const Primitive& primitive = representation.primitive();
         summary.bound =

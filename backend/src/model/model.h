@@ -38,8 +38,10 @@ std::vector<uint8_t> with_hidden(const Model& model);
 /// `order` is bottom_up's.
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
 
-/// Fills bound, cost and hash of a representation from its (mesh or primitive) payload.
-void summarize(Representation& representation, const Model& model);
+/// Fills bound, cost and hash of a representation from its (mesh or primitive) payload; `mesh_hash`:
+/// of the mesh, where it is known already.
+void summarize(Representation& representation, const Model& model,
+               std::optional<Hash> mesh_hash = std::nullopt);
 
 /// Number of leaf occurrences below the root (each path of placements counts), and what they place.
 struct Totals {

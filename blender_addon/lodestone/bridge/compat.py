@@ -5,9 +5,41 @@ from array import array
 from typing import Any
 
 
+_ZERO = {code: array(code, [0]) for code in "bfiI"}
+
+
 def buffer(code: str, count: int) -> array:
-    """Of 4-byte items, all 0."""
-    return array(code, bytes(4 * count))
+    """Of 4-byte items ("f", "i", "I") or bytes ("b"), all 0. Blender copies into the code that is a
+    property's own ("I" for indices) at 2 ns an item, item by item into any other, at 20 to 80."""
+    return _ZERO[code] * count
+
+
+def smooth_faces(mesh: Any) -> array | None:
+    """A byte for each face, 1 for smooth ones; None: all are flat."""
+    flags = [False] * len(mesh.polygons)  # of no array's code: lists are the fastest
+    mesh.polygons.foreach_get("use_smooth", flags)
+    if True not in flags:
+        return None
+    return array("b", flags) if False in flags else array("b", [1]) * len(flags)
+
+
+def splits_normals(mesh: Any) -> bool:
+    """Whether corners may have other normals than their face or their vertex."""
+    if hasattr(mesh, "use_auto_smooth"):  # until 4.0
+        return mesh.use_auto_smooth
+    return mesh.normals_domain == "CORNER"
+
+
+def face_slots(mesh: Any, buffer: array) -> bool:
+    """The material slots of all faces into an integer buffer; False: all faces have the first."""
+    layer = mesh.attributes.get("material_index")
+    if layer is None:
+        return False
+    if layer.domain == "FACE" and len(layer.data) == len(buffer):
+        layer.data.foreach_get("value", buffer)
+    else:
+        mesh.polygons.foreach_get("material_index", buffer)
+    return True
 
 
 def corner_normals(mesh: Any, buffer: array) -> None:

@@ -244,7 +244,6 @@ class Groups:
         if group is None:
             claimed = self._uids.claim(uid)
             group = self._model.add_group(claimed, name, ids.role(environment), changes)
-            for item, place, child_name, hidden in placements:
-                self._model.add_placement(group, item, place, child_name, hidden)
+            self._model.add_placements(group, placements)
             self._made[key] = group
         return group

@@ -114,7 +114,7 @@ class Leaves:
             else:
                 wanted = [self._materials.wanted(material, color) for material in slots]
                 buffers = mesh.extract(shown, wanted)
-                size = 0 if buffers is None else len(buffers.triangles) // 3
+                size = 0 if buffers is None else buffers.triangle_count
         except RuntimeError as error:
             text = f'Object "{owner.name}" cannot be read and is left out: {error}'
             self._problems.add(owner.name, ERROR, "mesh_unreadable", text)
@@ -123,7 +123,7 @@ class Leaves:
             return None
         base, name = self._name(shown, owner, slots)
         uid = self._uid(base, color, look)
-        add = self._model.add_strands if shown.type == "CURVES" else self._model.add_mesh
+        add = self._model.add_strands if shown.type == "CURVES" else self._model.add_faces
         item = add(uid, name, buffers, indices, ids.role(look.environment), look.deforms)
         return Leaf(item, uid, shown.data.name, _names(slots), size)
 
@@ -185,9 +185,11 @@ class Leaves:
         if owner.is_modified(self._scene, "RENDER"):
             return ids.uid_of("object", owner), owner.name
         base = ids.uid_of("mesh", shown.data)
-        own = [ids.named_id_of(m) for m in shown.data.materials]
-        if own != [ids.named_id_of(m) for m in slots]:  # materials linked to the object
-            base = identity.stable_id(base, *(ids.named_id_of(m) for m in slots))
+        if slots != list(shown.data.materials):
+            own = [ids.named_id_of(m) for m in shown.data.materials]
+            linked = [ids.named_id_of(m) for m in slots]
+            if own != linked:  # materials linked to the object
+                base = identity.stable_id(base, *linked)
         return base, shown.data.name
 
 

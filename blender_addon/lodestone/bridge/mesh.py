@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An evaluated Blender object's triangles as flat buffers."""
+"""An evaluated Blender object's faces as flat buffers."""
 
 from array import array
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from .materials import Wanted
 
 
 def extract(instance_object: Any, wanted: Sequence[Wanted]) -> Any:
-    """MeshBuffers of an evaluated object (mesh, curve, text, surface, metaball), or None when it
+    """FaceBuffers of an evaluated object (mesh, curve, text, surface, metaball), or None when it
     has no faces; `wanted` is what the material of each slot needs. Only while the object is valid:
     inside the loop over depsgraph instances."""
     mesh = instance_object.to_mesh()
@@ -24,45 +24,48 @@ def extract(instance_object: Any, wanted: Sequence[Wanted]) -> Any:
 
 
 def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
-    if not mesh.polygons:
+    """Blender's triangles are asked for only where a face has more than four corners, and its
+    normals only where they are others than those of the faces: both cost more than all the rest,
+    and its sums of normals come out with other last digits each time."""
+    polygons, corners = mesh.polygons, len(mesh.loops)
+    faces = len(polygons)
+    if faces == 0 or corners < 3:
         return None
-    mesh.calc_loop_triangles()
-    vertices, corners, triangles = len(mesh.vertices), len(mesh.loops), len(mesh.loop_triangles)
-    if triangles == 0:
-        return None
-    buffers = native.MeshBuffers(
-        compat.buffer("f", 3 * vertices), compat.buffer("i", 3 * triangles)
+    buffers = native.FaceBuffers(
+        compat.buffer("f", 3 * len(mesh.vertices)), compat.buffer("I", corners)
     )
     mesh.vertices.foreach_get("co", buffers.positions)
-    mesh.loop_triangles.foreach_get("vertices", buffers.triangles)
-    if _has_smooth(mesh):
+    mesh.loops.foreach_get("vertex_index", buffers.corner_vertices)
+    if corners != 3 * faces:
+        buffers.face_starts = compat.buffer("I", faces)
+        polygons.foreach_get("loop_start", buffers.face_starts)
+        if native.largest_face(buffers.face_starts, corners) > 4:
+            buffers.triangles = _triangles(mesh)
+    buffers.face_smooth = compat.smooth_faces(mesh)
+    if compat.splits_normals(mesh) and (buffers.face_smooth or mesh.has_custom_normals):
         buffers.corner_normals = compat.buffer("f", 3 * corners)
         compat.corner_normals(mesh, buffers.corner_normals)
     if len(wanted) > 1:
-        buffers.slots = compat.buffer("i", triangles)
-        mesh.loop_triangles.foreach_get("material_index", buffers.slots)
-    textured = any(item.coordinates is not None for item in wanted)
-    colored = any(item.vertex_colors is not None for item in wanted)
-    if buffers.corner_normals is not None or textured or colored:
-        buffers.corners = compat.buffer("i", 3 * triangles)
-        mesh.loop_triangles.foreach_get("loops", buffers.corners)
-    if textured:
+        slots = compat.buffer("i", faces)
+        if compat.face_slots(mesh, slots):
+            buffers.face_slots = slots
+    if any(item.coordinates is not None for item in wanted):
         buffers.corner_uvs = mesh_uvs.corner_uvs(
             mesh, buffers, shown, [item.coordinates for item in wanted]
         )
-    if colored:
+    if any(item.vertex_colors is not None for item in wanted):
         buffers.corner_colors = mesh_colors.corner_colors(
             mesh, [item.vertex_colors for item in wanted]
         )
     return buffers
 
 
-def _has_smooth(mesh: Any) -> bool:
-    if mesh.has_custom_normals:
-        return True
-    smooth = array("b", bytes(len(mesh.polygons)))
-    mesh.polygons.foreach_get("use_smooth", smooth)
-    return 1 in smooth
+def _triangles(mesh: Any) -> array:
+    """The corners of Blender's triangles."""
+    mesh.calc_loop_triangles()
+    triangles = compat.buffer("I", 3 * len(mesh.loop_triangles))
+    mesh.loop_triangles.foreach_get("loops", triangles)
+    return triangles
 
 
 def ball() -> Any:

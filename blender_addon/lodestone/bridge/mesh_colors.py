@@ -46,7 +46,7 @@ def _colors(mesh: Any, wanted: VertexColors) -> array:
 
 
 def _to_corners(mesh: Any, colors: array) -> array:
-    vertices = compat.buffer("i", len(mesh.loops))
+    vertices = compat.buffer("I", len(mesh.loops))
     mesh.loops.foreach_get("vertex_index", vertices)
     values = iter(colors)
     points = list(zip(values, values, values, values))

@@ -38,7 +38,7 @@ def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates
             _to_space(mesh, shown, item),
             item.projection,
             points,
-            slot if buffers.slots is not None else -1,
+            slot if len(wanted) > 1 else -1,
             len(wanted),
         )
     return uvs
@@ -47,8 +47,8 @@ def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates
 def corners_of_slots(mesh: Any, wanted: Sequence[Any], kind: Any) -> Iterator[tuple[int, int]]:
     """Runs of the corners of all faces whose slot wants this kind."""
     count = len(mesh.polygons)
-    slots, starts, totals = (compat.buffer("i", count) for _ in range(3))
-    mesh.polygons.foreach_get("material_index", slots)
+    slots, starts, totals = (compat.buffer(code, count) for code in "iII")
+    compat.face_slots(mesh, slots)
     mesh.polygons.foreach_get("loop_start", starts)
     mesh.polygons.foreach_get("loop_total", totals)
     last = len(wanted) - 1

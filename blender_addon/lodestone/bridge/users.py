@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects show which material: noted on the way to the leaves, whoever makes them."""
 
-from array import array
 from collections.abc import Callable
 from typing import Any
 
 from ..core.problems import Problem, Subject
-from . import ids
+from . import compat, ids
 from .leaves import material_slots
 
 
@@ -69,11 +68,6 @@ def _used_slots(mesh: Any) -> set[int] | None:
     count = len(mesh.polygons)
     if count == 0:
         return None
-    values = array("i", bytes(4 * count))
-    attributes = getattr(mesh, "attributes", None)
-    layer = attributes.get("material_index") if attributes is not None else None
-    if layer is not None and len(layer.data) == count:
-        layer.data.foreach_get("value", values)
-    else:
-        mesh.polygons.foreach_get("material_index", values)
+    values = compat.buffer("i", count)
+    compat.face_slots(mesh, values)
     return set(values)

@@ -8,6 +8,7 @@ is not enough. It starts as the hash of library and name, so what was known befo
 
 import hashlib
 from collections.abc import Iterable
+from functools import lru_cache
 
 DIGITS = 16
 
@@ -22,6 +23,7 @@ def stable_id(*parts: object) -> str:
     return digest.hexdigest()
 
 
+@lru_cache(maxsize=1 << 16)  # a material is asked for by each of its users, in every frame
 def named_id(kind: str, library: str, name: str) -> str:
     """The id of a datablock that has no stored uid."""
     return stable_id(kind, library, name)

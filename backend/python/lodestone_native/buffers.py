@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes, polygons and strands in flat buffers, as the library reads them in place."""
+
+import ctypes
+from array import array
+from dataclasses import dataclass
+
+from . import structs
+from .library import library
+
+Buffer = array | memoryview  # writable and contiguous
+
+
+@dataclass
+class MeshBuffers:
+    """A triangle mesh in flat buffers of 4-byte items (array.array 'f', 'i' or 'I').
+
+    positions [vertex][3], triangles [triangle][3]; normals and uvs belong to corners: entry
+    corners[3 t + c] is that of corner c of triangle t (None: corners = triangles).
+    """
+
+    positions: array
+    triangles: array
+    corners: array | None = None
+    corner_normals: array | None = None  # [corner][3]; None: flat shaded
+    corner_uvs: array | None = None  # [corner][2]
+    corner_colors: array | None = None  # [corner][4] linear RGBA, straight
+    slots: array | None = None  # [triangle]
+
+    def struct(self) -> structs.MeshView:
+        """Points into the buffers: keep them until the call is over. Raises ValueError when the
+        lengths do not fit together, so that the library never reads past an end."""
+        vertices = count("positions", self.positions, 3)
+        triangles = count("triangles", self.triangles, 3)
+        if self.corners is not None and count("corners", self.corners, 3) != triangles:
+            raise ValueError("corners and triangles differ in length")
+        counts = set()
+        if self.corner_normals is not None:
+            counts.add(count("corner_normals", self.corner_normals, 3))
+        if self.corner_uvs is not None:
+            counts.add(count("corner_uvs", self.corner_uvs, 2))
+        if self.corner_colors is not None:
+            counts.add(count("corner_colors", self.corner_colors, 4))
+        if self.corners is None:
+            counts.add(vertices)
+        if len(counts) > 1:
+            raise ValueError("normals, uvs and colors differ in their number of corners")
+        if self.slots is not None and count("slots", self.slots, 1) != triangles:
+            raise ValueError("slots and triangles differ in length")
+        return structs.MeshView(
+            positions=address(self.positions),
+            vertex_count=vertices,
+            triangles=address(self.triangles),
+            triangle_count=triangles,
+            corners=address(self.corners),
+            corner_count=counts.pop() if counts else 0,
+            corner_normals=address(self.corner_normals),
+            corner_uvs=address(self.corner_uvs),
+            corner_colors=address(self.corner_colors),
+            slots=address(self.slots),
+        )
+
+
+@dataclass
+class FaceBuffers:
+    """A mesh of polygons in flat buffers of 4-byte items; a corner is one vertex of one face. The
+    library makes triangles and normals of it.
+
+    positions [vertex][3], corner_vertices [corner]; those of a face follow each other, then those
+    of the next face.
+    """
+
+    positions: Buffer
+    corner_vertices: Buffer
+    face_starts: Buffer | None = None  # [face] first corner; None: all faces are triangles
+    triangles: Buffer | None = None  # [triangle][3] corners; None: no face has more than four
+    face_smooth: Buffer | None = None  # [face], of 1-byte items; None: all flat
+    face_slots: Buffer | None = None  # [face]
+    corner_normals: Buffer | None = None  # [corner][3]; None: those of the faces
+    corner_uvs: Buffer | None = None  # [corner][2]
+    corner_colors: Buffer | None = None  # [corner][4] linear RGBA, straight
+
+    @property
+    def triangle_count(self) -> int:
+        corners = len(self.corner_vertices)
+        return corners // 3 if self.face_starts is None else corners - 2 * len(self.face_starts)
+
+    def struct(self) -> structs.FacesView:
+        """As MeshBuffers.struct()."""
+        corners = count("corner_vertices", self.corner_vertices, 1)
+        if self.face_starts is None:
+            faces = count("corner_vertices", self.corner_vertices, 3)
+        else:
+            faces = count("face_starts", self.face_starts, 1)
+        for name, width in (("corner_normals", 3), ("corner_uvs", 2), ("corner_colors", 4)):
+            given = getattr(self, name)
+            if given is not None and count(name, given, width) != corners:
+                raise ValueError(f"{name} and corner_vertices differ in their number of corners")
+        if self.face_smooth is not None and count("face_smooth", self.face_smooth, 1, 1) != faces:
+            raise ValueError("face_smooth has another number of faces")
+        if self.face_slots is not None and count("face_slots", self.face_slots, 1) != faces:
+            raise ValueError("face_slots has another number of faces")
+        triangles = 0 if self.triangles is None else count("triangles", self.triangles, 3)
+        return structs.FacesView(
+            positions=address(self.positions),
+            vertex_count=count("positions", self.positions, 3),
+            corner_vertices=address(self.corner_vertices),
+            corner_count=corners,
+            face_starts=address(self.face_starts),
+            face_count=faces,
+            triangles=address(self.triangles),
+            triangle_count=triangles,
+            face_smooth=address(self.face_smooth),
+            face_slots=address(self.face_slots),
+            corner_normals=address(self.corner_normals),
+            corner_uvs=address(self.corner_uvs),
+            corner_colors=address(self.corner_colors),
+        )
+
+
+@dataclass
+class StrandBuffers:
+    """Hair or grass in flat buffers of 4-byte items: points [point][3] and radii [point] of all
+    strands in a row, each strand's root first; counts [strand] points of each."""
+
+    points: array
+    radii: array
+    counts: array
+    slots: array | None = None  # [strand]
+    uvs: array | None = None  # [strand][2], of the surface at the root
+
+    def struct(self) -> structs.StrandsView:
+        """As MeshBuffers.struct()."""
+        points = count("points", self.points, 3)
+        strands = count("counts", self.counts, 1)
+        if count("radii", self.radii, 1) != points:
+            raise ValueError("points and radii differ in length")
+        if self.slots is not None and count("slots", self.slots, 1) != strands:
+            raise ValueError("slots and counts differ in length")
+        if self.uvs is not None and count("uvs", self.uvs, 2) != strands:
+            raise ValueError("uvs and counts differ in length")
+        return structs.StrandsView(
+            points=address(self.points),
+            radii=address(self.radii),
+            point_count=points,
+            counts=address(self.counts),
+            strand_count=strands,
+            slots=address(self.slots),
+            uvs=address(self.uvs),
+        )
+
+
+def largest_face(face_starts: Buffer, corner_count: int) -> int:
+    """The most corners that a face has: above four, FaceBuffers need triangles."""
+    faces = count("face_starts", face_starts, 1)
+    return library().lds_faces_largest(address(face_starts), faces, corner_count)
+
+
+def count(name: str, buffer: Buffer, width: int, size: int = 4) -> int:
+    if buffer.itemsize != size:
+        raise ValueError(f"{name} needs {size}-byte items, not {buffer.itemsize}")
+    if len(buffer) % width:
+        raise ValueError(f"{name} has {len(buffer)} items, not a multiple of {width}")
+    return len(buffer) // width
+
+
+def address(buffer: Buffer | None) -> int | None:
+    if buffer is None or not len(buffer):
+        return None
+    if isinstance(buffer, memoryview):
+        return ctypes.addressof(ctypes.c_char.from_buffer(buffer))
+    return buffer.buffer_info()[0]

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces: a mesh of polygons as modelers keep it, on its way to triangles.
+#pragma once
+
+#include "model/mesh.h"
+
+#include <span>
+
+namespace lodestone {
+
+/// Views into the caller's memory. A corner is one vertex of one face; those of a face follow each
+/// other around it, those of the next face follow them.
+struct Faces {
+    const float* positions = nullptr;  // [vertex_count][3]
+    size_t vertex_count = 0;
+    std::span<const uint32_t> vertices;   // [corner]
+    std::span<const uint32_t> starts;     // [face] its first corner; empty: all have three
+    std::span<const uint32_t> triangles;  // [triangle][3] corners, in the order of the faces; empty:
+                                          // faces of three and four corners are split here
+    std::span<const uint8_t> smooth;      // [face]; empty: all flat
+    std::span<const int32_t> slots;       // [face]; empty: all 0
+    const float* normals = nullptr;       // [corner][3]; null: made from the faces
+    const float* uvs = nullptr;           // [corner][2]
+    const float* colors = nullptr;        // [corner][4]
+
+    size_t count() const { return starts.empty() ? vertices.size() / 3 : starts.size(); }
+    size_t begin(size_t face) const { return starts.empty() ? 3 * face : starts[face]; }
+    size_t end(size_t face) const {
+        return face + 1 == count() ? vertices.size() : begin(face + 1);
+    }
+};
+
+/// Throws Error(InvalidArgument) for lengths that do not fit, indices out of range, faces that do not
+/// follow each other, and a face of more than four corners without `triangles`.
+void check(const Faces& faces);
+
+/// The most corners of one face; 0: there are no faces or they do not follow each other.
+size_t largest_face(std::span<const uint32_t> starts, size_t corner_count);
+
+/// A face's three corners each and the face, in the order of the faces. A face of four is split
+/// between its first and third corner, or where that line leaves it between the others.
+struct FaceTriangles {
+    std::vector<Triangle> corners;
+    std::vector<uint32_t> faces;
+};
+FaceTriangles triangulated(const Faces& faces);
+
+/// One vertex for every distinct (position, normal, uv, color). Without given normals a smooth face
+/// has at each vertex the mean of the normals of all faces there, weighted by their angles, and
+/// what has no smooth face has none. Given normals that are these but for rounding become these:
+/// Blender adds them up in another order each time it opens a file, and the hash of a mesh must not
+/// follow that. `slot_count` > 0: slots outside are the nearest.
+Mesh mesh_of(const Faces& faces, size_t slot_count);
+
+}  // namespace lodestone
