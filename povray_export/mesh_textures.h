@@ -33,6 +33,8 @@ public:
     bool bumps_left_out() const { return bumps_left_out_; }
 
     size_t of(size_t triangle, int corner) const;
+    /// False: all corners of a triangle show the same.
+    bool differ_in_triangles() const { return !corners_.empty(); }
 
 private:
     struct Slot {

@@ -52,10 +52,10 @@ Pool share(const std::vector<uint32_t>& order, size_t vertex_count, const Key& k
 }
 
 /// Twice the area on the lattice is zero: exact, in integers.
+template <typename Integer>
 bool flat_on_lattice(const Point& a, const Point& b, const Point& c) {
-    using Wide = __int128;
-    const auto u = [&](int i) { return static_cast<Wide>(b[i] - a[i]); };
-    const auto v = [&](int i) { return static_cast<Wide>(c[i] - a[i]); };
+    const auto u = [&](int i) { return static_cast<Integer>(b[i] - a[i]); };
+    const auto v = [&](int i) { return static_cast<Integer>(c[i] - a[i]); };
     return u(1) * v(2) == u(2) * v(1) && u(2) * v(0) == u(0) * v(2) && u(0) * v(1) == u(1) * v(0);
 }
 
@@ -75,21 +75,16 @@ public:
         std::string out;
         out.reserve(200 + kept_.size() * 48);
         out += "#declare " + identifier + " = mesh2{\n";
-        append_list(out, "vertex_vectors", positions_.size(), [&](size_t i) {
-            append_point(out, lattice_, points_[positions_.vertices[i]]);
+        append_list(out, "vertex_vectors", positions_.size(), [&](char* at, size_t i) {
+            return write_point(at, lattice_, points_[positions_.vertices[i]]);
         });
         if (smooth_)
-            append_list(out, "normal_vectors", normals_.size(), [&](size_t i) {
-                append_point(out, normal_lattice_, normal_points_[normals_.vertices[i]]);
+            append_list(out, "normal_vectors", normals_.size(), [&](char* at, size_t i) {
+                return write_point(at, normal_lattice_, normal_points_[normals_.vertices[i]]);
             });
         if (has_uvs_)
-            append_list(out, "uv_vectors", uvs_.size(), [&](size_t i) {
-                const auto& uv = uv_points_[uvs_.vertices[i]];
-                out += '<';
-                uv_lattice_.append(out, uv[0]);
-                out += ',';
-                uv_lattice_.append(out, uv[1]);
-                out += '>';
+            append_list(out, "uv_vectors", uvs_.size(), [&](char* at, size_t i) {
+                return write_point(at, uv_lattice_, uv_points_[uvs_.vertices[i]]);
             });
         const bool list = textures_ != nullptr && textures_->texts().size() > 1;
         if (list) {
@@ -99,17 +94,16 @@ public:
                 out += ",\n" + texture;
             out += "}\n";
         }
-        append_list(out, "face_indices", kept_.size(), [&](size_t i) {
-            append_face(out, positions_, kept_[i]);
-            if (list)
-                append_textures(out, kept_[i]);
+        append_list(out, "face_indices", kept_.size(), [&](char* at, size_t i) {
+            at = write_face(at, positions_, kept_[i]);
+            return list ? write_textures(at, kept_[i]) : at;
         });
         if (smooth_ && explicit_normals_)
             append_list(out, "normal_indices", kept_.size(),
-                        [&](size_t i) { append_face(out, normals_, kept_[i]); });
+                        [&](char* at, size_t i) { return write_face(at, normals_, kept_[i]); });
         if (has_uvs_ && explicit_uvs_)
             append_list(out, "uv_indices", kept_.size(),
-                        [&](size_t i) { append_face(out, uvs_, kept_[i]); });
+                        [&](char* at, size_t i) { return write_face(at, uvs_, kept_[i]); });
         const bool refracts = textures_ != nullptr && textures_->refraction() > 0;
         if (refracts)
             out += "inside_vector <0,0,1>\n";
@@ -143,6 +137,9 @@ private:
         const glm::dvec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
         lattice_ = Lattice(kPositionPrecision * std::max({size.x, size.y, size.z}),
                            std::max({far.x, far.y, far.z}));
+        narrow_ = true;  // no product of two differences leaves 64 bits
+        for (int i = 0; i < 3; ++i)
+            narrow_ = narrow_ && lattice_.round(box.high[i]) - lattice_.round(box.low[i]) < 1 << 30;
         points_.resize(mesh_.positions.size());
         for (size_t i = 0; i < points_.size(); ++i) {
             breathe(i);
@@ -159,7 +156,8 @@ private:
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
             breathe(i);
             const Triangle& t = mesh_.triangles[i];
-            if (flat_on_lattice(points_[t.x], points_[t.y], points_[t.z]))
+            if (narrow_ ? flat_on_lattice<int64_t>(points_[t.x], points_[t.y], points_[t.z])
+                        : flat_on_lattice<__int128>(points_[t.x], points_[t.y], points_[t.z]))
                 continue;
             kept_.push_back(static_cast<uint32_t>(i));
             for (int corner = 0; corner < 3; ++corner) {
@@ -264,48 +262,69 @@ private:
                 normal_lattice_.round(unit.z)};
     }
 
-    template <typename Append>
-    void append_list(std::string& out, const char* name, size_t count, const Append& append) {
+    /// `write(at, i)` writes at most kMostOfItem characters and returns the end.
+    template <typename Write>
+    void append_list(std::string& out, const char* name, size_t count, const Write& write) {
         out += name;
         out += '{';
         append_count(out, count);
+        char block[4096];
+        char* at = block;
         for (size_t i = 0; i < count; ++i) {
             breathe(i);
-            out += (i & 15u) == 0 ? ",\n" : ",";
-            append(i);
+            if (at > block + sizeof block - kMostOfItem) {
+                out.append(block, at);
+                at = block;
+            }
+            *at++ = ',';
+            if ((i & 15u) == 0)
+                *at++ = '\n';
+            at = write(at, i);
         }
+        out.append(block, at);
         out += "}\n";
     }
+    static constexpr size_t kMostOfItem = 256;
 
-    static void append_point(std::string& out, const Lattice& lattice, const Point& point) {
-        out += '<';
-        lattice.append(out, point[0]);
-        out += ',';
-        lattice.append(out, point[1]);
-        out += ',';
-        lattice.append(out, point[2]);
-        out += '>';
-    }
-
-    void append_face(std::string& out, const Pool& pool, uint32_t triangle) const {
-        const Triangle& t = mesh_.triangles[triangle];
-        out += '<';
-        append_count(out, pool.of_vertex[t.x]);
-        out += ',';
-        append_count(out, pool.of_vertex[t.y]);
-        out += ',';
-        append_count(out, pool.of_vertex[t.z]);
-        out += '>';
-    }
-
-    void append_textures(std::string& out, uint32_t triangle) const {
-        const size_t of[] = {textures_->of(triangle, 0), textures_->of(triangle, 1),
-                             textures_->of(triangle, 2)};
-        const int corners = of[0] == of[1] && of[1] == of[2] ? 1 : 3;
-        for (int corner = 0; corner < corners; ++corner) {
-            out += ',';
-            append_count(out, of[corner]);
+    template <size_t kCount>
+    static char* write_point(char* at, const Lattice& lattice,
+                             const std::array<int64_t, kCount>& point) {
+        static_assert(kCount * (Lattice::kMostCharacters + 1) + 2 < kMostOfItem);
+        char before = '<';
+        for (const int64_t value : point) {
+            *at++ = before;
+            at = lattice.write(at, value);
+            before = ',';
         }
+        *at++ = '>';
+        return at;
+    }
+
+    char* write_face(char* at, const Pool& pool, uint32_t triangle) const {
+        const Triangle& t = mesh_.triangles[triangle];
+        *at++ = '<';
+        at = write_count(at, pool.of_vertex[t.x]);
+        *at++ = ',';
+        at = write_count(at, pool.of_vertex[t.y]);
+        *at++ = ',';
+        at = write_count(at, pool.of_vertex[t.z]);
+        *at++ = '>';
+        return at;
+    }
+
+    char* write_textures(char* at, uint32_t triangle) const {
+        size_t of[] = {textures_->of(triangle, 0), 0, 0};
+        int corners = 1;
+        if (textures_->differ_in_triangles()) {
+            of[1] = textures_->of(triangle, 1);
+            of[2] = textures_->of(triangle, 2);
+            corners = of[0] == of[1] && of[1] == of[2] ? 1 : 3;
+        }
+        for (int corner = 0; corner < corners; ++corner) {
+            *at++ = ',';
+            at = write_count(at, of[corner]);
+        }
+        return at;
     }
 
     void breathe(size_t i) const {
@@ -324,6 +343,7 @@ private:
     std::vector<std::array<int64_t, 2>> uv_points_;
     std::vector<uint32_t> kept_;   // triangles
     std::vector<uint32_t> order_;  // vertices, as they are first used
+    bool narrow_ = false;
     bool smooth_ = false;
     bool has_uvs_ = false;
     bool explicit_normals_ = false;

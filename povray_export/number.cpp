@@ -4,10 +4,40 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 namespace lodestone::povray {
+namespace {
+
+/// "00" "01" ... "99"
+constexpr std::array<char, 200> kPairs = [] {
+    std::array<char, 200> pairs{};
+    for (size_t i = 0; i < 100; ++i) {
+        pairs[2 * i] = static_cast<char>('0' + i / 10);
+        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+    }
+    return pairs;
+}();
+
+}  // namespace
+
+char* write_count(char* at, uint64_t value) {
+    char digits[20];
+    char* const end = digits + sizeof digits;
+    char* first = end;
+    for (; value >= 100; value /= 100)
+        std::memcpy(first -= 2, kPairs.data() + 2 * (value % 100), 2);
+    if (value >= 10)
+        std::memcpy(first -= 2, kPairs.data() + 2 * value, 2);
+    else
+        *--first = static_cast<char>('0' + value);
+    const auto count = static_cast<size_t>(end - first);
+    std::memcpy(at, first, count);
+    return at + count;
+}
 
 void append_number(std::string& out, double value, int digits) {
     if (!std::isfinite(value))
@@ -23,8 +53,8 @@ void append_number(std::string& out, double value, int digits) {
 }
 
 void append_count(std::string& out, uint64_t value) {
-    char buffer[24];
-    out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+    char buffer[20];
+    out.append(buffer, write_count(buffer, value));
 }
 
 void append_vector(std::string& out, const glm::dvec3& value, int digits) {
@@ -54,6 +84,12 @@ Lattice::Lattice(double precision, double largest) {
     const double possible = largest > 0 ? 14 - std::floor(std::log10(largest)) : 0;
     decimals_ = static_cast<int>(std::clamp(std::min(wanted, possible), -300.0, 300.0));
     steps_ = std::pow(10.0, decimals_);
+    whole_ = 0;
+    if (decimals_ >= 0 && decimals_ <= 15) {
+        whole_ = 1;
+        for (int i = 0; i < decimals_; ++i)
+            whole_ *= 10;
+    }
 }
 
 int64_t Lattice::round(double value) const {
@@ -63,35 +99,35 @@ int64_t Lattice::round(double value) const {
     return static_cast<int64_t>(steps + (steps < 0 ? -0.5 : 0.5));
 }
 
-void Lattice::append(std::string& out, int64_t value) const {
-    if (value == 0) {
-        out += '0';
-        return;
-    }
-    char digits[24];
-    char* end = std::to_chars(digits, digits + sizeof digits, value < 0 ? -value : value).ptr;
+char* Lattice::write(char* at, int64_t value) const {
     if (value < 0)
-        out += '-';
-    if (decimals_ < 0 || decimals_ > 15) {
-        out.append(digits, end);
-        out += 'e';
-        end = std::to_chars(digits, digits + sizeof digits, -decimals_).ptr;
-        out.append(digits, end);
-        return;
+        *at++ = '-';
+    auto left = static_cast<uint64_t>(value);
+    if (value < 0)
+        left = -left;
+    if (whole_ == 0) {
+        at = write_count(at, left);
+        if (left == 0)
+            return at;
+        *at++ = 'e';
+        return std::to_chars(at, at + 8, -decimals_).ptr;
     }
-    const auto count = static_cast<int>(end - digits);
-    const int whole = count - decimals_;
-    if (whole > 0)
-        out.append(digits, static_cast<size_t>(whole));
-    char* fraction = digits + std::max(whole, 0);
-    while (end > fraction && end[-1] == '0')
+    const uint64_t whole = left / whole_;
+    left -= whole * whole_;
+    if (whole > 0 || left == 0)
+        at = write_count(at, whole);
+    if (left == 0)
+        return at;
+    *at++ = '.';
+    char* end = at + decimals_;
+    char* to = end;
+    for (; to - at >= 2; left /= 100)
+        std::memcpy(to -= 2, kPairs.data() + 2 * (left % 100), 2);
+    if (to > at)
+        *at = static_cast<char>('0' + left);
+    while (end[-1] == '0')
         --end;
-    if (end == fraction)
-        return;
-    out += '.';
-    if (whole < 0)
-        out.append(static_cast<size_t>(-whole), '0');
-    out.append(fraction, static_cast<size_t>(end - fraction));
+    return end;
 }
 
 }  // namespace lodestone::povray

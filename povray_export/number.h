@@ -30,11 +30,18 @@ public:
 
     /// Throws Error(Internal) for a value that is not finite.
     int64_t round(double value) const;
-    void append(std::string& out, int64_t value) const;
+    /// Writes at most kMostCharacters, and returns the end.
+    char* write(char* at, int64_t value) const;
+    static constexpr size_t kMostCharacters = 32;
 
 private:
-    int decimals_;  // a step is 10^-decimals
-    double steps_;  // per unit
+    int decimals_;    // a step is 10^-decimals
+    double steps_;    // per unit
+    uint64_t whole_;  // steps of a unit, where they are a whole number; else 0
 };
+
+/// Writes at most 20 characters, and returns the end: for numbers by the million, where appending each
+/// to a string would take longer.
+char* write_count(char* at, uint64_t value);
 
 }  // namespace lodestone::povray

@@ -70,11 +70,13 @@ def lodestone(folder: Path, addons: Path) -> dict:
     from lodestone.core.picture import Settings, cut_and_export
 
     native.version()  # loads the library
-    spent = 0.0
+    spent, before = 0.0, 0
     extract = extraction.extract
 
     def clocked(*arguments):
-        nonlocal spent
+        nonlocal spent, before
+        before = memory("VmRSS")
+        forget_peak()
         start = cpu_seconds()
         try:
             return extract(*arguments)
@@ -85,8 +87,6 @@ def lodestone(folder: Path, addons: Path) -> dict:
     found = {}
     for name in ("first", "second"):
         request = extract_engine.Request(cameras=[("", None)])
-        before = memory("VmRSS")
-        forget_peak()
         start = cpu_seconds()
         made = extract_engine.extract_now(bpy.context.scene, request)
         whole = cpu_seconds() - start

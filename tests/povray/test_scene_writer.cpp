@@ -45,9 +45,8 @@ std::string include_text(const Model& model, ObjectIndex object,
 }
 
 std::string number(const Lattice& lattice, double value) {
-    std::string out;
-    lattice.append(out, lattice.round(value));
-    return out;
+    char text[Lattice::kMostCharacters];
+    return {text, lattice.write(text, lattice.round(value))};
 }
 
 }  // namespace
@@ -60,6 +59,16 @@ TEST(PovrayWriter, NumbersAreShortAndExactToTheStep) {
     EXPECT_EQ(number(metre, -0.000002), "-.000002");
     EXPECT_EQ(number(metre, 1.0000004), "1");
     EXPECT_EQ(number(metre, 100), "100");
+    EXPECT_EQ(number(Lattice(1e-7, 1), 0.1000001), ".1000001");
+    EXPECT_EQ(number(Lattice(1, 99), -7), "-7");
+    const Lattice fine(0, 1e-1);
+    EXPECT_EQ(number(fine, 0.100000000000003), ".100000000000003");
+    for (const uint64_t count : {0u, 9u, 10u, 99u, 100u, 101u, 65535u, 999999u, 4294967295u}) {
+        char text[20];
+        EXPECT_EQ(std::string(text, write_count(text, count)), std::to_string(count));
+    }
+    char most[20];
+    EXPECT_EQ(std::string(most, write_count(most, ~uint64_t{0})), "18446744073709551615");
     EXPECT_EQ(std::stod(number(Lattice(1e24, 3e38), 3e38)), 3e38);
     EXPECT_NEAR(std::stod(number(Lattice(1e-46, 1e-40), 1e-40)), 1e-40, 1e-46);
     for (const double size : {1e-3, 0.7, 1.0, 2.0, 5.0, 900.0, 1e7}) {

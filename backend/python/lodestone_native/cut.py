@@ -2,6 +2,8 @@
 """The cut: which representation of every occurrence a view uses."""
 
 import ctypes
+import struct
+from collections import Counter
 from typing import Any, NamedTuple
 
 from . import structs
@@ -40,12 +42,22 @@ class Cut(Handle):
         return record(out)
 
     def choices(self) -> list[Choice]:
+        return [
+            Choice(Object(*c.object.key), c.lod, c.kind, c.error_px, tuple(c.world))
+            for c in self._buffer()
+        ]
+
+    def counts(self) -> dict[tuple[Object, int], int]:
+        """How often which LOD number of which object is chosen."""
+        rest = ctypes.sizeof(structs.Choice) - 3 * ctypes.sizeof(ctypes.c_uint32)
+        counted = Counter(struct.iter_unpack(f"=3I{rest}x", self._buffer()))
+        return {(Object(*key[:2]), key[2]): number for key, number in counted.items()}
+
+    def _buffer(self) -> Any:
         count = library().lds_cut_choice_count(self.handle)
         buffer = (structs.Choice * count)()
         check(library().lds_cut_choice_copy(self.handle, buffer, count))
-        return [
-            Choice(Object(*c.object.key), c.lod, c.kind, c.error_px, tuple(c.world)) for c in buffer
-        ]
+        return buffer
 
     def choice_path(self, position: int) -> str:
         """Names of the placements from the root, joined by '/'."""

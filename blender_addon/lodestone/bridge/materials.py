@@ -46,6 +46,7 @@ class Materials:
         self._frame = frame
         self._indices: dict[tuple, int] = {}
         self._looks: dict[tuple, Look] = {}
+        self._wanted: dict[tuple, Wanted] = {}
         self._colored: dict[int, bool] = {}
 
     def index(self, material: Any | None, color: Color | None = None) -> int:
@@ -68,8 +69,11 @@ class Materials:
         return self._looks[key]
 
     def wanted(self, material: Any | None, color: Color | None = None) -> Wanted:
-        look = self.look(material, color)
-        return Wanted(look.coordinates, next(iter(_vertex_colors(look)), None))
+        key = self._key(material, color)
+        if key not in self._wanted:
+            look = self.look(material, color)
+            self._wanted[key] = Wanted(look.coordinates, next(iter(_vertex_colors(look)), None))
+        return self._wanted[key]
 
     def textured(self, material: Any | None) -> bool:
         """True when its meshes keep their texture coordinates."""

@@ -2,6 +2,7 @@
 """What of an object rays see: Blender's ray visibility, indirect-only and holdout, as POV-Ray can
 do it."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from ..core.native import lodestone_native as native
@@ -22,6 +23,12 @@ class Visibility:
     def __init__(self, view_layer: Any, problems: Problems) -> None:
         self._view_layer = view_layer
         self._problems = problems
+        layers = list(_all_layers(view_layer.layer_collection))
+        # Most view layers have none, and asking every object takes longer than all its switches.
+        self._any = {
+            "indirect_only_get": any(layer.indirect_only for layer in layers),
+            "holdout_get": any(layer.holdout for layer in layers),
+        }
 
     def hidden(self, item: Any, in_scene: bool) -> int:
         """The ray classes that do not see it. `in_scene`: it is an object of the scene itself, not
@@ -52,7 +59,15 @@ class Visibility:
         self._problems.add(name, WARNING, "holdout", text)
 
     def _in_layer(self, item: Any, question: str) -> bool:
+        if not self._any[question]:
+            return False
         try:
             return bool(getattr(item, question)(view_layer=self._view_layer))
         except RuntimeError:  # it is in no collection of this layer
             return False
+
+
+def _all_layers(layer: Any) -> Iterator[Any]:
+    yield layer
+    for child in layer.children:
+        yield from _all_layers(child)

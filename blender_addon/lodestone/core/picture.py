@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
 
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -74,9 +73,8 @@ def cut_and_export(
 
 def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
     """By uid of the object: how many occurrences draw which LOD number."""
-    counted = Counter((choice.object, choice.lod) for choice in cut.choices())
     found: dict[str, dict[int, int]] = {}
-    for (item, lod), number in counted.items():
+    for (item, lod), number in cut.counts().items():
         found.setdefault(model.object_summary(item).uid, {})[lod] = number
     return found
 
