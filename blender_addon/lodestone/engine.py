@@ -6,6 +6,7 @@ Failure is never a black picture: an error report before any result makes Blende
 and exit with 1; error_set() or an escaping exception would save black and exit with 0.
 """
 
+import atexit
 import time
 import traceback
 from dataclasses import replace
@@ -17,13 +18,15 @@ from .bridge import camera, ignored, picture, requirements, scene
 from .bridge.settings import SceneSettings
 from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
-from .core.picture import SceneFolder, Settings, make_picture
+from .core.picture import Settings, make_picture
 from .core.problems import ERROR, Problems
+from .core.render_folder import RenderFolder
 from .core.text import printable, sentence, valid
 from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
+_folder = RenderFolder()
 
 
 class Refused(Exception):
@@ -87,7 +90,8 @@ class _Run:
         self.ignored = ignored.keys(depsgraph.scene)
         self.users = {}
         self.work = Work()
-        self.clock = progress.StageClock(self.scene.frame_current)
+        self.frame = self.scene.frame_current
+        self.clock = progress.StageClock(self.frame)
         self._shown = ""
 
     def render(self):
@@ -139,7 +143,8 @@ class _Run:
                 raise Refused("folder_unwritable", text) from None
             model.build(str(self.store), native.BuildOptions(), self.work.new_job("Levels"))
         try:
-            with SceneFolder(store_path.scene_folder(self.store), self.keep) as folder:
+            kept = store_path.scene_folder(self.store)
+            with _folder.use(kept, self.keep, self.frame) as folder:
                 made = make_picture(
                     model, view, size, self.settings, folder.path, self.work.new_job
                 )
@@ -219,14 +224,30 @@ class _Run:
             self.engine.report({"WARNING"}, f"The picture is incomplete: {wrong[0].sentence}{more}")
 
 
+@bpy.app.handlers.persistent
+def _close_folder(*_):
+    """A render begins or is over."""
+    _folder.close()
+
+
+_HANDLERS = ("render_init", "render_complete", "render_cancel")
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray,))
 
 
 def register():
     _register()
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(_close_folder)
+    atexit.register(_folder.close)
 
 
 def unregister():
+    atexit.unregister(_folder.close)
+    for name in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if _close_folder in handlers:
+            handlers.remove(_close_folder)
+    _folder.close()
     last_render.clear()
     last_check.clear()
     _unregister()

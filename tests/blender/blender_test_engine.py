@@ -120,6 +120,30 @@ class Engine(unittest.TestCase):
         self.assertLess(centers[0], 28)
         self.assertGreater(centers[1], 36)
 
+    def test_what_rests_is_written_once_in_an_animation(self):
+        cube = scenes.cube()
+        scenes.cube("Resting", (1, 1, 1), size=0.5)
+        for frame, x in ((1, -2.0), (2, 2.0)):
+            cube.location.x = x
+            cube.keyframe_insert("location", frame=frame)
+        kept = self.folder / "scenes"
+        self.povray(  # keeps what it is given: the inodes tell what was written again
+            f"""n=$(ls {kept} | wc -l); mkdir {kept}/$n; ln r/* {kept}/$n/
+            exec /usr/bin/povray "$@" """
+        )
+        kept.mkdir()
+        self.scene.frame_start, self.scene.frame_end = 1, 3
+        self.scene.render.filepath = str(self.folder / "frame_")
+        self.scene.lodestone.pixel_error_render = 0.0
+        bpy.ops.render.render(animation=True)
+        written = [
+            {(path.name, path.stat().st_ino) for path in (kept / str(frame)).iterdir()}
+            for frame in range(3)
+        ]
+        self.assertEqual(len(written[0]), 2)
+        self.assertEqual(written[1:], [written[0]] * 2)
+        self.assertEqual(list(self.folder.glob("lodestone/*/r")), [])  # nothing is left
+
     def test_without_a_camera_nothing_is_written(self):
         scenes.cube()
         bpy.data.objects.remove(self.scene.camera)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene's files of the render that is running: one folder for all its frames and view layers,
+so that what does not change is written once."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .picture import SceneFolder, remove_others, used_files
+
+
+class RenderFolder:
+    """Lives as long as the process; close() it when a render begins and when it is over."""
+
+    def __init__(self) -> None:
+        self._held: SceneFolder | None = None
+        self._made_for: tuple[Path, str] | None = None
+        self._frame: int | None = None
+        self._used: tuple[set[str], set[str]] = (set(), set())  # in the frame before, in this one
+
+    @contextmanager
+    def use(self, kept: Path, keep: str, frame: int) -> Iterator[SceneFolder]:
+        """For one picture, as SceneFolder(kept, keep). After an exception it is kept or removed as
+        that says, and the next picture gets a new one."""
+        if self._held is None or self._made_for != (kept, keep):
+            self.close()
+            self._held = SceneFolder(kept, keep).__enter__()
+            self._made_for = (kept, keep)
+        try:
+            yield self._held
+        except BaseException:
+            self._end(*sys.exc_info())
+            raise
+        if not self._held.stays:
+            self._tidy(frame)
+
+    def close(self) -> None:
+        self._end(None, None, None)
+
+    def _end(self, *error) -> None:
+        held, self._held = self._held, None
+        self._frame, self._used = None, (set(), set())
+        if held is not None:
+            held.__exit__(*error)
+
+    def _tidy(self, frame: int) -> None:
+        """Removes what neither this frame nor the one before uses: what changes its shape would fill
+        the disk. Another view layer of the frame may use what the one before it used."""
+        before, now = self._used
+        if frame != self._frame:
+            before, now = now, set()
+        self._frame, self._used = frame, (before, now | used_files(self._held.path))
+        remove_others(self._held.path, set.union(*self._used))
