@@ -3,6 +3,7 @@
 
 import random
 import unittest
+from unittest import mock
 
 import bpy
 
@@ -103,3 +104,25 @@ class Meshes(unittest.TestCase):
                         model.object_summary(leaf.object).source_hash for leaf in extraction.leaves
                     }
             self.assertEqual(len(hashes), 1, f"auto smooth {auto_smooth}")
+
+    def test_faces_that_use_what_is_not_there_are_named_and_the_rest_is_drawn(self):
+        from lodestone.bridge import mesh
+
+        scenes.cube("Good")
+        scenes.cube("Broken", (3, 0, 0))
+        extract = mesh.extract
+
+        def broken(shown, *rest):
+            buffers = extract(shown, *rest)
+            if shown.name == "Broken":
+                buffers.corner_vertices[5] = 4_000_000_000
+            return buffers
+
+        with mock.patch.object(mesh, "extract", broken):
+            extraction, _ = scenes.extract(compare=False)
+        with extraction.model as model:
+            self.assertEqual(model.totals().occurrences, 1)
+        problem = extraction.problems.wrong[0]
+        self.assertEqual((problem.code, problem.severity), ("mesh_unreadable", "error"))
+        self.assertIn('Object "Broken"', problem.message)
+        self.assertIn("corner 5 uses vertex 4000000000 of 8", problem.message)

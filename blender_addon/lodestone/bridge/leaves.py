@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core import identity
+from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, Problems
 from . import ids, mesh, mesh_uvs, strands
 from .materials import Materials
@@ -116,16 +117,23 @@ class Leaves:
                 buffers = mesh.extract(shown, wanted)
                 size = 0 if buffers is None else buffers.triangle_count
         except RuntimeError as error:
-            text = f'Object "{owner.name}" cannot be read and is left out: {error}'
-            self._problems.add(owner.name, ERROR, "mesh_unreadable", text)
-            return None
+            return self._unreadable(owner, error)
         if buffers is None:
             return None
         base, name = self._name(shown, owner, slots)
         uid = self._uid(base, color, look)
         add = self._model.add_strands if shown.type == "CURVES" else self._model.add_faces
-        item = add(uid, name, buffers, indices, ids.role(look.environment), look.deforms)
+        try:
+            item = add(uid, name, buffers, indices, ids.role(look.environment), look.deforms)
+        except native.LodestoneError as error:
+            if error.status != native.Status.INVALID_ARGUMENT:
+                raise
+            return self._unreadable(owner, error)  # a file may hold faces of what is not there
         return Leaf(item, uid, shown.data.name, _names(slots), size)
+
+    def _unreadable(self, owner: Any, error: Exception) -> None:
+        text = f'Object "{owner.name}" cannot be read and is left out: {error}'
+        self._problems.add(owner.name, ERROR, "mesh_unreadable", text)
 
     def _add_hair(
         self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
