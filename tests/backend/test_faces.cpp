@@ -2,9 +2,8 @@
 // Guards Faces: the triangles, vertices and normals that polygons become.
 #include "model/faces.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
 #include <string>
 

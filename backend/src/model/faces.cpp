@@ -88,9 +88,8 @@ std::vector<glm::vec3> vertex_normals(const Faces& faces) {
         const glm::dvec3 closing = unit(point(faces, begin) - point(faces, end - 1));
         glm::dvec3 before = closing;
         for (size_t corner = begin; corner < end; ++corner) {
-            const glm::dvec3 after = corner + 1 == end
-                                         ? closing
-                                         : unit(point(faces, corner + 1) - point(faces, corner));
+            const glm::dvec3 after =
+                corner + 1 == end ? closing : unit(point(faces, corner + 1) - point(faces, corner));
             const double turn = std::clamp(-glm::dot(before, after), -1.0, 1.0);
             sums[faces.vertices[corner]] += std::acos(turn) * normal;
             before = after;
@@ -105,10 +104,8 @@ std::vector<glm::vec3> vertex_normals(const Faces& faces) {
 class Corners {
 public:
     explicit Corners(const Faces& faces) : faces_(faces) {
-        const bool smooth =
-            std::find_if(faces.smooth.begin(), faces.smooth.end(), [](uint8_t s) {
-                return s != 0;
-            }) != faces.smooth.end();
+        const bool smooth = std::find_if(faces.smooth.begin(), faces.smooth.end(),
+                                         [](uint8_t s) { return s != 0; }) != faces.smooth.end();
         if (smooth)
             vertex_normals_ = vertex_normals(faces);
         has_normals_ = smooth || faces.normals != nullptr;
@@ -191,7 +188,8 @@ void check(const Faces& faces) {
                  " corners comes without triangles");
     }
     if (faces.triangles.size() % 3 != 0)
-        fail(Status::InvalidArgument, faces.triangles.size(), " corners are not those of triangles");
+        fail(Status::InvalidArgument, faces.triangles.size(),
+             " corners are not those of triangles");
     if (const auto at = beyond(faces.triangles, corners); at != faces.triangles.end())
         fail(Status::InvalidArgument, "triangle ", (at - faces.triangles.begin()) / 3,
              " uses corner ", *at, " of ", corners);

@@ -98,8 +98,7 @@ std::vector<uint8_t> with_hidden(const Model& model) {
     return out;
 }
 
-void summarize(Representation& representation, const Model& model,
-               std::optional<Hash> mesh_hash) {
+void summarize(Representation& representation, const Model& model, std::optional<Hash> mesh_hash) {
     Summary& summary = representation.summary;
     Hasher hasher;
     hasher.value(summary.kind);

@@ -33,6 +33,8 @@ class Visibility:
     def hidden(self, item: Any, in_scene: bool) -> int:
         """The ray classes that do not see it. `in_scene`: it is an object of the scene itself, not
         of a collection that is instanced (only then does its place in the view layer count)."""
+        if _plain(item) and not (in_scene and self._any["indirect_only_get"]):
+            return 0
         hidden = 0
         for name, ray_class in _SWITCHES:
             if not getattr(item, name, True):
@@ -65,6 +67,21 @@ class Visibility:
             return bool(getattr(item, question)(view_layer=self._view_layer))
         except RuntimeError:  # it is in no collection of this layer
             return False
+
+
+def _plain(item: Any) -> bool:
+    """Seen by all rays, as nearly everything is: asked for every object."""
+    try:
+        return (
+            item.visible_camera
+            and item.visible_glossy
+            and item.visible_shadow
+            and item.visible_diffuse
+            and item.visible_transmission
+            and not item.is_shadow_catcher
+        )
+    except AttributeError:  # a Blender that lacks one of them
+        return False
 
 
 def _all_layers(layer: Any) -> Iterator[Any]:
