@@ -176,6 +176,26 @@ TEST(Faces, SeamsOfTextureCoordinatesSplitVertices) {
     EXPECT_EQ(mesh.uvs[mesh.triangles[1].y], glm::vec2(.5, .5));
 }
 
+TEST(Faces, ColorsOfVerticesGoWithThem) {
+    Polygons seam;
+    seam.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    seam.add({0, 1, 2});
+    seam.add({0, 2, 3});
+    Faces faces = seam.view();
+    const std::vector<float> colors = {1, 0, 0, 1, 0, 1, 0, 1, .2f, .4f, .6f, .8f, 0, 0, 0, 0};
+    faces.vertex_colors = colors.data();
+    const glm::vec4 third(.2f, .4f, .6f, .8f);
+    Mesh mesh = mesh_of(faces, 1);
+    ASSERT_EQ(mesh.colors.size(), 4u);
+    EXPECT_EQ(mesh.colors[2], third);
+    const std::vector<float> uvs = {0, 0, 1, 0, 1, 1, 0, 0, .5, .5, 0, 1};
+    faces.uvs = uvs.data();  // splits the third vertex
+    mesh = mesh_of(faces, 1);
+    ASSERT_EQ(mesh.colors.size(), 5u);
+    EXPECT_EQ(mesh.colors[2], third);
+    EXPECT_EQ(mesh.colors[4], third);
+}
+
 TEST(Faces, LastDigitsOfGivenNormalsDoNotChangeTheMesh) {
     const Hash made = hash_of(mesh_of(cube(1).view(), 1));
     Polygons given = cube(1);

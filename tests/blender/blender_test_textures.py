@@ -347,7 +347,11 @@ class VertexColors(TextureCase):
 
         look, self.codes = self.translate()
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        return mesh.extract(shown, [Wanted(look.coordinates, look.vertex_colors)]).corner_colors
+        found = mesh.extract(shown, [Wanted(look.coordinates, look.vertex_colors)])
+        if found.vertex_colors is None:
+            return found.corner_colors
+        places = (range(4 * vertex, 4 * vertex + 4) for vertex in found.corner_vertices)
+        return [found.vertex_colors[at] for place in places for at in place]
 
     def test_they_are_linear_whatever_they_are_stored_as(self):
         self.node("ShaderNodeVertexColor", ("Color", self.base)).layer_name = "Paint"

@@ -235,17 +235,18 @@ typedef struct lds_faces_view {
     const uint32_t* face_starts; /* uint32[face_count]: first corner of each, rising from 0; null:
                                     all have three */
     size_t face_count;
-    const uint32_t* triangles; /* uint32[triangle_count][3] corners, in the order of the faces; null:
-                                  no face has more than four */
+    const uint32_t* triangles; /* uint32[triangle_count][3] corners, in the order of the faces;
+                                  null: no face has more than four */
     size_t triangle_count;
-    const uint8_t* face_smooth; /* uint8[face_count]; null: all flat */
-    const int32_t* face_slots;  /* int32[face_count]; null: all 0. Outside 0...material_count-1
-                                   counts as the nearest slot */
+    const uint8_t* face_smooth;  /* uint8[face_count]; null: all flat */
+    const int32_t* face_slots;   /* int32[face_count]; null: all 0. Outside 0...material_count-1
+                                    counts as the nearest slot */
     const float* corner_normals; /* float32[corner_count][3]; null: smooth faces have at each vertex
                                     the mean of the faces' normals there, weighted by their angles.
                                     Given ones that are these but for rounding become these */
     const float* corner_uvs;     /* float32[corner_count][2]; null: none */
     const float* corner_colors;  /* float32[corner_count][4] linear RGBA, straight; null: white */
+    const float* vertex_colors;  /* float32[vertex_count][4], where corner_colors is null */
 } lds_faces_view;
 
 /* Hair or grass: lines with radii. Points of all strands in a row, each strand's root first. */

@@ -79,6 +79,7 @@ class FaceBuffers:
     corner_normals: Buffer | None = None  # [corner][3]; None: those of the faces
     corner_uvs: Buffer | None = None  # [corner][2]
     corner_colors: Buffer | None = None  # [corner][4] linear RGBA, straight
+    vertex_colors: Buffer | None = None  # [vertex][4], where corner_colors is None
 
     @property
     def triangle_count(self) -> int:
@@ -96,6 +97,10 @@ class FaceBuffers:
             given = getattr(self, name)
             if given is not None and count(name, given, width) != corners:
                 raise ValueError(f"{name} and corner_vertices differ in their number of corners")
+        vertices = count("positions", self.positions, 3)
+        colors = self.vertex_colors
+        if colors is not None and count("vertex_colors", colors, 4) != vertices:
+            raise ValueError("vertex_colors and positions differ in their number of vertices")
         if self.face_smooth is not None and count("face_smooth", self.face_smooth, 1, 1) != faces:
             raise ValueError("face_smooth has another number of faces")
         if self.face_slots is not None and count("face_slots", self.face_slots, 1) != faces:
@@ -103,7 +108,7 @@ class FaceBuffers:
         triangles = 0 if self.triangles is None else count("triangles", self.triangles, 3)
         return structs.FacesView(
             positions=address(self.positions),
-            vertex_count=count("positions", self.positions, 3),
+            vertex_count=vertices,
             corner_vertices=address(self.corner_vertices),
             corner_count=corners,
             face_starts=address(self.face_starts),
@@ -115,6 +120,7 @@ class FaceBuffers:
             corner_normals=address(self.corner_normals),
             corner_uvs=address(self.corner_uvs),
             corner_colors=address(self.corner_colors),
+            vertex_colors=address(colors),
         )
 
 

@@ -171,6 +171,7 @@ class FacesView(Sized):
         ("corner_normals", c_void_p),
         ("corner_uvs", c_void_p),
         ("corner_colors", c_void_p),
+        ("vertex_colors", c_void_p),
     ]
 
 

@@ -100,6 +100,7 @@ Faces lodestone::capi::faces_of(const lds_faces_view* view) {
     out.normals = given.corner_normals;
     out.uvs = given.corner_uvs;
     out.colors = given.corner_colors;
+    out.vertex_colors = given.vertex_colors;
     check(out);
     return out;
 }

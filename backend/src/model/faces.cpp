@@ -233,10 +233,16 @@ Mesh mesh_of(const Faces& faces, size_t slot_count) {
             mesh.slots.push_back(static_cast<uint16_t>(std::clamp(faces.slots[face], 0, last)));
         });
     }
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::vec4) == 4 * sizeof(float));
     mesh.positions.resize(faces.vertex_count);
     if (faces.vertex_count > 0)
         std::memcpy(mesh.positions.data(), faces.positions, faces.vertex_count * sizeof(glm::vec3));
+    if (faces.colors == nullptr && faces.vertex_colors != nullptr) {
+        mesh.colors.resize(faces.vertex_count);
+        if (faces.vertex_count > 0)
+            std::memcpy(mesh.colors.data(), faces.vertex_colors,
+                        faces.vertex_count * sizeof(glm::vec4));
+    }
     if (corners.whole()) {
         mesh.normals = std::move(corners.of_vertices());
         for_each_triangle(faces, [&](size_t, uint32_t a, uint32_t b, uint32_t c) {
@@ -269,6 +275,8 @@ Mesh mesh_of(const Faces& faces, size_t slot_count) {
         if (faces.colors != nullptr) {
             const float* c = faces.colors + 4 * corner;
             color = {c[0], c[1], c[2], c[3]};
+        } else if (!mesh.colors.empty()) {
+            color = mesh.colors[position];
         }
         uint32_t vertex = position;
         if (taken[position] != 0) {

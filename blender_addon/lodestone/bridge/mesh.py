@@ -53,10 +53,11 @@ def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
         buffers.corner_uvs = mesh_uvs.corner_uvs(
             mesh, buffers, shown, [item.coordinates for item in wanted]
         )
-    if any(item.vertex_colors is not None for item in wanted):
-        buffers.corner_colors = mesh_colors.corner_colors(
-            mesh, [item.vertex_colors for item in wanted]
-        )
+    colors = [item.vertex_colors for item in wanted]
+    if any(item is not None for item in colors):
+        buffers.vertex_colors = mesh_colors.vertex_colors(mesh, colors)
+        if buffers.vertex_colors is None:
+            buffers.corner_colors = mesh_colors.corner_colors(mesh, colors)
     return buffers
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Color attributes of a mesh's corners, each slot's as its material wants them."""
+"""Color attributes of a mesh, each slot's as its material wants them."""
 
 from array import array
 from collections.abc import Sequence
@@ -11,10 +11,20 @@ from .looks import VertexColors
 from .mesh_uvs import corners_of_slots
 
 
+def vertex_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array | None:
+    """[vertex][4], linear, where one attribute of the vertices is all that is wanted, as it is most
+    often; None: ask for corner_colors()."""
+    kinds = _kinds(wanted)
+    attribute = compat.color_attribute(mesh, kinds[0].name)
+    if len(kinds) > 1 or attribute is None or attribute.domain != "POINT":
+        return None
+    return _masked(_read(attribute), kinds[0])
+
+
 def corner_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array:
     """[corner][4], linear, by slot; white where a slot wants none. An attribute the mesh lacks is
     black, as in Blender."""
-    kinds = list(dict.fromkeys(item for item in wanted if item is not None))
+    kinds = _kinds(wanted)
     if len(kinds) == 1:  # the other slots do not look at them
         return _colors(mesh, kinds[0])
     colors = array("f", [1.0]) * (4 * len(mesh.loops))
@@ -25,23 +35,37 @@ def corner_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array:
     return colors
 
 
+def _kinds(wanted: Sequence[VertexColors | None]) -> list[VertexColors]:
+    return list(dict.fromkeys(item for item in wanted if item is not None))
+
+
 def _colors(mesh: Any, wanted: VertexColors) -> array:
-    corners = len(mesh.loops)
+    """Of the corners."""
     attribute = compat.color_attribute(mesh, wanted.name)
-    white = array("f", [1.0])
     if attribute is None:
-        colors = compat.buffer("f", 4 * corners)
-        colors[3::4] = white * corners
+        colors = compat.buffer("f", 4 * len(mesh.loops))
+        colors[3::4] = array("f", [1.0]) * len(mesh.loops)
     else:
-        colors = compat.buffer("f", 4 * len(attribute.data))
-        attribute.data.foreach_get("color", colors)
+        colors = _read(attribute)
         if attribute.domain == "POINT":
             colors = _to_corners(mesh, colors)
+    return _masked(colors, wanted)
+
+
+def _read(attribute: Any) -> array:
+    colors = compat.buffer("f", 4 * len(attribute.data))
+    attribute.data.foreach_get("color", colors)
+    return colors
+
+
+def _masked(colors: array, wanted: VertexColors) -> array:
+    """White in what does not count."""
+    white = array("f", [1.0]) * (len(colors) // 4)
     if not wanted.alpha:
-        colors[3::4] = white * corners
+        colors[3::4] = white
     if not wanted.color:
         for k in range(3):
-            colors[k::4] = white * corners
+            colors[k::4] = white
     return colors
 
 
