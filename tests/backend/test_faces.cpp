@@ -200,22 +200,19 @@ TEST(Faces, LastDigitsOfGivenNormalsDoNotChangeTheMesh) {
     const Hash made = hash_of(mesh_of(cube(1).view(), 1));
     Polygons given = cube(1);
     for (const uint32_t vertex : given.vertices) {
-        for (int i = 0; i < 3; ++i) {
-            const float exact = given.positions[3 * vertex + static_cast<size_t>(i)] * 0.57735027f;
+        for (size_t i = 0; i < 3; ++i) {
+            const float exact = given.positions[3 * size_t{vertex} + i] * 0.57735027f;
             given.normals.push_back(exact * (1 + 3e-7f * static_cast<float>(vertex % 3)));
         }
     }
-    const Mesh mesh = mesh_of(given.view(), 1);
-    EXPECT_EQ(mesh.positions.size(), 8u);
-    std::vector<glm::vec3> normals(mesh.normals);
+    EXPECT_EQ(hash_of(mesh_of(given.view(), 1)), made);
     Polygons turned = given;
     turned.normals[0] += 0.01f;  // a normal of its own is kept
     EXPECT_EQ(mesh_of(turned.view(), 1).positions.size(), 9u);
     Polygons other = given;
     for (float& value : other.normals)
         value *= 1 - 2e-7f;
-    EXPECT_EQ(hash_of(mesh_of(other.view(), 1)), hash_of(mesh));
-    EXPECT_NE(made, Hash{0});
+    EXPECT_EQ(hash_of(mesh_of(other.view(), 1)), made);
 }
 
 TEST(Faces, FacesThatDoNotFollowEachOtherAreNamed) {

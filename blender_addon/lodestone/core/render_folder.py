@@ -45,8 +45,8 @@ class RenderFolder:
             held.__exit__(*error)
 
     def _tidy(self, frame: int) -> None:
-        """Removes what neither this frame nor the one before uses: what changes its shape would fill
-        the disk. Another view layer of the frame may use what the one before it used."""
+        """Removes what neither this frame nor the one before uses: what changes its shape would
+        fill the disk. Of one frame the next view layer may use what the one before it used."""
         before, now = self._used
         if frame != self._frame:
             before, now = now, set()
