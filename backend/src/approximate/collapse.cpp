@@ -37,15 +37,14 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
         for (int i = 0; i < 3; ++i)
             near_a_.set(corners[i]);
     }
-    size_t shared = 0;
     size_t common = 0;
-    left_ = 0;
+    shared_ = left_ = 0;
     for (const uint32_t t : adjacency_.around(b)) {
         if (mesh_.dead(t))
             continue;
         const Triangle& corners = mesh_.triangles[t];
         const bool on = on_edge(t, a);
-        shared += on;
+        shared_ += on;
         left_ += !on;
         for (int i = 0; i < 3; ++i) {
             const uint32_t u = corners[i];
@@ -57,28 +56,30 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
     }
     for (const uint32_t t : adjacency_.around(a))
         left_ += !mesh_.dead(t) && !on_edge(t, b);
-    if (!search && common != shared)
+    if (!search && common != shared_)
         return false;
     // A hub's coinciding triangles are left: finding them takes quadratic time.
     const bool hub = adjacency_.valence(a) + adjacency_.valence(b) > kMostAround;
-    return left_ > 0 && (hub || !find_coinciding(a, b)) && common == shared;
+    return left_ > 0 && (hub || !find_coinciding(a, b)) && common == shared_;
 }
 
-bool Collapser::turns_allow(uint32_t moved, uint32_t other, const glm::dvec3& point) const {
+bool Collapser::turns_allow(const std::vector<glm::dvec3>& points,
+                            const std::vector<glm::dvec3>& facets, uint32_t moved, uint32_t other,
+                            const glm::dvec3& point) const {
     for (const uint32_t t : adjacency_.around(moved)) {
         if (mesh_.dead(t) || on_edge(t, other))
             continue;
         const Triangle& corners = mesh_.triangles[t];
         glm::dvec3 p[3];
         for (int i = 0; i < 3; ++i)
-            p[i] = corners[i] == moved ? point : mesh_.points[corners[i]];
+            p[i] = corners[i] == moved ? point : points[corners[i]];
         const glm::dvec3 facet = 0.5 * glm::cross(p[1] - p[0], p[2] - p[0]);
-        const glm::dvec3& old = mesh_.facets[t];
+        const glm::dvec3& old = facets[t];
         const double square = glm::dot(facet, facet);
         const double old_square = glm::dot(old, old);
         const double longest = longest_square(p[0], p[1], p[2]);
-        const double old_longest = longest_square(mesh_.points[corners.x], mesh_.points[corners.y],
-                                                  mesh_.points[corners.z]);
+        const double old_longest =
+            longest_square(points[corners.x], points[corners.y], points[corners.z]);
         // Where there was no area there is no side to keep.
         const bool flat_before = old_square <= 1e-20 * old_longest * old_longest;
         if (flat_before)
@@ -90,6 +91,20 @@ bool Collapser::turns_allow(uint32_t moved, uint32_t other, const glm::dvec3& po
             return false;
         if (effort_ < Effort::Rough && 4 * square < kThin * kThin * longest * longest &&
             square * old_longest * old_longest < old_square * longest * longest)
+            return false;
+    }
+    return true;
+}
+
+bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point,
+                                std::span<const glm::dvec3> others) const {
+    if (!turns_allow(mesh_.points, mesh_.facets, a, b, point) ||
+        !turns_allow(mesh_.points, mesh_.facets, b, a, point))
+        return false;
+    for (size_t i = 0; i < others.size(); ++i) {
+        const OtherPose& pose = mesh_.others[i];
+        if (!turns_allow(pose.points, pose.facets, a, b, others[i]) ||
+            !turns_allow(pose.points, pose.facets, b, a, others[i]))
             return false;
     }
     return true;
@@ -121,7 +136,8 @@ bool Collapser::find_coinciding(uint32_t a, uint32_t b) {
     return !doomed_.empty();
 }
 
-size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point) {
+size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point,
+                           std::span<const glm::dvec3> others) {
     const size_t around = adjacency_.valence(a) + adjacency_.valence(b);
     work_ += around;
     if (around > kMostAround && effort_ < Effort::Anything)
@@ -132,7 +148,10 @@ size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point) {
         return 0;
     if (left_ <= doomed_.size())
         return 0;
-    if (effort_ < Effort::Anything && (!turns_allow(a, b, point) || !turns_allow(b, a, point)))
+    // An earlier collapse of this pass took the edge's triangles: it is none any more.
+    if (shared_ == 0)
+        return 0;
+    if (effort_ < Effort::Anything && !all_turns_allow(a, b, point, others))
         return 0;
     const bool carried = !mesh_.wedges.empty();
     if (carried && !wedges_.plan(mesh_, adjacency_, a, b, point, effort_ >= Effort::Rough))
@@ -143,6 +162,10 @@ size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point) {
         ++gone;
     }
     mesh_.points[a] = point;
+    for (size_t i = 0; i < others.size(); ++i)
+        mesh_.others[i].points[a] = others[i];
+    if (!mesh_.ids.empty())
+        mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
     for (const uint32_t end : {a, b}) {
         for (const uint32_t t : adjacency_.around(end)) {
             if (mesh_.dead(t))
@@ -161,6 +184,8 @@ size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point) {
                     mesh_.wedges[t][i] = wedges_.wedge_of(mesh_.wedges[t][i]);
             }
             mesh_.facets[t] = mesh_.facet_of(corners);
+            for (OtherPose& other : mesh_.others)
+                other.facets[t] = CollapseMesh::facet_of(other.points, corners);
         }
     }
     if (carried)

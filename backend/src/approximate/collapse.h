@@ -14,17 +14,22 @@ public:
     Collapser(CollapseMesh& mesh, const Adjacency& adjacency, Effort effort, double max_turn);
 
     /// Collapses a and b into a at `point`, or changes nothing and returns 0. Returns how many
-    /// triangles went.
-    size_t collapse(uint32_t a, uint32_t b, const glm::dvec3& point);
+    /// triangles went. `others`: where it goes in each of the mesh's other poses.
+    size_t collapse(uint32_t a, uint32_t b, const glm::dvec3& point,
+                    std::span<const glm::dvec3> others = {});
 
     /// Triangles looked at so far: what a pass may spend is bounded by it.
     size_t work() const { return work_; }
 
 private:
-    /// True when the surface stays as connected as it was. Counts left_; fills doomed_ if it could
+    /// True when the surface stays as connected as it was. Counts left_ and shared_; fills doomed_ if it could
     /// be true, or always with `search`.
     bool link_allows(uint32_t a, uint32_t b, bool search);
-    bool turns_allow(uint32_t moved, uint32_t other, const glm::dvec3& point) const;
+    bool turns_allow(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec3>& facets,
+                     uint32_t moved, uint32_t other, const glm::dvec3& point) const;
+    /// Both ends, in all poses.
+    bool all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point,
+                         std::span<const glm::dvec3> others) const;
     /// Fills doomed_ with triangles that would coincide: opposite pairs vanish, copies stay once.
     bool find_coinciding(uint32_t a, uint32_t b);
     bool on_edge(uint32_t triangle, uint32_t other) const {
@@ -40,7 +45,8 @@ private:
     Marks common_;
     WedgeMerge wedges_;
     std::vector<uint32_t> doomed_;
-    size_t left_ = 0;  // triangles around the edge that are not on it
+    size_t left_ = 0;    // triangles around the edge that are not on it
+    size_t shared_ = 0;  // triangles on it
     size_t work_ = 0;
 };
 

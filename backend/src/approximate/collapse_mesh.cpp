@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace lodestone::approximate {
 namespace {
@@ -20,7 +21,8 @@ bool finite(const glm::vec3& v) {
 /// Finds the output vertex of (vertex, attributes), or makes it.
 class OutputVertices {
 public:
-    OutputVertices(Mesh& out, size_t vertices) : out_(out), heads_(vertices, kNone) {}
+    OutputVertices(Mesh& out, size_t vertices, std::vector<uint32_t>* made)
+        : out_(out), heads_(vertices, kNone), made_(made) {}
 
     uint32_t at(uint32_t vertex, const glm::vec3& position, const glm::vec3* normal,
                 const glm::vec2* uv, const glm::vec4* color) {
@@ -41,6 +43,8 @@ public:
             out_.uvs.push_back(*uv);
         if (color != nullptr)
             out_.colors.push_back(*color);
+        if (made_ != nullptr)
+            made_->push_back(vertex);
         next_.push_back(heads_[vertex]);
         heads_[vertex] = fresh;
         return fresh;
@@ -50,11 +54,25 @@ private:
     Mesh& out_;
     std::vector<uint32_t> heads_;
     std::vector<uint32_t> next_;
+    std::vector<uint32_t>* made_;
 };
+
+/// About the middle of their box, so that what went far away loses no digits.
+std::vector<glm::dvec3> scaled(const std::vector<glm::vec3>& positions, double scale) {
+    Box3 box;
+    for (const glm::vec3& position : positions)
+        box.add(glm::dvec3(position));
+    const glm::dvec3 center = box.center();
+    std::vector<glm::dvec3> points;
+    points.reserve(positions.size());
+    for (const glm::vec3& position : positions)
+        points.push_back((glm::dvec3(position) - center) / scale);
+    return points;
+}
 
 }  // namespace
 
-CollapseMesh open(const Mesh& source, const Job& job) {
+CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, bool tracked) {
     CollapseMesh mesh;
     mesh.has_normals = !source.normals.empty();
     Box3 box;
@@ -74,6 +92,12 @@ CollapseMesh open(const Mesh& source, const Job& job) {
     mesh.points.reserve(source.positions.size());
     for (const glm::vec3& position : source.positions)
         mesh.points.push_back((glm::dvec3(position) - mesh.center) / mesh.scale);
+    for (const std::vector<glm::vec3>& positions : others)
+        mesh.others.push_back({scaled(positions, mesh.scale), {}});
+    if (tracked) {
+        mesh.sources.resize(mesh.points.size());
+        std::iota(mesh.sources.begin(), mesh.sources.end(), 0u);
+    }
     job.check();
     {
         const std::vector<uint32_t> welded = weld(source);
@@ -103,6 +127,16 @@ CollapseMesh open(const Mesh& source, const Job& job) {
     mesh.facets.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles)
         mesh.facets.push_back(mesh.facet_of(t));
+    for (OtherPose& other : mesh.others) {
+        other.facets.reserve(mesh.triangles.size());
+        for (const Triangle& t : mesh.triangles)
+            other.facets.push_back(CollapseMesh::facet_of(other.points, t));
+    }
+    if (tracked) {
+        mesh.ids.resize(mesh.points.size());
+        std::iota(mesh.ids.begin(), mesh.ids.end(), 0u);
+        mesh.merged = mesh.ids;
+    }
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();
@@ -120,6 +154,8 @@ void compact(CollapseMesh& mesh) {
             moved[mesh.triangles[i][corner]] = 0;
         mesh.triangles[kept] = mesh.triangles[i];
         mesh.facets[kept] = mesh.facets[i];
+        for (OtherPose& other : mesh.others)
+            other.facets[kept] = other.facets[i];
         if (!mesh.wedges.empty())
             mesh.wedges[kept] = mesh.wedges[i];
         if (!mesh.slots.empty())
@@ -128,6 +164,8 @@ void compact(CollapseMesh& mesh) {
     }
     mesh.triangles.resize(kept);
     mesh.facets.resize(kept);
+    for (OtherPose& other : mesh.others)
+        other.facets.resize(kept);
     if (!mesh.wedges.empty())
         mesh.wedges.resize(kept);
     if (!mesh.slots.empty())
@@ -138,20 +176,28 @@ void compact(CollapseMesh& mesh) {
         if (moved[v] == kNone)
             continue;
         mesh.points[count] = mesh.points[v];
+        for (OtherPose& other : mesh.others)
+            other.points[count] = other.points[v];
+        if (!mesh.ids.empty())
+            mesh.ids[count] = mesh.ids[v];
         mesh.parts[count] = mesh.parts[v];
         moved[v] = count++;
     }
     mesh.points.resize(count);
+    for (OtherPose& other : mesh.others)
+        other.points.resize(count);
+    if (!mesh.ids.empty())
+        mesh.ids.resize(count);
     mesh.parts.resize(count);
     for (Triangle& t : mesh.triangles)
         t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
 }
 
-Mesh extract(const CollapseMesh& mesh) {
+Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made) {
     constexpr double kMost = std::numeric_limits<float>::max();
     Mesh out;
     out.triangles.reserve(mesh.live);
-    OutputVertices vertices(out, mesh.points.size());
+    OutputVertices vertices(out, mesh.points.size(), made);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i))
             continue;

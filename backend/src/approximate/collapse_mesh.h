@@ -5,11 +5,18 @@
 #include "base/job.h"
 #include "model/mesh.h"
 
+#include <span>
 #include <vector>
 
 namespace lodestone::approximate {
 
 inline constexpr uint32_t kNone = ~uint32_t{0};
+
+/// The same vertices where another frame of an animation has them, in a frame of their own.
+struct OtherPose {
+    std::vector<glm::dvec3> points;  // recentred and scaled as much as the mesh
+    std::vector<glm::dvec3> facets;
+};
 
 /// Vertices at one position are one vertex, except where sheets only touch in a point or coincide
 /// (those are split, so that every sheet can be simplified by itself).
@@ -23,6 +30,10 @@ struct CollapseMesh {
     std::vector<glm::vec3> normals;   // empty or one a wedge
     std::vector<glm::vec2> uvs;       // empty or one a wedge
     std::vector<glm::vec4> colors;    // empty or one a wedge
+    std::vector<OtherPose> others;    // what a collapse must suit besides; mostly none
+    std::vector<uint32_t> ids;      // empty, or of each vertex: its first number, into the next two
+    std::vector<uint32_t> sources;  // the input vertex (the welded one) it was
+    std::vector<uint32_t> merged;   // the vertex it was collapsed into, by first number, or itself
     uint32_t part_count = 0;
     size_t live = 0;  // triangles not dead
     glm::dvec3 center{0.0};
@@ -31,18 +42,34 @@ struct CollapseMesh {
     bool has_normals = false;
 
     bool dead(size_t triangle) const { return triangles[triangle].x == kNone; }
-    glm::dvec3 facet_of(const Triangle& t) const {
+    glm::dvec3 facet_of(const Triangle& t) const { return facet_of(points, t); }
+    static glm::dvec3 facet_of(const std::vector<glm::dvec3>& points, const Triangle& t) {
         return 0.5 * glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]);
+    }
+    /// Appends a vertex that is where another one is; returns its index. Before there are ids.
+    uint32_t copy_vertex(uint32_t vertex) {
+        points.push_back(glm::dvec3(points[vertex]));
+        for (OtherPose& other : others)
+            other.points.push_back(glm::dvec3(other.points[vertex]));
+        if (!sources.empty())
+            sources.push_back(uint32_t{sources[vertex]});
+        return static_cast<uint32_t>(points.size() - 1);
     }
 };
 
-/// Leaves out triangles with non-finite vertices and those with two corners in one place.
-CollapseMesh open(const Mesh& mesh, const Job& job);
+/// Positions of the input's vertices in other frames, each as many as it has and finite.
+using OtherPositions = std::span<const std::vector<glm::vec3>>;
+
+/// Leaves out triangles with non-finite vertices and those with two corners in one place. With
+/// `tracked` it remembers which vertices are collapsed into which.
+CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {},
+                  bool tracked = false);
 
 /// Drops dead triangles and the vertices nothing uses, keeping order.
 void compact(CollapseMesh& mesh);
 
-/// Back to metres; vertices are split only where attributes differ.
-Mesh extract(const CollapseMesh& mesh);
+/// Back to metres; vertices are split only where attributes differ. `vertices`, when given, gets
+/// the vertex of `mesh` that each of the result's was.
+Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr);
 
 }  // namespace lodestone::approximate

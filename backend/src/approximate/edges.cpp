@@ -33,6 +33,20 @@ void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet
     quadric.add(edge, -weight);
 }
 
+/// The planes of the triangles around a vertex, and the sum of their area vectors.
+void add_planes(const std::vector<glm::dvec3>& facets, std::span<const uint32_t> around,
+                Quadric& quadric, glm::dvec3& out_sum) {
+    glm::dvec3 sum(0.0);
+    for (const uint32_t t : around) {
+        const glm::dvec3& facet = facets[t];
+        sum += facet;
+        const double area = glm::length(facet);
+        if (area > 1e-150)
+            quadric.add(facet, 1 / area);
+    }
+    out_sum = sum;
+}
+
 /// By how much the colors on both sides of an edge miss being one linear ramp, where the nearer of
 /// the two opposite corners is: 0 inside a smooth ramp, up to 1 where paint ends. As a picture
 /// encodes colors, roughly.
@@ -73,14 +87,11 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
                   const SimplifyOptions& options, uint32_t vertex) {
     neighbors_.clear();
     marks_.clear();
-    Quadric& quadric = quadrics_[vertex];
-    glm::dvec3 sum(0.0);
+    add_planes(mesh.facets, adjacency.around(vertex), own_.quadrics[vertex], own_.facets[vertex]);
+    for (size_t i = 0; i < others_.size(); ++i)
+        add_planes(mesh.others[i].facets, adjacency.around(vertex), others_[i].quadrics[vertex],
+                   others_[i].facets[vertex]);
     for (const uint32_t t : adjacency.around(vertex)) {
-        const glm::dvec3& facet = mesh.facets[t];
-        sum += facet;
-        const double area = glm::length(facet);
-        if (area > 1e-150)
-            quadric.add(facet, 1 / area);
         const Triangle& corners = mesh.triangles[t];
         const int at = corner_of(corners, vertex);
         for (const int step : {1, 2}) {
@@ -97,7 +108,6 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
             }
         }
     }
-    facets_[vertex] = sum;
     int borders = 0;
     for (const Neighbor& n : neighbors_) {
         const bool two = n.uses == 2;
@@ -126,10 +136,16 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
                 weight = std::max(weight, kink * options.boundary_weight);
         }
         if (weight > 0) {
-            const glm::dvec3 edge = mesh.points[n.vertex] - mesh.points[vertex];
-            hold_edge(quadric, edge, mesh.facets[n.t0], weight);
-            if (n.t1 != kNone)
-                hold_edge(quadric, edge, mesh.facets[n.t1], weight);
+            const auto hold = [&](const std::vector<glm::dvec3>& points,
+                                  const std::vector<glm::dvec3>& facets, Quadric& quadric) {
+                const glm::dvec3 edge = points[n.vertex] - points[vertex];
+                hold_edge(quadric, edge, facets[n.t0], weight);
+                if (n.t1 != kNone)
+                    hold_edge(quadric, edge, facets[n.t1], weight);
+            };
+            hold(mesh.points, mesh.facets, own_.quadrics[vertex]);
+            for (size_t i = 0; i < others_.size(); ++i)
+                hold(mesh.others[i].points, mesh.others[i].facets, others_[i].quadrics[vertex]);
         }
         if (n.vertex > vertex)
             edges_.push_back({vertex, n.vertex, n.t0, two ? n.t1 : kNone});
@@ -144,8 +160,10 @@ void Edges::build(const CollapseMesh& mesh, const Adjacency& adjacency,
     const size_t vertices = mesh.points.size();
     edges_.clear();
     edges_.reserve(mesh.triangles.size() * 3 / 2 + 16);
-    quadrics_.assign(vertices, Quadric{});
-    facets_.resize(vertices);
+    own_.resize(vertices);
+    others_.resize(mesh.others.size());
+    for (Around& other : others_)
+        other.resize(vertices);
     kinds_.resize(vertices);
     marks_.resize(vertices);
     for (uint32_t v = 0; v < vertices; ++v) {
@@ -166,19 +184,39 @@ bool Edges::allowed(const Edge& edge, Effort effort) const {
     return edge.border() || a == VertexKind::Free || b == VertexKind::Free;
 }
 
-Optimum Edges::optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const {
-    const EdgeEnd a = end(mesh, edge.a);
-    const EdgeEnd b = end(mesh, edge.b);
+Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
+                          const std::vector<glm::dvec3>& facets, const Around& around,
+                          const Edge& edge, Effort effort) const {
+    const EdgeEnd a{points[edge.a], around.quadrics[edge.a], around.facets[edge.a]};
+    const EdgeEnd b{points[edge.b], around.quadrics[edge.b], around.facets[edge.b]};
     const bool fixed_a = kinds_[edge.a] == VertexKind::Fixed;
     const bool fixed_b = kinds_[edge.b] == VertexKind::Fixed;
     if (fixed_a != fixed_b || (fixed_a && effort < Effort::Topology)) {
         const glm::dvec3& point = fixed_a ? a.point : b.point;
         return {point, cost_at(a, b, point)};
     }
-    glm::dvec3 shared = mesh.facets[edge.t0];
+    glm::dvec3 shared = facets[edge.t0];
     if (edge.t1 != kNone)
-        shared += mesh.facets[edge.t1];
+        shared += facets[edge.t1];
     return best_point(a, b, shared);
+}
+
+Optimum Edges::optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const {
+    Optimum best = optimum_in(mesh.points, mesh.facets, own_, edge, effort);
+    for (size_t i = 0; i < others_.size(); ++i) {
+        const OtherPose& pose = mesh.others[i];
+        best.cost += optimum_in(pose.points, pose.facets, others_[i], edge, effort).cost;
+    }
+    return best;
+}
+
+void Edges::other_points(const CollapseMesh& mesh, const Edge& edge, Effort effort,
+                         std::vector<glm::dvec3>& points) const {
+    points.clear();
+    for (size_t i = 0; i < others_.size(); ++i) {
+        const OtherPose& pose = mesh.others[i];
+        points.push_back(optimum_in(pose.points, pose.facets, others_[i], edge, effort).point);
+    }
 }
 
 }  // namespace lodestone::approximate

@@ -38,22 +38,34 @@ public:
 
     /// False when the kinds of its ends forbid it.
     bool allowed(const Edge& edge, Effort effort) const;
+    /// Where it goes; the cost is that of all poses together.
     Optimum optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const;
+    /// Where it goes in each of the mesh's other poses.
+    void other_points(const CollapseMesh& mesh, const Edge& edge, Effort effort,
+                      std::vector<glm::dvec3>& points) const;
 
 private:
+    /// Of a vertex's surroundings in one pose.
+    struct Around {
+        std::vector<Quadric> quadrics;   // by vertex
+        std::vector<glm::dvec3> facets;  // likewise: their sum
+        void resize(size_t vertices) {
+            quadrics.assign(vertices, Quadric{});
+            facets.resize(vertices);
+        }
+    };
     void visit(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
                uint32_t vertex);
-    EdgeEnd end(const CollapseMesh& mesh, uint32_t vertex) const {
-        return {mesh.points[vertex], quadrics_[vertex], facets_[vertex]};
-    }
+    Optimum optimum_in(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec3>& facets,
+                       const Around& around, const Edge& edge, Effort effort) const;
 
     struct Neighbor {
         uint32_t vertex, uses, t0, t1;
         bool leaving0, leaving1;  // the triangle runs vertex -> neighbor
     };
     std::vector<Edge> edges_;
-    std::vector<Quadric> quadrics_;
-    std::vector<glm::dvec3> facets_;
+    Around own_;
+    std::vector<Around> others_;  // by pose
     std::vector<VertexKind> kinds_;
     std::vector<Neighbor> neighbors_;
     Marks marks_;

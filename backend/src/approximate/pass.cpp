@@ -116,7 +116,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         if (!doomed.empty() && doomed[part])
             continue;
         const Optimum best = edges_.optimum(mesh_, edge, effort);
-        const size_t went = collapser.collapse(edge.a, edge.b, best.point);
+        edges_.other_points(mesh_, edge, effort, other_points_);
+        const size_t went = collapser.collapse(edge.a, edge.b, best.point, other_points_);
         if (went == 0)
             continue;
         used_[edge.a] = used_[edge.b] = 1;

@@ -30,6 +30,7 @@ private:
     Parts parts_;
     std::vector<uint32_t> keys_, order_, keys_spare_, order_spare_;
     std::vector<uint8_t> used_;
+    std::vector<glm::dvec3> other_points_;
 };
 
 }  // namespace lodestone::approximate

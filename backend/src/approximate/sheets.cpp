@@ -70,7 +70,7 @@ void split_layers(CollapseMesh& mesh) {
                 const auto [entry, fresh] = moved.try_emplace(
                     (uint64_t{layer} << 32u) | vertex, static_cast<uint32_t>(mesh.points.size()));
                 if (fresh)
-                    mesh.points.push_back(mesh.points[vertex]);
+                    mesh.copy_vertex(vertex);
                 vertex = entry->second;
             }
             break;
@@ -110,10 +110,8 @@ void split_fans(CollapseMesh& mesh) {
             const uint32_t root = root_of(parents, i);
             if (root == 0)
                 continue;
-            if (copy_of_root[root] == kNone) {
-                copy_of_root[root] = static_cast<uint32_t>(mesh.points.size());
-                mesh.points.push_back(mesh.points[v]);
-            }
+            if (copy_of_root[root] == kNone)
+                copy_of_root[root] = mesh.copy_vertex(v);
             Triangle& t = mesh.triangles[ring[i]];
             for (int corner = 0; corner < 3; ++corner) {
                 if (t[corner] == v)

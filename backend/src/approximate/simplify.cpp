@@ -35,21 +35,58 @@ Mesh first_triangles(const Mesh& mesh, size_t count) {
     return subset(mesh, keep);
 }
 
-}  // namespace
+/// The vertices that ended up in each place, from the collapses so far.
+TracedLevel traced(CollapseMesh& mesh) {
+    TracedLevel level;
+    level.mesh = extract(mesh, &level.places);
+    std::vector<uint32_t> place_of(mesh.merged.size(), kNone);  // by first number
+    for (uint32_t v = 0; v < mesh.ids.size(); ++v)
+        place_of[mesh.ids[v]] = v;
+    std::vector<uint32_t>& merged = mesh.merged;
+    for (uint32_t id = 0; id < merged.size(); ++id) {
+        uint32_t root = id;
+        while (merged[root] != root) {
+            merged[root] = merged[merged[root]];
+            root = merged[root];
+        }
+        merged[id] = root;
+        if (place_of[root] != kNone)
+            level.origins.emplace_back(place_of[root], mesh.sources[id]);
+    }
+    std::sort(level.origins.begin(), level.origins.end());
+    return level;
+}
 
-std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
-                                 const SimplifyOptions& options, const Job& job) {
+/// Every vertex is where it was.
+TracedLevel untouched(const Mesh& mesh) {
+    TracedLevel level{mesh, weld(mesh), {}};
+    for (uint32_t v = 0; v < level.places.size(); ++v) {
+        if (level.places[v] == v)
+            level.origins.emplace_back(v, v);
+    }
+    return level;
+}
+
+/// simplify_chain for any kind of result: made of an input that is within a target already (or of
+/// the first triangles of one that has no extent, which are not tracked), and of the mesh so far.
+template <typename Result, typename Whole, typename Taken>
+std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
+                          std::span<const size_t> targets, const SimplifyOptions& options,
+                          const Job& job, const Whole& whole, const Taken& taken) {
     check_arguments(mesh, targets, options);
-    std::vector<Mesh> results;
+    std::vector<Result> results;
+    size_t last = 0;  // triangles of the last result
     size_t next = 0;
-    for (; next < targets.size() && mesh.triangles.size() <= targets[next]; ++next)
-        results.push_back(mesh);
+    for (; next < targets.size() && mesh.triangles.size() <= targets[next]; ++next) {
+        results.push_back(whole(mesh));
+        last = mesh.triangles.size();
+    }
     if (next == targets.size())
         return results;
-    CollapseMesh working = open(mesh, job);
+    CollapseMesh working = open(mesh, job, others, tracked);
     if (working.live == 0) {
-        for (; next < targets.size(); ++next)
-            results.push_back(first_triangles(mesh, targets[next]));
+        for (; next < targets.size() && !tracked; ++next)
+            results.push_back(whole(first_triangles(mesh, targets[next])));
         return results;
     }
     const size_t start = working.live;
@@ -62,13 +99,37 @@ std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targe
                              static_cast<double>(start - goal));
         });
         // Where it gets stuck, the mesh so far is the last result, unless it already is.
-        if (reached || results.empty() || working.live < results.back().triangles.size())
-            results.push_back(extract(working));
+        if (reached || results.empty() || working.live < last) {
+            results.push_back(taken(working));
+            last = working.live;
+        }
         if (!reached)
             break;
     }
     job.progress(1);
     return results;
+}
+
+}  // namespace
+
+std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
+                                 const SimplifyOptions& options, const Job& job) {
+    return chain<Mesh>(
+        mesh, {}, false, targets, options, job, [](const Mesh& given) { return given; },
+        [](const CollapseMesh& working) { return extract(working); });
+}
+
+std::vector<TracedLevel> simplify_traced(const Mesh& mesh,
+                                         std::span<const std::vector<glm::vec3>> others,
+                                         std::span<const size_t> targets,
+                                         const SimplifyOptions& options, const Job& job) {
+    for (const std::vector<glm::vec3>& positions : others) {
+        if (positions.size() != mesh.positions.size())
+            fail(Status::InvalidArgument, "a pose of ", positions.size(), " positions for ",
+                 mesh.positions.size(), " vertices");
+    }
+    return chain<TracedLevel>(mesh, others, true, targets, options, job, untouched,
+                              [](CollapseMesh& working) { return traced(working); });
 }
 
 Mesh simplify(const Mesh& mesh, size_t triangles, const SimplifyOptions& options, const Job& job) {

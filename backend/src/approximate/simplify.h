@@ -6,6 +6,7 @@
 #include "model/mesh.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lodestone::approximate {
@@ -37,6 +38,24 @@ struct SimplifyOptions {
 /// input. source: Lindstrom & Turk 1999 (memoryless quadrics, volume constraint), in batches.
 std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
                                  const SimplifyOptions& options = {}, const Job& job = {});
+
+/// A level that knows what became of its input's vertices.
+struct TracedLevel {
+    Mesh mesh;
+    std::vector<uint32_t> places;  // of each of its vertices: split ones share one
+    /// (place, input vertex) for each input vertex that ended up there, ascending; of vertices at
+    /// one position the lowest. What vanished with its part is in no place.
+    std::vector<std::pair<uint32_t, uint32_t>> origins;
+};
+
+/// The same for a mesh that deforms: the collapse that suits the mesh and `others` together, which
+/// are the positions of its vertices in other frames (each as many, finite). Levels are those of
+/// the mesh; of one without extent there are none. 60 bytes a triangle more for each of the others.
+/// source: Mohr & Gleicher 2003 (deformation sensitive decimation), with memoryless quadrics.
+std::vector<TracedLevel> simplify_traced(const Mesh& mesh,
+                                         std::span<const std::vector<glm::vec3>> others,
+                                         std::span<const size_t> targets,
+                                         const SimplifyOptions& options = {}, const Job& job = {});
 
 /// The mesh at one target; the coarsest that can be reached when that is still above it.
 Mesh simplify(const Mesh& mesh, size_t triangles, const SimplifyOptions& options = {},
