@@ -119,8 +119,10 @@ typedef struct lds_object_info {
     const char* uid;  /* stable and unique in the model; not empty */
     const char* name; /* the user's */
     int32_t role;     /* lds_role */
-    int32_t deforms; /* 1: its shape is another one in every frame; it and every group that holds it
-                         are drawn as they are */
+    int32_t deforms; /* 1: its shape is another one in every frame: it has the levels that follow it
+                         from lds_build_options.poses, if any; nothing stands for a group of it */
+    uint64_t connectivity; /* deforms: equal in two frames with the same polygons, however they are
+                              cut into triangles; 0: the triangles have to be the same */
 } lds_object_info;
 
 /* An image. Exactly one of path, bytes and pixels is given. */
@@ -612,6 +614,11 @@ typedef struct lds_build_options {
     const lds_object* scope; /* build only what is reachable from these; what is stale elsewhere
                                 keeps its finest level alone, and stays stale */
     size_t scope_count;      /* 0: everything */
+    const struct lds_model* const* poses; /* the same scene in a few frames, always the same ones:
+                                what deforms is collapsed once, to suit all of them, and its levels
+                                follow it in every frame. An object is found by its uid; one that
+                                is in none of them with the faces it has now is drawn as it is */
+    size_t pose_count;                    /* 0: all that deforms is drawn as it is */
 } lds_build_options;
 LDS_API lds_build_options lds_build_options_default(void);
 

@@ -54,10 +54,17 @@ class SimplifyOptions(structs.SimplifyOptions):
 
 
 class BuildOptions(structs.BuildOptions):
-    """`scope`: a sequence of Objects; only what is reachable from them is built."""
+    """`scope`: a sequence of Objects; only what is reachable from them is built. `poses`: Models of
+    the same scene in other frames, to be kept open for as long as the options are used."""
 
-    def __new__(cls, scope: Sequence[Object] = (), **changes: Any) -> Any:
+    def __new__(
+        cls, scope: Sequence[Object] = (), poses: "Sequence[Model]" = (), **changes: Any
+    ) -> Any:
         options = _changed(library().lds_build_options_default(), changes)
+        if poses:
+            handles = (ctypes.c_void_p * len(poses))(*(pose.handle for pose in poses))
+            options.poses = handles
+            options.pose_count = len(poses)
         if scope:
             options.scope = (Object * len(scope))(*scope)  # ctypes keeps it alive with options
             options.scope_count = len(scope)
@@ -152,7 +159,7 @@ class Model(Handle):
         role: int = Role.ORDINARY,
         deforms: bool = False,
     ) -> Object:
-        info = _info(uid, name, role, deforms)
+        info = _info(uid, name, role, deforms, mesh.connectivity)
         return self._add_leaf(library().lds_model_add_mesh, info, mesh.struct(), materials)
 
     def add_faces(
@@ -369,8 +376,16 @@ class Model(Handle):
         return record(out)
 
 
-def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
-    return structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms))
+def _info(
+    uid: str, name: str, role: int, deforms: bool, connectivity: int = 0
+) -> structs.ObjectInfo:
+    return structs.ObjectInfo(
+        uid=text_in(uid),
+        name=text_in(name),
+        role=role,
+        deforms=int(deforms),
+        connectivity=connectivity,
+    )
 
 
 def _changed(options: Any, changes: dict[str, Any]) -> Any:

@@ -54,6 +54,7 @@ class ObjectInfo(Sized):
         ("name", c_char_p),
         ("role", c_int32),
         ("deforms", c_int32),
+        ("connectivity", c_uint64),
     ]
 
 
@@ -359,6 +360,8 @@ class BuildOptions(Sized):
         ("rebuild", c_int32),
         ("scope", POINTER(Object)),
         ("scope_count", c_size_t),
+        ("poses", POINTER(c_void_p)),
+        ("pose_count", c_size_t),
     ]
 
 

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace lodestone::build {
 namespace {
@@ -17,6 +18,10 @@ namespace {
 // A rough figure for estimates: triangles that one core measures and simplifies in a second.
 constexpr double kTrianglesPerSecond = 150000;
 constexpr double kSecondsPerObject = 0.02;
+
+constexpr const char* kNotFollowed =
+    "drawn as it is: its faces, or what is painted on them, are not those of any frame that levels "
+    "are made from";
 
 /// Finds stored objects by what they were built from.
 class Shelf {
@@ -75,6 +80,7 @@ Hash build_hash_of(const Object& object, Hash settings) {
 /// Takes over a stored object's stand-ins; its finest representation stays ours.
 void adopt(Object& object, const Object& stored, const Model& shelf, Palette& palette) {
     object.build_hash = stored.build_hash;
+    object.bind_hash = stored.bind_hash;
     object.attributes = stored.attributes;
     for (size_t lod = 1; lod < stored.representations.size(); ++lod) {
         Representation representation = stored.representations[lod];
@@ -84,10 +90,10 @@ void adopt(Object& object, const Object& stored, const Model& shelf, Palette& pa
     }
 }
 
-void add(Object& object, StandIns&& made, Model& model, Palette& palette, Hash build_hash) {
+void add(Object& object, std::vector<Candidate>&& made, Model& model, Palette& palette,
+         Hash build_hash) {
     object.build_hash = build_hash;
-    object.attributes = made.attributes;
-    for (Candidate& candidate : made.candidates) {
+    for (Candidate& candidate : made) {
         Representation representation;
         representation.summary.kind = candidate.kind;
         representation.summary.error = candidate.error;
@@ -136,6 +142,13 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
     return inside;
 }
 
+/// An object that deforms, and what its levels come from.
+struct Following {
+    ObjectIndex index;
+    Hash build_hash;
+    Bind bind;
+};
+
 class Builder {
 public:
     Builder(Model& model, const segment::Store& store, const Settings& settings, Problems& problems,
@@ -159,6 +172,7 @@ public:
         surroundings_ = {uses_of(model_), with_environment(model_), with_hidden(model_)};
         const std::vector<bool> inside = within(settings_.scope, model_, order);
         const std::vector<uint8_t> deforming = with_deforming(model_);
+        const Poses poses(settings_.poses);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
         std::map<Hash, ObjectIndex> first_of;              // content-equal objects are built once
@@ -168,15 +182,28 @@ public:
             if (object.representations.empty())
                 continue;
             ++report.objects;
-            if (deforming[index] != 0)
-                continue;
-            const Hash wanted = build_hash_of(object, settings);
+            Hash wanted = build_hash_of(object, settings);
+            std::optional<Bind> bind;
+            if (deforming[index] != 0) {
+                if (!object.deforms || object.group() || poses.empty())
+                    continue;
+                bind = poses.of(object, settings);
+                if (!bind) {
+                    problems_.push_back(
+                        {object.name, Severity::Info, "not_followed", kNotFollowed});
+                    continue;
+                }
+                wanted = Hasher().value(wanted).value(bind->hash).result();
+            }
             const auto first = first_of.find(wanted);
             if (first != first_of.end()) {
                 copies.emplace_back(index, first->second);
             } else if (const Object* stored = shelf.find(wanted)) {
                 first_of.emplace(wanted, index);
                 adopt(object, *stored, shelf.stored(), palette_);
+            } else if (bind && inside[index]) {
+                first_of.emplace(wanted, index);
+                following_.push_back({index, wanted, *bind});
             } else if (inside[index]) {
                 first_of.emplace(wanted, index);
                 stale[heights[index]].push_back(index);
@@ -186,13 +213,14 @@ public:
                     report.triangles += object.representations[0].summary.cost.triangles;
             }
         }
+        follow(report);
         for (auto& [height, objects] : stale) {
             // Copies of lower objects must be complete before a group above them is flattened.
             copy_lists(copies, heights, height);
             build(objects, settings);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
-        report.bytes_written = store_.write(model_, job_.part(kBuildShare, 1));
+        report.bytes_written += store_.write(model_, job_.part(kBuildShare, 1));
         for (const ObjectIndex index : order)
             report.representations += model_.objects[index].representations.size();
         report.wall_s = wall_seconds() - wall;
@@ -218,10 +246,96 @@ private:
             const Object& from = model_.objects[original];
             to.attributes = from.attributes;
             to.build_hash = from.build_hash;
+            to.bind_hash = from.bind_hash;
             to.representations.insert(to.representations.end(), from.representations.begin() + 1,
                                       from.representations.end());
             copy = kNoObject;
         }
+    }
+
+    MeshSource mesh_source() const {
+        return [this](const Representation& representation) {
+            if (const auto* held =
+                    std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))
+                return *held;
+            return store_.load_mesh(representation.summary.hash);
+        };
+    }
+
+    /// The problem of one object; throws on what concerns all of them.
+    static Problem not_simplified(const Object& object, const Error& error) {
+        if (error.status == Status::Cancelled || error.status == Status::RaysUnavailable)
+            throw Error(error);
+        return {object.name, Severity::Warning, "not_simplified",
+                text("no simpler levels could be made: ", error.what())};
+    }
+
+    void advance(double step) {
+        double before = done_.load();
+        while (!done_.compare_exchange_weak(before, before + step)) {
+        }
+        job_.progress(kBuildShare * (before + step) / std::max(1.0, total_));
+    }
+
+    /// What deforms: its levels are collapsed where that has not been done yet, and put where the
+    /// object has them now.
+    void follow(Report& report) {
+        std::map<Hash, segment::BoundLevels> levels;
+        std::vector<const Following*> missing;
+        for (const Following& one : following_) {
+            const auto [at, fresh] = levels.try_emplace(one.bind.hash);
+            if (!fresh)
+                continue;
+            auto stored = settings_.rebuild ? std::nullopt : store_.load_bound(one.bind.hash);
+            if (stored)
+                at->second = std::move(*stored);
+            else
+                missing.push_back(&one);
+        }
+        for (const Following* one : missing) {
+            ++report.built;
+            const Object& object = model_.objects[one->index];
+            report.triangles += object.representations[0].summary.cost.triangles;
+            total_ += weight(object);
+        }
+        std::vector<std::optional<segment::BoundLevels>> made(missing.size());
+        std::vector<Problems> found(std::max(missing.size(), following_.size()));
+        const MeshSource source = mesh_source();
+        parallel_for(missing.size(), [&](size_t i) {
+            job_.check();
+            job_.stage(Stage::Simplify);
+            const Object& object = model_.objects[missing[i]->index];
+            try {
+                made[i] = bound_levels_of_leaf(missing[i]->bind, settings_, source, texels_, job_);
+            } catch (const Error& error) {
+                found[i].push_back(not_simplified(object, error));
+            }
+            advance(weight(object));
+        });
+        for (size_t i = 0; i < missing.size(); ++i) {
+            if (!made[i])
+                continue;
+            report.bytes_written += store_.save_bound(missing[i]->bind.hash, *made[i]);
+            levels[missing[i]->bind.hash] = std::move(*made[i]);
+        }
+        std::vector<std::vector<Candidate>> followed(following_.size());
+        parallel_for(following_.size(), [&](size_t i) {
+            job_.check();
+            const Object& object = model_.objects[following_[i].index];
+            try {
+                followed[i] =
+                    followed_levels(model_, object, levels.at(following_[i].bind.hash), job_);
+            } catch (const Error& error) {
+                found[i].push_back(not_simplified(object, error));
+            }
+        });
+        for (size_t i = 0; i < following_.size(); ++i) {
+            Object& object = model_.objects[following_[i].index];
+            object.bind_hash = following_[i].bind.hash;
+            add(object, std::move(followed[i]), model_, palette_, following_[i].build_hash);
+        }
+        for (const Problems& problems : found)
+            problems_.insert(problems_.end(), problems.begin(), problems.end());
     }
 
     void build(std::vector<ObjectIndex>& objects, Hash settings) {
@@ -229,12 +343,7 @@ private:
         std::stable_sort(objects.begin(), objects.end(), [&](ObjectIndex a, ObjectIndex b) {
             return weight(model_.objects[a]) > weight(model_.objects[b]);
         });
-        const MeshSource source = [this](const Representation& representation) {
-            if (const auto* held =
-                    std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))
-                return *held;
-            return store_.load_mesh(representation.summary.hash);
-        };
+        const MeshSource source = mesh_source();
         std::vector<std::optional<StandIns>> made(objects.size());
         std::vector<Problems> found(objects.size());
         parallel_for(objects.size(), [&](size_t i) {
@@ -248,22 +357,18 @@ private:
                                                    source, texels_, job_)
                               : stand_ins_of_leaf(model_, object, settings_, source, texels_, job_);
             } catch (const Error& error) {
-                if (error.status == Status::Cancelled || error.status == Status::RaysUnavailable)
-                    throw;
-                found[i].push_back({object.name, Severity::Warning, "not_simplified",
-                                    text("no simpler levels could be made: ", error.what())});
+                found[i].push_back(not_simplified(object, error));
             }
-            const double step = weight(object);
-            double before = done_.load();
-            while (!done_.compare_exchange_weak(before, before + step)) {
-            }
-            job_.progress(kBuildShare * (before + step) / std::max(1.0, total_));
+            advance(weight(object));
         });
         for (size_t i = 0; i < objects.size(); ++i) {
             Object& object = model_.objects[objects[i]];
             problems_.insert(problems_.end(), found[i].begin(), found[i].end());
-            if (made[i])
-                add(object, std::move(*made[i]), model_, palette_, build_hash_of(object, settings));
+            if (!made[i])
+                continue;
+            object.attributes = made[i]->attributes;
+            add(object, std::move(made[i]->candidates), model_, palette_,
+                build_hash_of(object, settings));
         }
     }
 
@@ -273,6 +378,7 @@ private:
     Problems& problems_;
     const Job& job_;
     Palette palette_;
+    std::vector<Following> following_;
     Surroundings surroundings_;
     image::TexelCache texels_;
     double total_ = 0;
@@ -289,15 +395,24 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const Hash hash = hash_of(settings);
     const std::vector<bool> inside = within(settings.scope, model, order);
     const std::vector<uint8_t> deforming = with_deforming(model);
+    const Poses poses(settings.poses);
+    std::set<Hash> binds;  // counted already
     double triangles = 0;
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.representations.empty())
             continue;
         ++report.objects;
-        if (!inside[index] || deforming[index] != 0 ||
-            shelf.find(build_hash_of(object, hash)) != nullptr)
+        if (!inside[index])
             continue;
+        if (deforming[index] != 0) {
+            const std::optional<Bind> bind = object.deforms ? poses.of(object, hash) : std::nullopt;
+            if (!bind || !binds.insert(bind->hash).second ||
+                (!settings.rebuild && store.load_bound(bind->hash)))
+                continue;
+        } else if (shelf.find(build_hash_of(object, hash)) != nullptr) {
+            continue;
+        }
         ++report.built;
         const uint64_t own = object.representations[0].summary.cost.triangles;
         if (!object.group())
@@ -319,6 +434,7 @@ Report build_hierarchy(Model& model, const segment::Store& store, const Settings
         if (object.representations.size() > 1)
             object.representations.resize(1);
         object.build_hash = 0;
+        object.bind_hash = 0;
     }
     const Report report = Builder(next, store, settings, problems, job).run();
     model = std::move(next);

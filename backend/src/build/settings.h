@@ -8,6 +8,12 @@
 #include <cstdint>
 #include <vector>
 
+namespace lodestone {
+
+struct Model;
+
+}  // namespace lodestone
+
 namespace lodestone::build {
 
 struct Settings {
@@ -26,6 +32,9 @@ struct Settings {
     /// Build only what is reachable from these; empty: everything. What is stale elsewhere keeps
     /// its finest level alone, and stays stale.
     std::vector<ObjectIndex> scope;
+    /// The same scene in a few frames that are always the same ones: what deforms takes its levels
+    /// from one collapse for these, in every frame. Empty: it has none. Not part of the hash.
+    std::vector<const Model*> poses;
 };
 
 /// Of everything that changes a result, and of the version of the algorithms.

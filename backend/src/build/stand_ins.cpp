@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/stand_ins.h"
 
+#include "approximate/bind.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
 #include "approximate/stand_in_material.h"
 #include "build/flatten.h"
-#include "measure/deviation.h"
-#include "measure/looks.h"
-#include "measure/opacity.h"
+#include "build/judge.h"
 #include "measure/visible.h"
 #include "quality/cut.h"
 
@@ -17,22 +16,10 @@
 namespace lodestone::build {
 namespace {
 
-// A level that shows this much more or less surface than the original is no simplification of it
-// (foliage gone bald), however near its remaining points are.
-constexpr double kMostAreaChange = 0.25;
 // Fewer triangles than this are left to primitives.
 constexpr size_t kFewestTriangles = 8;
-// An error below this fraction of the size is float noise; the finest alone has error 0.
-constexpr double kLeastRelativeError = 1e-7;
-// Roads, pavements and lawns lie on the ground in thin layers. A level that sinks by a little more
-// than the layer is thick hides it, which shows from as far as the layer is wide: environment
-// counts as this many times wider than it is off.
-constexpr double kLayerWidth = 16;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 24;
-// Below this mean opacity nothing solid stands for it: it would hide what shines through.
-constexpr double kLeastOpacity = 0.9;
-constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 
 uint64_t bytes_of(const Candidate& candidate) {
     return candidate.kind == Kind::Mesh ? candidate.mesh->triangles.size() * kBytesPerTriangle
@@ -51,89 +38,18 @@ std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
     return targets;
 }
 
-/// The ground is large, and what lies on it (roads, fields) a small share of it.
-uint32_t samples_of(bool environment, const Settings& settings) {
-    return environment ? 8 * settings.samples : settings.samples;
-}
-
-/// Measures candidates against one finest mesh.
-class Judge {
-public:
-    Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
-          const Settings& settings, bool environment, uint64_t seed, double child_error,
-          const Job& job)
-        : size_(bound_of(finest.positions).radius),
-          child_error_(child_error),
-          layer_width_(environment ? kLayerWidth : 1),
-          seed_(seed),
-          rays_(settings.rays),
-          skin_(std::make_shared<const ray::Skin>(materials, texels)),
-          finest_looks_(looks_.of(finest, materials)),
-          reference_(finest, {samples_of(environment, settings), settings.samples, seed},
-                     {finest_looks_, &looks_, skin_}, job),
-          opacity_(measure::mean_opacity(finest, *skin_, seed)) {
-        measure::VisibleOptions options;
-        options.rays = settings.rays;
-        options.seed = seed;
-        attributes_ =
-            measure::measure_visible(finest, ray::Scene(finest, skin_), skin_, options, {}, job)
-                .attributes;
-    }
-
-    const Attributes& attributes() const { return attributes_; }
-    /// Whether something solid may stand for it.
-    bool solid() const { return opacity_ >= kLeastOpacity; }
-    /// Of the finest's materials, which levels share.
-    const ray::SkinPtr& skin() const { return skin_; }
-
-    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
-
-    /// Of a level with the finest's materials. False when it shows another amount of surface.
-    bool measure_mesh(Candidate& candidate, const Job& job) {
-        const Mesh& mesh = *candidate.mesh;
-        measure::VisibleOptions options;
-        options.rays = rays_ / 2;
-        options.seed = seed_;
-        const double visible =
-            measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, {}, job)
-                .attributes.visible_area;
-        const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-        set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job));
-        return std::abs(visible - attributes_.visible_area) <=
-               kMostAreaChange * attributes_.visible_area;
-    }
-
-    void measure_primitive(Candidate& candidate, const Job& job) {
-        const Mesh mesh = candidate.kind == Kind::Box
-                              ? tessellate_box(candidate.primitive)
-                              : tessellate_ellipsoid(candidate.primitive, kSubdivisions);
-        const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-        set_error(candidate, reference_.of(mesh, {looks, &looks_, nullptr}, job));
-    }
-
-private:
-    void set_error(Candidate& candidate, const measure::Deviation& deviation) const {
-        candidate.error =
-            std::max(layer_width_ * deviation.error + child_error_, kLeastRelativeError * size_);
-        candidate.max_error =
-            std::max(candidate.error, layer_width_ * deviation.max + child_error_);
-    }
-
-    measure::Looks looks_;
-    double size_;
-    double child_error_;
-    double layer_width_;
-    uint64_t seed_;
-    uint64_t rays_;
-    ray::SkinPtr skin_;
-    std::vector<uint16_t> finest_looks_;
-    measure::DeviationReference reference_;
-    double opacity_;
-    Attributes attributes_;
-};
-
 bool shows_vertex_colors(const Material& material) {
     return material.vertex_colors || (material.other && shows_vertex_colors(*material.other));
+}
+
+/// Without colors that no material shows: they would only be in the way. `plain` holds the copy.
+const Mesh& without_unseen_colors(const Mesh& mesh, const std::vector<Material>& materials,
+                                  Mesh& plain) {
+    if (mesh.colors.empty() || std::any_of(materials.begin(), materials.end(), shows_vertex_colors))
+        return mesh;
+    plain = mesh;
+    plain.colors.clear();
+    return plain;
 }
 
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
@@ -141,21 +57,17 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 Judge& judge, const Job& job) {
     if (targets.empty())
         return;
-    Mesh plain;  // colors that no material shows would only be in the way
-    const bool uncolored = !mesh.colors.empty() &&
-                           std::none_of(materials.begin(), materials.end(), shows_vertex_colors);
-    if (uncolored) {
-        plain = mesh;
-        plain.colors.clear();
-    }
-    for (Mesh& level : approximate::simplify_chain(uncolored ? plain : mesh, targets, {}, job)) {
+    Mesh plain;
+    const Mesh& source = without_unseen_colors(mesh, materials, plain);
+    for (Mesh& level : approximate::simplify_chain(source, targets, {}, job)) {
         if (level.empty())
             continue;
         judge.repaint(level, job);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
-        if (judge.measure_mesh(candidate, job))
+        judge.measure_mesh(candidate, job);
+        if (judge.shows_as_much(*candidate.mesh, job))
             candidates.push_back(std::move(candidate));
     }
 }
@@ -184,6 +96,52 @@ Mesh without_hidden(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed, c
     return shell.empty() ? mesh : shell;
 }
 
+std::vector<Material> materials_of(const Model& model, const Representation& finest) {
+    std::vector<Material> materials;
+    for (const uint32_t material : finest.materials)
+        materials.push_back(model.materials.at(material));
+    if (materials.empty())
+        materials.emplace_back();
+    return materials;
+}
+
+/// Triangles of a leaf's levels.
+std::vector<size_t> targets_of(const Mesh& mesh, const Settings& settings) {
+    const size_t count = mesh.triangles.size();
+    const auto first = static_cast<size_t>(static_cast<double>(count) * settings.level_ratio);
+    return targets_of(count, first, settings.level_ratio);
+}
+
+/// Tells whether a level's error is one of materials: larger than that of the bare shape.
+class LookError {
+public:
+    LookError(const Mesh& finest, const std::vector<Material>& materials, const Settings& settings,
+              uint64_t seed, const Job& job) {
+        const bool alike = materials.size() == 1 && finest.colors.empty() &&
+                           !textured(materials[0]) && !materials[0].other;
+        if (!alike)
+            bare_.emplace(finest,
+                          measure::DeviationOptions{settings.samples, settings.samples, seed},
+                          measure::Surface{}, job);
+    }
+
+    /// Metres; 0 where the shape decides.
+    double of(const Mesh& level, const std::vector<Material>& materials, Judge& judge,
+              const Job& job) const {
+        if (!bare_)
+            return 0;
+        Candidate candidate;
+        candidate.mesh = std::make_shared<Mesh>(level);
+        candidate.materials = materials;
+        judge.measure_mesh(candidate, job);
+        const double bare = bare_->of(level, {}, job).error;
+        return candidate.error > 1.01 * bare ? candidate.error : 0;
+    }
+
+private:
+    std::optional<measure::DeviationReference> bare_;
+};
+
 uint64_t seed_of(const Object& object, const Settings& settings) {
     return Hasher().value(object.source_hash).value(settings.seed).result();
 }
@@ -191,7 +149,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 11;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 12;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -224,20 +182,14 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
     const std::shared_ptr<const Mesh> mesh = source(finest);
     if (mesh->empty())
         return out;
-    std::vector<Material> materials;
-    for (const uint32_t material : finest.materials)
-        materials.push_back(model.materials.at(material));
-    if (materials.empty())
-        materials.emplace_back();
+    const std::vector<Material> materials = materials_of(model, finest);
     Judge judge(*mesh, materials, texels, settings, object.role == Role::Environment,
                 seed_of(object, settings), 0, job);
+    judge.measure_finest(*mesh, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
-    const size_t count = mesh->triangles.size();
-    const auto first = static_cast<size_t>(static_cast<double>(count) * settings.level_ratio);
-    add_levels(out.candidates, *mesh, materials, targets_of(count, first, settings.level_ratio),
-               judge, job);
+    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), judge, job);
     if (object.role != Role::Environment && judge.solid())
         add_primitives(out.candidates, finest.summary.bound, judge, job);
     keep_useful(out.candidates, finest.summary.cost.bytes);
@@ -263,6 +215,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const uint64_t seed = seed_of(object, settings);
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
+    judge.measure_finest(reference.mesh, job);
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
@@ -296,6 +249,83 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         useful = {out.candidates.back()};
     }
     out.candidates = std::move(useful);
+    return out;
+}
+
+segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
+                                          const MeshSource& source, image::TexelCache& texels,
+                                          const Job& job) {
+    segment::BoundLevels out;
+    const Representation& finest = bind.object->representations.at(0);
+    const std::shared_ptr<const Mesh> mesh = source(finest);
+    if (mesh->empty())
+        return out;
+    const std::vector<size_t> targets = targets_of(*mesh, settings);
+    if (targets.empty())
+        return out;
+    const std::vector<Material> materials = materials_of(*bind.model, finest);
+    Judge judge(*mesh, materials, texels, settings, bind.object->role == Role::Environment,
+                bind.hash, 0, job);
+    judge.measure_finest(*mesh, job);
+    if (judge.attributes().empty())
+        return out;
+    std::vector<std::vector<glm::vec3>> others;
+    const std::vector<uint32_t> points = approximate::points_of(*mesh, *bind.object->pose);
+    for (const Pose* pose : bind.others) {
+        std::vector<glm::vec3>& positions = others.emplace_back();
+        for (const uint32_t point : points)
+            positions.push_back(pose->points.at(point));
+    }
+    Mesh plain;
+    const Mesh& visible = without_unseen_colors(*mesh, materials, plain);
+    const approximate::PoseSurface surface(*bind.object->pose);
+    const approximate::Binder binder(visible, surface);
+    const LookError look_error(visible, materials, settings, bind.hash, job);
+    for (approximate::TracedLevel& level :
+         approximate::simplify_traced(visible, others, targets, {}, job)) {
+        if (level.mesh.empty())
+            continue;
+        judge.repaint(level.mesh, job);
+        if (!judge.shows_as_much(level.mesh, job))
+            continue;
+        std::optional<approximate::BoundLevel> bound = binder.bind(std::move(level));
+        if (!bound)
+            continue;
+        bound->look_error = look_error.of(bound->mesh, materials, judge, job);
+        out.push_back(std::move(*bound));
+    }
+    return out;
+}
+
+std::vector<Candidate> followed_levels(const Model& model, const Object& object,
+                                       const segment::BoundLevels& levels, const Job& job) {
+    // A coarser level may be the better one in some frame, but levels keep their numbers.
+    constexpr double kRise = 1 + 1e-9;
+    std::vector<Candidate> out;
+    const Representation& finest = object.representations.at(0);
+    if (levels.empty() || object.pose == nullptr)
+        return out;
+    const std::vector<Material> materials = materials_of(model, finest);
+    const approximate::PoseSurface surface(*object.pose);
+    const auto counted = [&](double error) {
+        return counted_error(error, object.role == Role::Environment, finest.summary.bound.radius);
+    };
+    for (const approximate::BoundLevel& level : levels) {
+        job.check();
+        std::optional<Mesh> followed = approximate::follow(level, surface);
+        if (!followed || followed->triangles.size() >= finest.summary.cost.triangles)
+            continue;
+        const approximate::Strayed strayed = approximate::strayed(level, *followed, surface);
+        Candidate candidate;
+        candidate.mesh = std::make_shared<Mesh>(std::move(*followed));
+        candidate.materials = materials;
+        candidate.error =
+            counted(std::max(strayed.error, level.look_error * std::max(1.0, strayed.growth)));
+        if (!out.empty())
+            candidate.error = std::max(candidate.error, kRise * out.back().error);
+        candidate.max_error = std::max(counted(strayed.max), candidate.error);
+        out.push_back(std::move(candidate));
+    }
     return out;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "base/job.h"
+#include "build/poses.h"
 #include "build/settings.h"
 #include "image/texels.h"
 #include "model/model.h"
+#include "segment/bound_file.h"
 
 #include <functional>
 
@@ -43,6 +45,18 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
                             const Settings& settings, const MeshSource& source,
                             image::TexelCache& texels, const Job& job);
+
+/// The levels of something that deforms, one collapse for all frames: the one that suits all poses
+/// of a bind together, tied to the surface it has in the first of them.
+segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
+                                          const MeshSource& source, image::TexelCache& texels,
+                                          const Job& job);
+
+/// These levels where the object has them now. The errors are those of now, by witnesses: nothing is
+/// measured anew. All that can be drawn, fine to coarse; an error is raised to the finer one's where
+/// it would not be larger.
+std::vector<Candidate> followed_levels(const Model& model, const Object& object,
+                                       const segment::BoundLevels& levels, const Job& job);
 
 /// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
 /// bytes and error), and those that cost no less than `finest_bytes`.

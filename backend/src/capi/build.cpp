@@ -5,11 +5,14 @@
 #include "capi/handles.h"
 
 #include <cmath>
+#include <cstddef>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
+
+constexpr size_t kOptionsBefore = offsetof(lds_build_options, poses);  // poses
 
 build::Settings settings_of(const lds_model& model, const lds_build_options& options) {
     build::Settings settings;
@@ -28,6 +31,12 @@ build::Settings settings_of(const lds_model& model, const lds_build_options& opt
         require(options.scope, "options.scope");
     for (size_t i = 0; i < options.scope_count; ++i)
         settings.scope.push_back(model.index_of(options.scope[i]));
+    if (options.pose_count > 0)
+        require(options.poses, "options.poses");
+    for (size_t i = 0; i < options.pose_count; ++i) {
+        require(options.poses[i], "a pose");
+        settings.poses.push_back(&options.poses[i]->model);
+    }
     return settings;
 }
 
@@ -63,7 +72,7 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        const lds_build_options& given = checked(options, "options");
+        const lds_build_options given = grown(options, kOptionsBefore, "options");
         const ThreadLimit limit(given.threads);
         hand_out(out_report,
                  report_of(build::estimate(model->model, segment::Store(store),
@@ -78,7 +87,7 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         require(model, "model");
         require(store, "store");
         checked(out_report, "out_report");
-        const lds_build_options& given = checked(options, "options");
+        const lds_build_options given = grown(options, kOptionsBefore, "options");
         const build::Settings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();

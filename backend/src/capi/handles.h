@@ -55,6 +55,8 @@ View view_of(const lds_view* view);
 /// Views into the caller's memory; throws for lengths and indices that do not fit.
 Faces faces_of(const lds_faces_view* view);
 lds_model* new_model();
+/// Checked, with what an older caller's lacks.
+lds_object_info object_info(const lds_object_info* info);
 /// Adds an object of that uid; throws when the uid is empty or taken.
 ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);
 

@@ -2,11 +2,13 @@
 // The model's part of the C interface: making one, reading and writing files.
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/pose.h"
 #include "format/format.h"
 #include "model/strands.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 
 using namespace lodestone;
@@ -105,7 +107,8 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
 
 /// One object with one mesh. Content-equal meshes share their memory; a build works once for all.
 lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&& mesh,
-                           const uint32_t* materials, size_t material_count) {
+                           std::shared_ptr<const Pose> pose, const uint32_t* materials,
+                           size_t material_count) {
     Representation finest;
     finest.summary.kind = Kind::Mesh;
     for (size_t i = 0; i < material_count; ++i) {
@@ -114,7 +117,7 @@ lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&&
                  model.model.materials.size());
         finest.materials.push_back(materials[i]);
     }
-    repair(mesh, name_of(checked(info, "info").name), model.problems);
+    repair(mesh, name_of(object_info(info).name), model.problems);
     if (finest.materials.empty()) {
         finest.materials.push_back(static_cast<uint32_t>(model.model.materials.size()));
         model.model.materials.emplace_back();
@@ -126,7 +129,9 @@ lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&&
         held = made = std::make_shared<const Mesh>(std::move(mesh));
     finest.payload = std::move(made);
     summarize(finest, model.model, hash);
-    return model.id_of(add_object(model, info, std::move(finest)));
+    const ObjectIndex index = add_object(model, info, std::move(finest));
+    model.model.objects[index].pose = std::move(pose);
+    return model.id_of(index);
 }
 
 Mesh mesh_of(const lds_strands_view& view, size_t material_count) {
@@ -162,9 +167,13 @@ Mesh mesh_of(const lds_strands_view& view, size_t material_count) {
 
 }  // namespace
 
+lds_object_info lodestone::capi::object_info(const lds_object_info* info) {
+    return grown(info, offsetof(lds_object_info, connectivity), "info");
+}
+
 ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info* info,
                                         Representation finest) {
-    const lds_object_info& given = checked(info, "info");
+    const lds_object_info given = object_info(info);
     Object object;
     object.uid = name_of(given.uid);
     object.name = name_of(given.name);
@@ -234,8 +243,11 @@ lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
         require(out_object, "out_object");
         if (material_count > 0)
             require(materials, "materials");
-        *out_object = add_mesh_object(*model, info, mesh_of(checked(mesh, "mesh"), material_count),
-                                      materials, material_count);
+        const lds_mesh_view& view = checked(mesh, "mesh");
+        Mesh made = mesh_of(view, material_count);
+        std::shared_ptr<const Pose> pose = pose_of(view, object_info(info), made, material_count);
+        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
+                                      material_count);
     });
 }
 
@@ -247,8 +259,11 @@ lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
         require(out_object, "out_object");
         if (material_count > 0)
             require(materials, "materials");
-        *out_object = add_mesh_object(*model, info, mesh_of(faces_of(faces), material_count),
-                                      materials, material_count);
+        const Faces given = faces_of(faces);
+        Mesh made = mesh_of(given, material_count);
+        std::shared_ptr<const Pose> pose = pose_of(given, object_info(info), made, material_count);
+        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
+                                      material_count);
     });
 }
 
@@ -260,9 +275,10 @@ lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
         require(out_object, "out_object");
         if (material_count > 0)
             require(materials, "materials");
-        *out_object =
-            add_mesh_object(*model, info, mesh_of(checked(strands, "strands"), material_count),
-                            materials, material_count);
+        Mesh made = mesh_of(checked(strands, "strands"), material_count);
+        std::shared_ptr<const Pose> pose = pose_of(made, object_info(info), material_count);
+        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
+                                      material_count);
     });
 }
 

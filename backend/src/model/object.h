@@ -3,6 +3,7 @@
 #pragma once
 
 #include "model/attributes.h"
+#include "model/pose.h"
 #include "model/representation.h"
 
 #include <optional>
@@ -20,11 +21,14 @@ struct Object {
     std::string uid;   // stable, unique in its model
     std::string name;  // the user's
     Role role = Role::Ordinary;
-    // Its shape is another one in every frame: nothing stands in for it, nor for a group that holds
-    // it, so that no picture ever shows a level of another frame.
+    // Its shape is another one in every frame: its levels follow it from one collapse for all
+    // frames, or there are none. Nothing stands in for a group that holds it, so that no picture
+    // ever shows a level of another frame.
     bool deforms = false;
-    Hash source_hash = 0;  // of the finest representation and of all below it
-    Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none
+    std::shared_ptr<const Pose> pose;  // of something that deforms: what levels follow; may be null
+    Hash source_hash = 0;              // of the finest representation and of all below it
+    Hash build_hash = 0;  // of the source and settings its stand-ins were made from; 0 = none
+    Hash bind_hash = 0;   // of the poses and settings its levels were collapsed from; 0 = none
     std::optional<Attributes> attributes;
     /// Index = LOD number: 0 is the finest, errors rise strictly. Only [0] may be an assembly.
     std::vector<Representation> representations;

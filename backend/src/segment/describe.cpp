@@ -201,6 +201,8 @@ Json describe(const Model& model) {
                     {"role", object.role == Role::Environment ? "environment" : "ordinary"},
                     {"source_hash", hex16(object.source_hash)},
                     {"build_hash", hex16(object.build_hash)}};
+        if (object.bind_hash != 0)
+            one["bind_hash"] = hex16(object.bind_hash);
         if (object.attributes)
             one["attributes"] = out(*object.attributes);
         Json& representations = one["representations"] = Json::array();

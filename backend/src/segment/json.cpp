@@ -226,6 +226,8 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     o.role = json.at("role") == "environment" ? Role::Environment : Role::Ordinary;
     o.source_hash = hash(json, "source_hash");
     o.build_hash = hash(json, "build_hash");
+    if (json.contains("bind_hash"))
+        o.bind_hash = hash(json, "bind_hash");
     if (json.contains("attributes"))
         o.attributes = attributes(json.at("attributes"));
     double last = -1;
@@ -327,6 +329,10 @@ std::string file_of(Hash hash) {
     return text("r/", hex16(hash), ".glb");
 }
 
+std::string bound_file_of(Hash bind_hash) {
+    return "b/" + hex16(bind_hash) + ".bound";
+}
+
 std::string tileset_text(const Model& model) {
     const std::string ours = description_text(model);
     return text("{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":", ours, "}},",
@@ -354,6 +360,8 @@ std::string file_of(const Picture& picture) {
 std::set<std::string> files_of(const Model& model) {
     std::set<std::string> files;
     for (const Object& object : model.objects) {
+        if (object.bind_hash != 0)
+            files.insert(bound_file_of(object.bind_hash));
         for (const Representation& representation : object.representations) {
             if (representation.summary.kind != Kind::Assembly)
                 files.insert(file_of(representation.summary.hash));

@@ -13,9 +13,11 @@ inline constexpr int kStoreFormat = 2;
 
 /// "r/<16 hex>.glb"
 std::string file_of(Hash hash);
+/// "b/<16 hex>.bound"
+std::string bound_file_of(Hash bind_hash);
 /// "i/<16 hex>.png", ".jpg" or ".exr"
 std::string file_of(const Picture& picture);
-/// Of every representation and picture of a model.
+/// Of every representation, bound levels and pictures of a model.
 std::set<std::string> files_of(const Model& model);
 
 /// Our own description, the value of asset.extras.lodestone. Doubles keep their bits.

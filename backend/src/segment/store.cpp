@@ -35,13 +35,14 @@ void make_folder(const fs::path& folder) {
         fail(Status::Io, "cannot make the folder '", folder.string(), "': ", error.message());
 }
 
-/// Of r/ and i/; `wanted` are relative names.
+/// Of r/, b/ and i/; `wanted` are relative names.
 void remove_unused(const fs::path& folder, const std::set<std::string>& wanted) {
-    for (const char* part : {"r", "i"}) {
+    for (const char* part : {"r", "b", "i"}) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / part, error)) {
             const fs::path& path = entry.path();
-            static const std::set<std::string> kOurs{".glb", ".png", ".jpg", ".exr", ".tmp"};
+            static const std::set<std::string> kOurs{".glb", ".bound", ".png",
+                                                     ".jpg", ".exr",   ".tmp"};
             if (kOurs.contains(path.extension().string()) &&
                 !wanted.contains(text(part, "/", path.filename().string())))
                 fs::remove(path, error);
@@ -120,6 +121,25 @@ void Store::load_pictures(Model& model) const {
         use_pictures(material, resident);
     if (model.world.environment)
         model.world.environment = resident.at(model.world.environment->hash);
+}
+
+std::optional<BoundLevels> Store::load_bound(Hash bind_hash) const {
+    const fs::path path = folder_ / bound_file_of(bind_hash);
+    std::error_code error;
+    if (!fs::is_regular_file(path, error))
+        return std::nullopt;
+    try {
+        return bound_levels_of(read_file(path));
+    } catch (const Error&) {
+        return std::nullopt;  // torn by another program: it is made again
+    }
+}
+
+uint64_t Store::save_bound(Hash bind_hash, const BoundLevels& levels) const {
+    make_folder(folder_ / "b");
+    const std::string bytes = bytes_of(levels);
+    write_file(folder_ / bound_file_of(bind_hash), bytes);
+    return bytes.size();
 }
 
 uint64_t Store::write(const Model& model, const Job& job) const {

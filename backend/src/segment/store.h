@@ -3,14 +3,17 @@
 //   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
 //   r/<16 hex>.glb    one representation each, named by content hash
 //   i/<16 hex>.png    one picture each (or .jpg, .exr), likewise
+//   b/<16 hex>.bound  the levels of something that deforms, by which those of each frame are made
 //   lock              held by the one writer
 #pragma once
 
 #include "base/job.h"
 #include "model/model.h"
+#include "segment/bound_file.h"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace lodestone::segment {
 
@@ -36,6 +39,14 @@ public:
 
     /// Makes the pictures of all materials and the world resident. Throws Error(Io or BadFile).
     void load_pictures(Model& model) const;
+
+    /// The levels that objects of a bind hash follow with; nothing when there is no file of them
+    /// or it cannot be used.
+    std::optional<BoundLevels> load_bound(Hash bind_hash) const;
+
+    /// They stay for as long as tileset.json, or the one before it, has an object of that hash.
+    /// Returns the bytes written. Throws Error(Io).
+    uint64_t save_bound(Hash bind_hash, const BoundLevels& levels) const;
 
     /// Writes what is missing, then replaces tileset.json, then removes files that
     /// neither the new nor the previous tileset.json names. A killed write leaves the old store.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Judge: measures stand-ins against the finest mesh they stand for.
+#pragma once
+
+#include "build/stand_ins.h"
+#include "measure/deviation.h"
+#include "measure/looks.h"
+
+#include <span>
+
+namespace lodestone::build {
+
+/// An error as it counts for something of that size (radius, metres): more for environment, and
+/// never 0, which the finest alone has.
+double counted_error(double error, bool environment, double size);
+
+/// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings.
+class Judge {
+public:
+    /// `child_error`: by how much the mesh itself is off, metres.
+    Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
+          const Settings& settings, bool environment, uint64_t seed, double child_error,
+          const Job& job);
+
+    /// Measures the finest by rays, which attributes(), solid() and shows_as_much() need.
+    void measure_finest(const Mesh& finest, const Job& job);
+
+    const Attributes& attributes() const { return attributes_; }
+    /// Whether something solid may stand for it.
+    bool solid() const;
+    /// Of the finest's materials, which levels share.
+    const ray::SkinPtr& skin() const { return skin_; }
+
+    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
+
+    /// False for a level of the finest's materials that shows another amount of surface.
+    bool shows_as_much(const Mesh& level, const Job& job) const;
+    /// Fill the errors of a candidate; a mesh has the finest's materials.
+    void measure_mesh(Candidate& candidate, const Job& job);
+    void measure_primitive(Candidate& candidate, const Job& job);
+
+private:
+    void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
+
+    measure::Looks looks_;
+    double size_;
+    double child_error_;
+    bool environment_;
+    uint64_t seed_;
+    uint64_t rays_;
+    ray::SkinPtr skin_;
+    std::vector<uint16_t> finest_looks_;
+    measure::DeviationReference reference_;
+    double opacity_ = 0;
+    Attributes attributes_;
+};
+
+}  // namespace lodestone::build
