@@ -21,7 +21,7 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, motion  # noqa: E402
+from lodestone.bridge import blend_check, motion, poses  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
 from lodestone.core import motion_file, progress, report, store_path  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
@@ -62,6 +62,7 @@ class FileRun:
         self.clock = progress.StageClock(0)
         self._said = 0.0
         self._still = None
+        self._poses: poses.Poses | None = None
         self._folders = contextlib.ExitStack()
         self._shared: SceneFolder | None = None
         self._told = 0  # problems
@@ -72,6 +73,7 @@ class FileRun:
             self._check_outputs()
             self._open()
             with self._folders:
+                self._folders.callback(self._close_poses)
                 self._frames()
         except (Stopped, KeyboardInterrupt):
             code, text = ExitCode.CANCELLED, "cancelled"
@@ -131,8 +133,9 @@ class FileRun:
         scene = bpy.context.scene
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
-        if first < last:
-            self._sample(scene, first, last)
+        if self.job.frames:
+            # The same frames whichever part of the scene's range this process renders
+            self._sample(scene, min(first, scene.frame_start), max(last, scene.frame_end))
         for frame in range(first, last + 1):
             requests = self.job.pictures
             if self.job.frames:
@@ -166,9 +169,14 @@ class FileRun:
             cameras=[(picture.camera, picture.size) for picture in requests],
             tick=self._tick,
             still=self._still,
+            with_poses=self._poses is None and self._builds(requests),
         )
         wall, cpu = time.monotonic(), time.process_time()
-        extraction = extract_engine.extract_now(scene, request)
+        try:
+            extraction = extract_engine.extract_now(scene, request)
+        finally:
+            if request.with_poses:
+                self._poses = request.poses
         self.problems.extend(extraction.problems)
         with extraction.model as model:
             totals = model.totals()
@@ -183,7 +191,7 @@ class FileRun:
             self.result["store"] = str(store)
             try:
                 built = {}
-                if self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests):
+                if self._builds(requests):
                     part = self._build(model, store)
                     built = {"build": part} if self.job.frames else {}
                 made, used = [], set()
@@ -201,12 +209,20 @@ class FileRun:
                 self.problems.extend_native(model.problems())
         return made
 
+    def _builds(self, requests: tuple[PictureRequest, ...]) -> bool:
+        return self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests)
+
+    def _close_poses(self) -> None:
+        if self._poses is not None:
+            self._poses.close()
+
     def _build(self, model, store: Path) -> dict:
         try:
             store.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise Failed(ExitCode.FAILED, f"cannot make the folder of the levels: {error}")
-        options = native.BuildOptions(threads=self.job.threads)
+        models = self._poses.models if self._poses is not None else ()
+        options = native.BuildOptions(threads=self.job.threads, poses=models)
         done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
         part = report.build_part(done)
         self.result.setdefault("build", part)

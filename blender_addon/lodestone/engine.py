@@ -14,7 +14,7 @@ from dataclasses import replace
 import bpy
 
 from . import preferences
-from .bridge import camera, ignored, picture, requirements, scene
+from .bridge import camera, ignored, picture, poses, requirements, scene
 from .bridge.settings import SceneSettings
 from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
@@ -26,7 +26,9 @@ from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
+# Of the render that is running
 _folder = RenderFolder()
+_poses = {}  # by scene and view layer
 
 
 class Refused(Exception):
@@ -89,15 +91,19 @@ class _Run:
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))
         self.ignored = ignored.keys(depsgraph.scene)
         self.users = {}
+        self.poses = poses.Poses()
         self.work = Work()
         self.frame = self.scene.frame_current
         self.clock = progress.StageClock(self.frame)
         self._shown = ""
 
     def render(self):
-        camera_object = self._required()
-        frame = camera.Frame.of(self.scene.render)
+        self._required()
         still = motion_file.read(self.store)
+        if self.settings.pixel_error > 0.0:
+            self._read_poses(still)
+        camera_object = self._required()  # as it is in this frame again
+        frame = camera.Frame.of(self.scene.render)
         extraction = scene.extract(self.depsgraph, self._tick, still)
         self.problems.extend(extraction.problems)
         self.users = extraction.users
@@ -122,6 +128,14 @@ class _Run:
         picture.hand_over(self.engine, name, part, self.settings.stamp())
         self._report()
 
+    def _read_poses(self, still):
+        """Once for all frames of an animation. Moves the depsgraph to other frames and back."""
+        key = (self.scene.name, self.depsgraph.view_layer_eval.name)
+        if key not in _poses:
+            _poses[key] = poses.read(self.depsgraph, self.engine.frame_set, still, self._tick)
+            self.scene = self.depsgraph.scene_eval
+        self.poses = _poses[key]
+
     def _required(self):
         """The camera. What a picture cannot do without is looked for before hours of work."""
         lacking = Problems()
@@ -141,7 +155,8 @@ class _Run:
             except OSError as error:
                 text = f"Cannot make the folder for the levels: {error}"
                 raise Refused("folder_unwritable", text) from None
-            model.build(str(self.store), native.BuildOptions(), self.work.new_job("Levels"))
+            options = native.BuildOptions(poses=self.poses.models)
+            model.build(str(self.store), options, self.work.new_job("Levels"))
         try:
             kept = store_path.scene_folder(self.store)
             with _folder.use(kept, self.keep, self.frame) as folder:
@@ -225,19 +240,22 @@ class _Run:
 
 
 @bpy.app.handlers.persistent
-def _close_folder(*_):
-    """A render begins or is over."""
+def _forget(*_):
+    """A render begins or is over: what was read may be another thing in the next one."""
     _folder.close()
+    for held in _poses.values():
+        held.close()
+    _poses.clear()
 
 
-_HANDLERS = ("render_init", "render_complete", "render_cancel")
+_HANDLERS = ("render_init", "render_complete", "render_cancel", "load_pre")
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray,))
 
 
 def register():
     _register()
     for name in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(_close_folder)
+        getattr(bpy.app.handlers, name).append(_forget)
     atexit.register(_folder.close)
 
 
@@ -245,9 +263,9 @@ def unregister():
     atexit.unregister(_folder.close)
     for name in _HANDLERS:
         handlers = getattr(bpy.app.handlers, name)
-        if _close_folder in handlers:
-            handlers.remove(_close_folder)
-    _folder.close()
+        if _forget in handlers:
+            handlers.remove(_forget)
+    _forget()
     last_render.clear()
     last_check.clear()
     _unregister()

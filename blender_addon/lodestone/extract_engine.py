@@ -8,7 +8,7 @@ import traceback
 
 import bpy
 
-from .bridge import camera, check, scene
+from .bridge import camera, check, poses, scene
 from .bridge.requirements import NO_CAMERA
 from .core.native import lodestone_native as native
 from .core.text import sentence, valid
@@ -22,14 +22,16 @@ class Request:
 
     `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
     (None for the scene's): their frames are in `frames` in the same order. `still`: what
-    motion.sample() found.
+    motion.sample() found. `with_poses`: also the `poses` that levels follow; close them when done.
     """
 
-    def __init__(self, cameras=(), tick=None, compare=False, still=None):
+    def __init__(self, cameras=(), tick=None, compare=False, still=None, with_poses=False):
         self.cameras = tuple(cameras)
         self.tick = tick or (lambda: None)
         self.compare = compare
         self.still = still
+        self.with_poses = with_poses
+        self.poses = poses.Poses()
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
         self.frames = []
@@ -53,6 +55,8 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             request.tick()
 
         try:
+            if request.with_poses:
+                request.poses = poses.read(depsgraph, self.frame_set, request.still, tick)
             extraction = scene.extract(depsgraph, tick, request.still)
             try:
                 for name, size in request.cameras:

@@ -30,15 +30,22 @@ ANTIALIAS = (
 )
 DEFORMING = (
     (
+        "FOLLOW",
+        "Follow",
+        "Levels are made once, to suit a few frames of the scene's range, and follow the surface "
+        "in every frame. What changes its faces (not only their shape) in other frames is drawn as "
+        "it is there",
+    ),
+    (
         "ORIGINAL",
         "Original",
-        "What an animation changes the shape of is drawn as it is, in all frames the same way",
+        "What an animation changes the shape of is drawn as it is in all frames",
     ),
     (
         "FRAME",
         "Simplify Each Frame",
-        "Levels are made for every frame: fewer triangles, but building takes time in each and "
-        "levels may flicker. For stills",
+        "Levels are made anew for every frame, also of groups with what moves: building takes time "
+        "in each, and levels may flicker. For stills",
     ),
 )
 KEEP = (
@@ -97,7 +104,7 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         name="Deforming Objects",
         description="What becomes of objects that move, grow, wave or are posed in an animation",
         items=DEFORMING,
-        default="ORIGINAL",
+        default="FOLLOW",
     )
     keep_scene_files: EnumProperty(
         name="Keep Scene Files",

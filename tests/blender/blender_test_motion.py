@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards animations: what moves is grouped apart, and nothing stands in for what deforms."""
+"""Guards animations: what moves is grouped apart, and what deforms is drawn with levels that follow
+it, the same ones in every frame, or as it is."""
 
+import json
 import tempfile
 import unittest
 from pathlib import Path
@@ -187,6 +189,123 @@ class Built(unittest.TestCase):
         self.assertEqual(counts["Ride"], 1)
         built, again = self.build(10)
         self.assertEqual((built, again), (0, counts))
+
+
+def mesh_of(glb):
+    """(indices, positions) of the one mesh in a store's file, as bytes."""
+    length = int.from_bytes(glb[12:16], "little")
+    header, binary = json.loads(glb[20 : 20 + length]), glb[28 + length :]
+
+    def part(accessor):
+        view = header["bufferViews"][header["accessors"][accessor]["bufferView"]]
+        start = view.get("byteOffset", 0)
+        return binary[start : start + view["byteLength"]]
+
+    primitives = [item for mesh in header["meshes"] for item in mesh["primitives"]]
+    return (
+        [part(item["indices"]) for item in primitives],
+        [part(item["attributes"]["POSITION"]) for item in primitives],
+    )
+
+
+class Followed(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        self.scene.frame_end = 20
+        self.flag = ball("Flag")
+        self.flag.modifiers.new("Wave", "WAVE").height = 0.4
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def build(self, frame, store="store"):
+        """The report, the problems, and [(indices, positions)] of the flag from the finest on."""
+        from lodestone import extract_engine
+        from lodestone.core.native import lodestone_native as native
+
+        self.scene.frame_set(frame)
+        request = extract_engine.Request(with_poses=True)
+        extraction = extract_engine.extract_now(self.scene, request)
+        self.assertEqual(self.scene.frame_current, frame)
+        store = self.folder / store
+        with extraction.model as model:
+            report = model.build(str(store), native.BuildOptions(poses=request.poses.models))
+            request.poses.close()
+            problems = [(item.object, item.code, item.severity) for item in model.problems()]
+        description = json.loads((store / "tileset.json").read_text())
+        for item in description["asset"]["extras"]["lodestone"]["objects"]:
+            if item["name"] == "Flag":
+                files = [store / "r" / f"{r['hash']}.glb" for r in item["representations"]]
+                return report, problems, [mesh_of(file.read_bytes()) for file in files]
+        self.fail("no flag")
+
+    def test_every_frame_has_the_triangles_of_one_collapse_where_its_surface_is(self):
+        report, problems, first = self.build(3)
+        self.assertEqual((report.built, problems), (1, []))
+        self.assertGreater(len(first), 3)
+        report, _, last = self.build(17)
+        self.assertEqual(report.built, 0)
+        self.assertEqual([level[0] for level in first], [level[0] for level in last])
+        for before, after in zip(first, last):
+            self.assertNotEqual(before[1], after[1])
+        self.assertEqual(self.build(17, "backwards")[2], last)
+        self.assertEqual(self.build(3, "backwards")[2], first)
+
+    def test_original_has_no_levels(self):
+        self.scene.lodestone.deforming = "ORIGINAL"
+        report, problems, levels = self.build(3)
+        self.assertEqual((report.built, problems, len(levels)), (0, [], 1))
+
+    def test_quads_that_fold_over_are_followed(self):
+        # Blender cuts a quad along its other diagonal where it folds: other triangles, same faces
+        bpy.data.objects.remove(self.flag)
+        points = [(x, y, 0.0) for y in range(9) for x in range(9)]
+        quads = [(i, i + 1, i + 10, i + 9) for y in range(8) for i in range(9 * y, 9 * y + 8)]
+        self.flag = scenes.link(bpy.data.objects.new("Flag", scenes.mesh("Flag", points, quads)))
+        self.flag.shape_key_add(name="Basis")
+        folded = self.flag.shape_key_add(name="Folded")
+        for i, point in enumerate(folded.data):
+            point.co = (1.4 * point.co.x, point.co.y, 0.8 * (i % 3))
+            if i % 4 == 0:
+                point.co = (point.co.x + 1.5, point.co.y + 1.5, 0.3)
+        for frame, value in ((1, 0.0), (20, 1.0)):
+            folded.value = value
+            folded.keyframe_insert("value", frame=frame)
+        _, problems, first = self.build(1)
+        _, also, last = self.build(20)
+        self.assertEqual(problems + also, [])
+        self.assertNotEqual(first[0][0], last[0][0], "the finest is cut as before")
+        self.assertEqual([level[0] for level in first[1:]], [level[0] for level in last[1:]])
+
+    def test_what_has_other_faces_in_no_sampled_frame_is_drawn_as_it_is_and_named(self):
+        self.flag.modifiers.clear()
+        grow = self.flag.modifiers.new("Grow", "BUILD")
+        grow.frame_start, grow.frame_duration = 1, 19
+        report, problems, levels = self.build(10)
+        self.assertEqual((report.built, len(levels)), (0, 1))
+        self.assertEqual(problems, [("Flag", "not_followed", 0)])
+        _, problems, levels = self.build(20)  # whole: a sampled frame
+        self.assertEqual(problems, [])
+        self.assertGreater(len(levels), 1)
+
+    def test_a_picture_leaves_the_frame_and_the_scene_as_they_were(self):
+        self.flag.location.z = -60
+        scene = self.scene
+        scene.render.engine = "LODESTONE_POVRAY"
+        scene.lodestone.antialias = "OFF"
+        scene.render.filepath = str(self.folder / "picture.png")
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
+        scene.frame_set(7)
+        bpy.ops.render.render(write_still=True)
+        self.assertEqual(scene.frame_current, 7)
+        self.assertTrue((self.folder / "picture.png").is_file())
+        from lodestone import engine
+        from lodestone.core import last_render
+
+        self.assertEqual(engine._poses, {})
+        used = last_render.get(scene.name)
+        self.assertEqual(used.triangles_placed, 1280)
+        self.assertLess(used.triangles, 200)
 
 
 if __name__ == "__main__":

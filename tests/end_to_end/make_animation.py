@@ -143,6 +143,7 @@ def main(path):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = 128, 72
+    scene.render.film_transparent = True  # pictures tell what they cover
     scene.frame_start, scene.frame_end = 1, FRAMES
     scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("World")

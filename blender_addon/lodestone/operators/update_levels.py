@@ -30,12 +30,13 @@ FAILURES = (native.LodestoneError, NothingThere, OSError, RuntimeError, UnicodeD
 _running = None  # the one session in the window
 
 
-def build_options(extraction, keys):
-    """For the datablocks of a scope (None: everything). Raises NothingThere."""
+def build_options(extraction, keys, poses):
+    """For the datablocks of a scope (None: everything), and what they follow. Raises
+    NothingThere."""
     scope = extraction.scope(keys)
     if keys is not None and not scope:
         raise NothingThere("Nothing to build: the scope holds nothing that renders show")
-    return native.BuildOptions(scope=scope)
+    return native.BuildOptions(scope=scope, poses=poses.models)
 
 
 def update_levels(context, scope):
@@ -45,16 +46,18 @@ def update_levels(context, scope):
     store = store_path.store_folder(bpy.data.filepath)
     keys = decisions.scope_keys(context, scope)
     changed = decisions.issue_uids(decisions.in_scope(context, scope))
+    request = extract_engine.Request(still=motion_file.read(store), with_poses=True)
     try:
-        request = extract_engine.Request(still=motion_file.read(store))
         extraction = extract_engine.extract_now(context.scene, request)
         with extraction.model as model:
-            options = build_options(extraction, keys)
+            options = build_options(extraction, keys, request.poses)
             store.mkdir(parents=True, exist_ok=True)
             return model.build(str(store), options)
     except BaseException:
         decisions.take_back(changed)
         raise
+    finally:
+        request.poses.close()
 
 
 class _Session:
@@ -65,7 +68,8 @@ class _Session:
         self.extraction = None
         self.estimate = None
         self.options = None
-        self.request = extract_engine.Request(still=motion_file.read(self.store))
+        still = motion_file.read(self.store)
+        self.request = extract_engine.Request(still=still, with_poses=True)
         self._keys = decisions.scope_keys(context, scope)
         self.build = work.Work()
         self._outcome = {}
@@ -102,7 +106,7 @@ class _Session:
         if self.request.extraction is None:
             raise work.Stopped
         self.extraction = self.request.extraction
-        self.options = build_options(self.extraction, self._keys)
+        self.options = build_options(self.extraction, self._keys, self.request.poses)
         self.estimate = self.extraction.model.build_estimate(str(self.store), self.options)
         return False
 
@@ -140,6 +144,7 @@ class _Session:
         extraction = self.extraction or self.request.extraction
         if extraction is not None:
             extraction.model.close()
+        self.request.poses.close()
         if not keep:
             decisions.take_back(self._changed)
 
