@@ -330,7 +330,7 @@ std::string file_of(Hash hash) {
 }
 
 std::string bound_file_of(Hash bind_hash) {
-    return "b/" + hex16(bind_hash) + ".bound";
+    return text("b/", hex16(bind_hash), ".bound");
 }
 
 std::string tileset_text(const Model& model) {
