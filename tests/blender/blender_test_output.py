@@ -83,6 +83,30 @@ class Output(unittest.TestCase):
         width, height, _ = self.render()
         self.assertEqual((width, height), (32, 18))
 
+    def test_29_percent_of_100_pixels_are_29_and_no_row_stays_empty(self):
+        render = self.scene.render
+        render.film_transparent = False
+        render.image_settings.color_mode = "RGBA"
+        render.resolution_x, render.resolution_y, render.resolution_percentage = 100, 100, 29
+        width, height, pixels = self.render()
+        self.assertEqual((width, height), (29, 29))
+        self.assertEqual(min(pixels[3::4]), 1.0)
+
+    def test_a_border_ends_where_blender_rounds_it_to(self):
+        """.7 of 100 are 70, though the number in the file is a little less than .7."""
+        from lodestone.bridge import picture
+
+        render = self.scene.render
+        render.image_settings.color_mode = "RGBA"
+        render.resolution_x, render.resolution_y = 100, 40
+        render.use_border = render.use_crop_to_border = True
+        render.border_min_x, render.border_max_x = 0.1, 0.7
+        render.border_min_y, render.border_max_y = 0.35, 0.95
+        self.assertEqual(picture.border(render, 100, 40), (10, 14, 60, 24))
+        width, height, pixels = self.render()
+        self.assertEqual((width, height), (60, 24))
+        self.assertEqual(min(pixels[3::4]), 1.0)
+
     def test_colors_are_blenders_in_every_view_transform(self):
         settings, view = self.scene.render.image_settings, self.scene.view_settings
         settings.file_format, settings.color_depth = "OPEN_EXR", "32"

@@ -21,11 +21,11 @@ class Frame:
 
     @classmethod
     def of(cls, render: Any) -> "Frame":
-        """Of RenderSettings, as Blender rounds."""
-        scale = render.resolution_percentage / 100
+        """Of RenderSettings, as Blender rounds: in whole numbers (29 % of 100 are 29)."""
+        percent = render.resolution_percentage
         return cls(
-            max(1, int(render.resolution_x * scale)),
-            max(1, int(render.resolution_y * scale)),
+            max(1, render.resolution_x * percent // 100),
+            max(1, render.resolution_y * percent // 100),
             render.pixel_aspect_x,
             render.pixel_aspect_y,
         )
