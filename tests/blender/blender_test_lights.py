@@ -5,8 +5,10 @@ import math
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
+from mathutils import Vector
 
 import blender_scenes as scenes
 
@@ -137,6 +139,29 @@ class Lights(unittest.TestCase):
             size_y=0.5,
         )
         self.same_as_cycles()
+
+    def test_a_mirrored_area_under_a_mirrored_parent(self):
+        area = lamp("AREA", (0.2, -0.6, 1.2), (0.2, -0.3, 0.4), (-1, 1, 1), energy=15.0, size=0.8)
+        area.parent = scenes.link(bpy.data.objects.new("Parent", None))
+        area.parent.scale = (-1.0, 1.0, 1.0)
+        self.same_as_cycles()
+
+    def test_an_area_that_its_parent_shears_is_named_and_shines_square_to_its_edges(self):
+        from lodestone.bridge import lights
+        from lodestone.core.problems import Problems
+
+        area = lamp("AREA", (0.0, 0.0, 4.0), (0.5, 0.3, 0.0), energy=15.0)
+        area.parent = scenes.link(bpy.data.objects.new("Parent", None))
+        area.parent.scale = (2.0, 1.0, 0.5)
+        bpy.context.view_layer.update()
+        added, problems = [], Problems()
+        taker = SimpleNamespace(add_light=added.append)
+        lights.add(taker, area.data, area.matrix_world, "Area", problems)
+        self.assertEqual([problem.code for problem in problems], ["light_sheared"])
+        direction = Vector(added[0].direction)
+        self.assertAlmostEqual(direction.dot(Vector(added[0].edge_u)), 0.0, places=6)
+        self.assertAlmostEqual(direction.dot(Vector(added[0].edge_v)), 0.0, places=6)
+        self.assertLess(direction.z, 0.0)
 
     def test_a_light_of_negative_power_takes_away(self):
         lamp("SUN", (0, 0, 0), energy=3.0, angle=0.0)

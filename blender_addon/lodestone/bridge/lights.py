@@ -2,6 +2,7 @@
 """Lights in Blender's units (sun W/m^2, others W), with the sizes that make their shadows soft."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from mathutils import Matrix, Vector
@@ -40,6 +41,11 @@ def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -
         shadow=bool(light.use_shadow and getattr(cycles, "cast_shadow", True)),
         **_shape(light, matrix),
     )
+    if light.type == "AREA" and _sheared(given):
+        text = f'Parents shear area light "{name}": it gives about as much light as in Cycles'
+        problems.add(name, WARNING, "light_sheared", text)
+        if not given.round:  # Cycles lights by the plane of its edges then
+            given = replace(given, direction=_square_to(given))
     if light.type == "SPOT" and light.use_square:
         text = f'Spot light "{name}" is drawn round, as Cycles does: not square'
         problems.add(name, INFO, "spot_square", text)
@@ -52,6 +58,21 @@ def _direction(matrix: Matrix) -> tuple[float, float, float]:
     if direction.length == 0.0:
         return (0.0, 0.0, -1.0)
     return tuple(direction.normalized())
+
+
+def _square_to(light: native.Light) -> tuple[float, float, float]:
+    """Square to the edges of an area, on the side it shines to."""
+    square = Vector(light.edge_u).cross(Vector(light.edge_v)).normalized()
+    return tuple(square if square.dot(Vector(light.direction)) >= 0.0 else -square)
+
+
+def _sheared(light: native.Light) -> bool:
+    """Whether an area does not look straight along what it shines: more than 2 degrees aside."""
+    u, v = Vector(light.edge_u), Vector(light.edge_v)
+    square = u.cross(v)
+    if square.length <= 1e-6 * u.length * v.length:  # without an area there is nothing to tell
+        return False
+    return abs(square.normalized().dot(Vector(light.direction))) < 0.9994
 
 
 def _shape(light: Any, matrix: Matrix) -> dict[str, Any]:
