@@ -59,6 +59,25 @@ class Visibility(Case):
         extraction, _ = self.extract()
         self.assertEqual(self.named(extraction), {"Right": 1})
 
+    def test_the_material_of_a_view_layer_is_worn_by_everything(self):
+        """Clay: material slots, empty ones and those of objects count no more."""
+        bare = scenes.cube("Bare")
+        cube = scenes.cube("Cube", (2, 0, 0))
+        cube.data.materials.append(scenes.material("Paint"))
+        self.scene.view_layers[0].material_override = clay = scenes.material("Clay")
+        self.assertEqual(len(bare.material_slots), 0)
+        clay.use_nodes = False
+        clay.node_tree.nodes.clear()
+        clay.use_nodes = True  # is named, though no slot holds it
+        extraction, _ = self.extract()
+        self.assertEqual([leaf.materials for leaf in extraction.leaves], [("Clay",)] * 2)
+        self.assertIn(("Clay", "no_surface"), self.codes(extraction))
+        bpy.ops.lodestone.check_scene()
+        from lodestone.core import last_check
+
+        found = last_check.get(self.scene.name).problems
+        self.assertIn("no_surface", [problem.code for problem in found])
+
     def test_ray_visibility_becomes_flags_of_the_placement(self):
         scenes.cube("Plain")
         for name, switches in {

@@ -6,7 +6,7 @@ from typing import Any
 
 from mathutils import Matrix
 
-from .leaves import DRAWN, material_slots, undrawn
+from .leaves import DRAWN, material_slots, override_of, undrawn
 from .scene import Extraction
 
 TOLERANCE = 1e-5  # of the largest number in a transform
@@ -24,11 +24,12 @@ def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
     """
     found: dict[Key, list[tuple[float, ...]]] = defaultdict(list)
     triangles: dict[int, int] = {}
+    override = override_of(depsgraph)
     for instance in depsgraph.object_instances:
         shown = instance.object
         if shown.type not in DRAWN or undrawn(shown):
             continue
-        names = tuple(m.name if m else "" for m in material_slots(shown))
+        names = tuple(m.name if m else "" for m in material_slots(shown, override))
         matrix = instance.matrix_world
         if instance.show_particles and shown.type == "MESH":
             hairs = _hairs(shown)

@@ -49,8 +49,12 @@ class Look:
 
 
 class Leaves:
-    def __init__(self, model: Any, scene: Any, uids: ids.Uids, problems: Problems) -> None:
+    def __init__(
+        self, model: Any, scene: Any, uids: ids.Uids, problems: Problems, override: Any = None
+    ) -> None:
+        """`override`: the material that all wear (see override_of())."""
         self._model = model
+        self.override = override
         self._scene = scene
         self._uids = uids
         self._problems = problems
@@ -78,7 +82,7 @@ class Leaves:
         return self._get((POINT, shown.data.as_pointer()), shown, owner, look, self._add_point)
 
     def _get(self, data: Any, shown: Any, owner: Any, look: Look, add: Any) -> Leaf | None:
-        slots = material_slots(shown)
+        slots = material_slots(shown, self.override)
         materials = tuple(m.as_pointer() if m else 0 for m in slots)
         color, frames = self._seen_from(shown, slots, materials)
         key = (data, materials, color, frames, look)
@@ -201,11 +205,20 @@ class Leaves:
         return base, shown.data.name
 
 
-def material_slots(shown: Any) -> list[Any]:
-    """Resolved materials by slot, those linked to the object included."""
+def material_slots(shown: Any, override: Any = None) -> list[Any]:
+    """Resolved materials by slot, those linked to the object included; `override` in all of them,
+    and in one where there is none."""
     if shown.data is None:  # material_slots of an evaluated empty crash Blender 3.4
         return []
+    if override is not None:
+        return [override] * max(1, len(shown.material_slots))
     return [slot.material for slot in shown.material_slots]
+
+
+def override_of(depsgraph: Any) -> Any | None:
+    """The evaluated material that a view layer puts on everything, as Cycles does; or None."""
+    material = depsgraph.view_layer_eval.material_override
+    return None if material is None else material.evaluated_get(depsgraph)
 
 
 def _names(slots: list) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from ..core.problems import Problems, Subject
 from . import camera, groups, ids, lights, world
 from .images import ImageMeans
 from .instances import Instances, report_outside
-from .leaves import Leaf, Leaves
+from .leaves import Leaf, Leaves, override_of
 from .motion import Motion, Still
 from .users import Users
 from .visibility import Visibility
@@ -63,7 +63,7 @@ def _extract(
     motion = Still() if anew else Motion(still)
     model, problems, uids = native.Model(), Problems(), ids.Uids()
     try:
-        leaves = Leaves(model, depsgraph.scene, uids, problems)
+        leaves = Leaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
         walk = walked(depsgraph, leaves, problems, tick, motion)
         tree = groups.Groups(model, uids, walk.roles, motion)
         root = tree.build(walk.found.scene, walk.branch)

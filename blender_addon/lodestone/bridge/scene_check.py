@@ -14,7 +14,7 @@ from ..core.last_check import Check
 from ..core.problems import ERROR, Problems
 from . import camera, requirements, scene, strands
 from .images import ImageHeads
-from .leaves import material_slots
+from .leaves import material_slots, override_of
 from .materials import Materials
 
 
@@ -29,7 +29,8 @@ def check(
     the current one, which `depsgraph` is of. `problems` are those known already."""
     recorder, heads = Recorder(), ImageHeads()
     shown = Shown(depsgraph, rendered_objects(rendered_layers(original, view_layer)))
-    glances = Glances(Materials(None, problems, frame=original.frame_current))
+    override = override_of(depsgraph)
+    glances = Glances(Materials(None, problems, frame=original.frame_current), override)
     walk = scene.walked(shown, glances, problems, tick)
     evaluated = shown.scene_eval
     scene.surroundings(recorder, evaluated, walk.found.lights, problems, heads)
@@ -62,13 +63,14 @@ class Recorder:
 class Glances:
     """Stands where Leaves does: translates materials, looks at most at whether there are faces."""
 
-    def __init__(self, materials: Materials) -> None:
+    def __init__(self, materials: Materials, override: Any = None) -> None:
         self._materials = materials
+        self.override = override
         self._found: dict[tuple, Any] = {}
 
     def leaf(self, shown: Any, *_: Any) -> Any | None:
         """As Leaves.leaf(): None when there is nothing to draw."""
-        slots = material_slots(shown)
+        slots = material_slots(shown, self.override)
         key = (shown.data.as_pointer(), tuple(m.as_pointer() if m else 0 for m in slots))
         if key not in self._found:
             self._found[key] = self._look(shown, slots)
@@ -85,7 +87,7 @@ class Glances:
         return self._of_materials(shown)
 
     def _of_materials(self, shown: Any) -> Any:
-        for material in material_slots(shown):
+        for material in material_slots(shown, self.override):
             self._materials.index(material)
         return SimpleNamespace(object=None)
 

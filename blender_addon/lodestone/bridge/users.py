@@ -2,6 +2,7 @@
 """Which objects show which material: noted on the way to the leaves, whoever makes them."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from ..core.problems import Problem, Subject
@@ -14,18 +15,19 @@ class Users:
 
     def __init__(self, leaves: Any) -> None:
         self._leaves = leaves
+        self._slots_of = partial(material_slots, override=leaves.override)
         self._seen: set[tuple[int, int]] = set()
         self._slots: dict[int, list[Subject]] = {}  # materials by leaf
         self._found: dict[Subject, dict[Subject, None]] = {}
 
     def leaf(self, shown: Any, owner: Any, *how: Any) -> Any:
-        return self._noted(self._leaves.leaf(shown, owner, *how), shown, owner, _worn_by_faces)
+        return self._noted(self._leaves.leaf(shown, owner, *how), shown, owner, self._worn)
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """The other ways to a leaf, of what has no faces: all its materials are seen."""
         give = getattr(self._leaves, name)
         return lambda shown, owner, *how: self._noted(
-            give(shown, owner, *how), shown, owner, material_slots
+            give(shown, owner, *how), shown, owner, self._slots_of
         )
 
     def _noted(self, leaf: Any, shown: Any, owner: Any, worn: Callable[[Any], list]) -> Any:
@@ -43,6 +45,9 @@ class Users:
                 self._found.setdefault(material, {})[user] = None
         return leaf
 
+    def _worn(self, shown: Any) -> list[Any]:
+        return _worn_by_faces(shown, self._slots_of(shown))
+
     def found(self) -> dict[Subject, tuple[Subject, ...]]:
         """The objects of every material that a face of them wears."""
         return {material: tuple(users) for material, users in self._found.items()}
@@ -52,8 +57,7 @@ class Users:
         return problem.kind != "material" or problem.subject in self._found
 
 
-def _worn_by_faces(shown: Any) -> list[Any]:
-    slots = material_slots(shown)
+def _worn_by_faces(shown: Any, slots: list[Any]) -> list[Any]:
     if len(slots) > 1 and shown.type == "MESH":
         used = _used_slots(shown.data)
         if used is not None:
