@@ -6,6 +6,7 @@ import tempfile
 import unittest
 from array import array
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 
@@ -93,6 +94,76 @@ class World(unittest.TestCase):
         node.image.source = "FILE"
         node.image.filepath = "/nowhere/sky.png"
         self.assertIn("world_image_missing", self.extracted()[1])
+
+    def shaded(self, kind, *inputs):
+        """A node of this kind in front of the output, fed by those."""
+        node = self.tree.nodes.new(kind)
+        for socket, source in zip((i for i in node.inputs if i.type == "SHADER"), inputs):
+            self.tree.links.new(source.outputs[0], socket)
+        self.tree.links.new(node.outputs[0], self.tree.nodes["World Output"].inputs["Surface"])
+        return node
+
+    def close(self, values, expected):
+        for value, other in zip(values, expected, strict=True):
+            self.assertAlmostEqual(value, other, places=5)
+
+    def test_of_two_outputs_that_of_cycles_counts(self):
+        self.tree.nodes["World Output"].target = "EEVEE"
+        other = self.tree.nodes.new("ShaderNodeBackground")
+        other.inputs["Color"].default_value = (0.1, 0.2, 0.6, 1.0)
+        output = self.tree.nodes.new("ShaderNodeOutputWorld")
+        output.target = "CYCLES"
+        self.tree.links.new(other.outputs[0], output.inputs["Surface"])
+        self.close(self.extracted()[0].color, (0.1, 0.2, 0.6))
+
+    def test_an_emission_shader_is_a_background_too(self):
+        node = self.shaded("ShaderNodeEmission")
+        node.inputs["Color"].default_value = (0.2, 0.5, 0.3, 1.0)
+        node.inputs["Strength"].default_value = 0.5
+        found, codes = self.extracted()
+        self.close(found.color, (0.1, 0.25, 0.15))
+        self.assertEqual(codes, [])
+
+    def test_mixed_and_added_backgrounds_are_exact(self):
+        other = self.tree.nodes.new("ShaderNodeBackground")
+        self.background.inputs["Color"].default_value = (1.0, 0.0, 0.0, 1.0)
+        other.inputs["Color"].default_value = (0.0, 0.0, 0.5, 1.0)
+        mix = self.shaded("ShaderNodeMixShader", self.background, other)
+        mix.inputs["Fac"].default_value = 0.25
+        found, codes = self.extracted()
+        self.close(found.color, (0.75, 0.0, 0.125))
+        self.shaded("ShaderNodeAddShader", self.background, mix)
+        found, more = self.extracted()
+        self.close(found.color, (1.75, 0.0, 0.125))
+        self.assertEqual((codes, more), ([], []))
+
+    def test_a_background_for_the_camera_alone_gives_no_light_and_is_named(self):
+        other = self.tree.nodes.new("ShaderNodeBackground")
+        self.background.inputs["Color"].default_value = (0.6, 0.2, 0.1, 1.0)
+        mix = self.shaded("ShaderNodeMixShader", self.background, other)
+        path = self.tree.nodes.new("ShaderNodeLightPath")
+        self.tree.links.new(path.outputs["Is Camera Ray"], mix.inputs["Fac"])
+        self.assertIn("world_camera_rays", self.extracted()[1])
+
+    def test_a_sky_has_its_sun_as_a_light(self):
+        from lodestone.bridge import world
+        from lodestone.core.problems import Problems
+
+        sky = self.tree.nodes.new("ShaderNodeTexSky")
+        sky.sky_type, sky.sun_elevation, sky.sun_rotation = "NISHITA", math.radians(30), 0.5
+        self.tree.links.new(sky.outputs[0], self.background.inputs["Color"])
+        self.background.inputs["Strength"].default_value = 0.1
+        suns = []
+        taker = SimpleNamespace(add_light=suns.append, add_picture=lambda *_, **__: 0)
+        problems = Problems()
+        world.extract(taker, self.world, problems)
+        (sun,) = suns
+        self.close(sun.color, (13.999, 11.116, 7.899))
+        self.close(sun.direction, (-0.41519, -0.76001, -0.5))
+        self.assertIn("world_sky", [problem.code for problem in problems])
+        sky.sun_disc = False
+        world.extract(taker, self.world, problems)
+        self.assertEqual(len(suns), 1)
 
     def test_unknown_nodes_are_one_named_color(self):
         noise = self.tree.nodes.new("ShaderNodeTexNoise")

@@ -7,6 +7,8 @@ from typing import Any
 
 from mathutils import Euler, Matrix, Vector
 
+from .sky_texture import SkySun, mean_of_sky, sun_of_sky
+
 Value = Any  # a float for numbers, a tuple of three for colors and vectors
 Function = Callable[[Vector], Value]
 _MAX_DEPTH = 32
@@ -18,10 +20,15 @@ class Unknown(Exception):
 
 
 class SkyNodes:
-    """`texel(image, u, v)` gives the linear color of an image there, or None."""
+    """`texel(image, u, v)` gives the linear color of an image there, or None. `approximated`:
+    sentences by code on what of the nodes was followed only nearly. `suns`: those of sky textures;
+    while one is `lit_by`, its sky has the sun's light in place of its own."""
 
     def __init__(self, texel: Callable[[Any, float, float], Value | None]) -> None:
         self._texel = texel
+        self.approximated: dict[str, str] = {}
+        self.suns: list[SkySun] = []
+        self.lit_by: SkySun | None = None
         self._depth = 0
 
     def color(self, socket: Any) -> Function:
@@ -124,6 +131,33 @@ class SkyNodes:
             return color[3] if socket.name == "Alpha" else tuple(color[:3])
 
         return sample
+
+    def _tex_sky(self, node: Any, socket: Any) -> Function:
+        vector, tint = self.direction(node), mean_of_sky(node)
+        self.approximated["sky"] = "its sky is drawn in one color, the mean of a sky like it"
+        if node.sky_type != "NISHITA":
+            return lambda d: tint
+        sun = sun_of_sky(node)
+        if sun is not None and node.inputs["Vector"].is_linked:
+            self.approximated["sky_sun"] = "the sun of its sky is left out"
+            sun = None
+        if sun is not None:
+            self.suns.append(sun)
+
+        def sample(d: Vector) -> Value:
+            if sun is not None and self.lit_by is sun:
+                return sun.light
+            height = Vector(vector(d)).normalized().z
+            share = min(1.0, max(0.0, 1.0 + 2.5 * height)) ** 3  # below the horizon: to black
+            return tuple(share * c for c in tint)
+
+        return sample
+
+    def _light_path(self, node: Any, socket: Any) -> Function:
+        if socket.name != "Is Camera Ray":
+            raise Unknown(f"{node.bl_label} ({socket.name})")
+        self.approximated["camera_rays"] = "drawn as it lights: the camera sees it no different"
+        return lambda d: 0.0
 
     # ---- Colors and numbers ----
 

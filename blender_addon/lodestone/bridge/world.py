@@ -4,6 +4,7 @@
 import math
 import os
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,16 +17,11 @@ from ..core.problems import ERROR, INFO, WARNING, Problems
 from .images import ImageHeads, ImageMeans, read_pixels, to_linear
 from .node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
+from .sky_texture import mean_of_sky
 
+MOST_BACKGROUNDS = 16  # of one world
 WIDTH, HEIGHT = 128, 64  # of the image that nodes are drawn into
 _READ = {"PNG", "JPEG", "OPEN_EXR"}  # what the backend reads itself
-# Mean radiance of the upper half of Blender's sky textures with their default settings, measured
-# with Cycles in 3.4: drawn in one color a sky still lights as much as it would.
-_SKIES = {
-    "PREETHAM": (0.415, 0.602, 1.056),
-    "HOSEK_WILKIE": (0.0676, 0.1076, 0.1739),
-    "NISHITA": (3.27, 3.54, 3.73),
-}
 
 
 @dataclass(frozen=True)
@@ -61,23 +57,29 @@ class _Reader:
 
     def read(self) -> World:
         tree = self._world.node_tree
-        output = tree.get_output_node("ALL")
+        output = tree.get_output_node("CYCLES")
         if output is None or not output.inputs["Surface"].is_linked:
             return World((0.0, 0.0, 0.0))
         if output.inputs["Volume"].is_linked:
             self._note(WARNING, "volume", "its volume is left out")
-        nodes: list[Any] = []
-        _backgrounds(output.inputs["Surface"], set(), nodes)
-        if not nodes:
-            self._note(WARNING, "shader", "drawn as its viewport color: its shader is not known")
+        parts: list[Part] = []
+        _parts(output.inputs["Surface"], (), set(), parts)
+        if not parts:
+            text = "drawn as its viewport color: its shader is not known"
+            self._note(WARNING, "shader", text)
             return World(tuple(self._world.color))
-        if len(nodes) > 1:
-            text = f'drawn as its first background, "{nodes[0].name}", alone'
-            self._note(WARNING, "backgrounds", text)
-        node = nodes[0]
+        node = parts[0].node
+        if len(parts) > 1 or parts[0].shares:
+            found = self._drawn(parts, f'its first background, "{node.name}", alone')
+            if found is not None:
+                return found
         if not any(node.inputs[name].is_linked for name in ("Color", "Strength")):
             return World(self._mean(node))
-        return self._image(node) or self._drawn(node) or World(self._mean(node))
+        return (
+            self._image(node)
+            or self._drawn([Part(node)], "one flat color")
+            or World(self._mean(node))
+        )
 
     # ---- An image as it is ----
 
@@ -128,14 +130,20 @@ class _Reader:
 
     # ---- Nodes, looked at all around ----
 
-    def _drawn(self, node: Any) -> World | None:
+    def _drawn(self, parts: list["Part"], otherwise: str) -> World | None:
+        """The sum of its backgrounds, times their shares of mixtures. None, and what is drawn
+        `otherwise` is named, when a node is not known."""
         nodes = SkyNodes(self._texel)
         try:
-            color = nodes.color(node.inputs["Color"])
-            strength = nodes.number(node.inputs["Strength"])
+            light = _sum([_followed(nodes, part) for part in parts])
         except Unknown as unknown:
-            self._note(WARNING, "nodes", f"drawn as one flat color: {unknown} is not known")
+            self._note(WARNING, "nodes", f"drawn as {otherwise}: {unknown} is not known")
             return None
+        for code, text in nodes.approximated.items():
+            self._note(WARNING, code, text)
+        self._add_suns(nodes, light)
+        if all(_constant(part) for part in parts):
+            return World(_in_range(light(Vector((0.0, 0.0, 1.0)))))
         size = f"{WIDTH} x {HEIGHT}"
         self._note(INFO, "drawn", f"its nodes are drawn into an image of {size} pixels")
         if self._glance:
@@ -148,13 +156,28 @@ class _Reader:
                 flat = math.cos(height)
                 at = Vector((flat * math.cos(turn), flat * math.sin(turn), math.sin(height)))
                 try:
-                    power = strength(at)
-                    values = [power * part for part in color(at)]
+                    pixels.extend(_in_range(light(at)))
                 except (ArithmeticError, ValueError, TypeError):
-                    values = [0.0, 0.0, 0.0]
-                pixels.extend(min(1e9, max(0.0, v)) if v == v else 0.0 for v in values)
+                    pixels.extend((0.0, 0.0, 0.0))
         data = exr.encode(WIDTH, HEIGHT, pixels)
         return World((0.0, 0.0, 0.0), self._model.add_picture(self._world.name, data=data))
+
+    def _add_suns(self, nodes: SkyNodes, light: "Light") -> None:
+        """Those of skies as lights, as far as the nodes behind let their light through."""
+        for sun in nodes.suns:
+            nodes.lit_by = sun
+            color = _in_range(light(Vector(sun.direction)))
+            nodes.lit_by = None
+            x, y, z = sun.direction
+            given = native.Light(
+                name=self._world.name,
+                kind=native.LightKind.SUN,
+                color=color,
+                power=1.0,
+                direction=(-x, -y, -z),
+                angle=sun.angle,
+            )
+            self._model.add_light(given)
 
     def _texel(self, image: Any, u: float, v: float) -> Any | None:
         """The linear color of the pixel there; None when the image cannot be read."""
@@ -197,7 +220,7 @@ class _Reader:
             behind = source.links[0].from_node
             if behind.type == "TEX_SKY":
                 note("sky", "the mean of a sky like it")
-                tint = _SKIES.get(behind.sky_type, _SKIES["HOSEK_WILKIE"])
+                tint = mean_of_sky(behind)
             elif behind.type == "TEX_ENVIRONMENT" and behind.image is not None:
                 tint = self._means.mean(behind.image)
                 if tint is not None:
@@ -212,19 +235,68 @@ class _Reader:
         self._problems.add(name, severity, f"world_{code}", f'World "{name}": {text}')
 
 
-def _backgrounds(socket: Any, seen: set, found: list[Any]) -> None:
-    """The background nodes that feed this socket, the first one first."""
-    for link in socket.links:
-        node = link.from_node
-        if node.name in seen:
-            continue
-        seen.add(node.name)
-        if node.type == "BACKGROUND":
-            found.append(node)
-            continue
+Light = Callable[[Vector], tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A background (or emission) node; of a mixture it has the product of `shares`: (socket of a
+    factor, whether it has the rest of it)."""
+
+    node: Any
+    shares: tuple[tuple[Any, bool], ...] = ()
+
+
+def _parts(socket: Any, shares: tuple, above: set, found: list[Part]) -> None:
+    """The backgrounds that feed this socket, the first one first. `above`: names of the nodes on
+    the way here."""
+    link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
+    if link is None or link.from_node.name in above or len(found) >= MOST_BACKGROUNDS:
+        return
+    node = link.from_node
+    above = {*above, node.name}
+    if node.type in {"BACKGROUND", "EMISSION"}:
+        found.append(Part(node, shares))
+    elif node.type == "MIX_SHADER":
+        factor, first, second = node.inputs[0], node.inputs[1], node.inputs[2]
+        _parts(first, (*shares, (factor, True)), above, found)
+        _parts(second, (*shares, (factor, False)), above, found)
+    else:
         for inner in node.inputs:
             if inner.type == "SHADER" or node.type == "REROUTE":
-                _backgrounds(inner, seen, found)
+                _parts(inner, shares, above, found)
+
+
+def _followed(nodes: SkyNodes, part: Part) -> Light:
+    """The light of one background by direction. Raises Unknown."""
+    color = nodes.color(part.node.inputs["Color"])
+    factors = [(nodes.number(part.node.inputs["Strength"]), False, False)]
+    factors += [(nodes.number(socket), True, rest) for socket, rest in part.shares]
+
+    def light(at: Vector) -> tuple[float, ...]:
+        power = 1.0
+        for number, share, rest in factors:
+            value = number(at)
+            if share:
+                value = min(1.0, max(0.0, value))
+            power *= 1.0 - value if rest else value
+        return tuple(power * value for value in color(at))
+
+    return light
+
+
+def _constant(part: Part) -> bool:
+    sockets = [part.node.inputs["Color"], part.node.inputs["Strength"]]
+    return not any(socket.is_linked for socket in [*sockets, *(s for s, _ in part.shares)])
+
+
+def _sum(lights: list[Light]) -> Light:
+    return lambda at: tuple(sum(values) for values in zip(*(light(at) for light in lights)))
+
+
+def _in_range(color: Any) -> tuple[float, float, float]:
+    red, green, blue = (min(1e9, max(0.0, v)) if v == v else 0.0 for v in color)
+    return (red, green, blue)
 
 
 def _linear(function: Any) -> tuple[float, ...] | None:

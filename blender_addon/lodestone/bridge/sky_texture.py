@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's sky textures by numbers: what they light like, and their sun."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+Color = tuple[float, float, float]
+
+# Radiance of one color that lights level ground as the upper half of a sky does; measured with
+# Cycles in 3.4. For these two with their default settings
+_SKIES = {"PREETHAM": (0.415, 0.602, 1.056), "HOSEK_WILKIE": (0.0676, 0.1076, 0.1739)}
+# and for NISHITA by the sun's elevation in degrees, at sea level in clear air, beside the
+# irradiance of its sun (W/m^2, square to it)
+_NISHITA: list[tuple[float, Color, Color]] = [
+    (-5, (0.005, 0.006, 0.0082), (0.0, 0.0, 0.0)),
+    (-2, (0.0992, 0.1095, 0.1335), (0.0, 0.0, 0.0)),
+    (0, (0.3185, 0.3545, 0.3845), (0.0, 0.0, 0.0)),
+    (2, (0.638, 0.7327, 0.7681), (29.92, 10.43, 0.05)),
+    (5, (1.0154, 1.2508, 1.4166), (70.83, 37.03, 7.91)),
+    (10, (1.4412, 1.8173, 2.2642), (105.2, 69.5, 30.18)),
+    (15, (1.7189, 2.1626, 2.8237), (121.28, 87.74, 48.68)),
+    (20, (1.9093, 2.3935, 3.2125), (130.33, 98.8, 62.06)),
+    (30, (2.1452, 2.6808, 3.7195), (139.99, 111.16, 78.99)),
+    (45, (2.3274, 2.9118, 4.1601), (146.51, 119.84, 92.14)),
+    (60, (2.419, 3.0362, 4.4188), (149.6, 123.97, 98.72)),
+    (90, (2.4709, 3.117, 4.6079), (152.16, 127.08, 103.34)),
+]
+
+
+@dataclass(frozen=True)
+class SkySun:
+    """`direction` to it; irradiance in W/m^2 as Cycles has it; angle in radians across."""
+
+    direction: tuple[float, float, float]
+    light: Color
+    angle: float
+
+
+def mean_of_sky(node: Any) -> Color:
+    """Of a sky texture node."""
+    if node.sky_type == "NISHITA":
+        return _at(node.sun_elevation, 1)
+    return _SKIES.get(node.sky_type, _SKIES["HOSEK_WILKIE"])
+
+
+def sun_of_sky(node: Any) -> SkySun | None:
+    """None when it has none or it is below the horizon."""
+    if node.sky_type != "NISHITA" or not node.sun_disc or node.sun_intensity <= 0.0:
+        return None
+    red, green, blue = (node.sun_intensity * c for c in _at(node.sun_elevation, 2))
+    if max(red, green, blue) <= 0.0:
+        return None
+    high, turn = node.sun_elevation, node.sun_rotation
+    flat = math.cos(high)
+    direction = (flat * math.sin(turn), flat * math.cos(turn), math.sin(high))
+    return SkySun(direction, (red, green, blue), node.sun_size)
+
+
+def _at(elevation: float, column: int) -> Color:
+    """Between the rows of the table."""
+    degrees = math.degrees(elevation)
+    low = high = _NISHITA[0]
+    for row in _NISHITA:
+        low, high = high, row
+        if degrees <= row[0]:
+            break
+    width = high[0] - low[0]
+    share = min(1.0, max(0.0, (degrees - low[0]) / width)) if width else 0.0
+    red, green, blue = (a + share * (b - a) for a, b in zip(low[column], high[column]))
+    return (red, green, blue)
