@@ -91,7 +91,7 @@ class Materials(MaterialCase):
             ("Metallic", 0.7),
             ("Specular", 0.2),
             ("Emission", (1.0, 0.5, 0.0, 1.0)),
-            ("Emission Strength", 4.0),
+            ("Emission Strength", 0.9),
             ("Alpha", 0.6),
             ("Transmission", 0.9),
             ("IOR", 1.33),
@@ -103,7 +103,7 @@ class Materials(MaterialCase):
         self.assertEqual(codes, set())
         fields = self.added[0]
         self.close(fields["base_color"], (0.2, 0.4, 0.6))
-        self.close(fields["emission"], (4.0, 2.0, 0.0))
+        self.close(fields["emission"], (0.9, 0.45, 0.0))
         names = ("roughness", "metallic", "specular", "alpha", "transmission", "ior")
         self.close([fields[n] for n in names], (0.3, 0.7, 0.2, 0.6, 0.9, 1.33))
         self.close([fields["clearcoat"], fields["clearcoat_roughness"]], (0.8, 0.1))
@@ -371,9 +371,16 @@ class Materials(MaterialCase):
         glow.inputs["Strength"].default_value = 3.0
         self.tree.links.new(self.principled.outputs[0], add.inputs[1])
         look, codes = self.translate()
-        self.assertEqual(codes, set())
+        self.assertEqual(codes, {"glow"})
         self.close(look.emission.color, (3.0, 1.5, 0.0))
         self.close(look.base_color.color, (0.2, 0.4, 0.6))
+
+    def test_a_lamp_shade_that_glows_lights_nothing_else_and_is_named(self):
+        emission = self.principled.inputs["Emission"]
+        emission.default_value = (1.0, 0.8, 0.5, 1.0)
+        for strength, expected in ((1.0, set()), (1.1, {"glow"}), (0.0, set())):
+            self.principled.inputs["Emission Strength"].default_value = strength
+            self.assertEqual(self.translate()[1], expected, strength)
 
     def test_a_fresnel_factor_is_its_mean_and_named(self):
         gloss = self.node("ShaderNodeBsdfGlossy")

@@ -106,6 +106,27 @@ class Problems(unittest.TestCase):
         self.assertTrue({"material", "object", "world", "camera"} <= kinds, found.problems)
         self.assertEqual(found.exact_materials[0], 0)  # the second slot has no face
 
+    def test_what_povray_cannot_do_of_lights_is_found_as_by_a_render(self):
+        from lodestone.core import last_check
+
+        scenes.cube("Cube")
+        kinds = {"Softbox": "AREA", "Dot": "AREA", "Lamp": "SPOT", "Ball": "POINT"}
+        for name, kind in kinds.items():
+            data = bpy.data.lights.new(name, kind)
+            data.use_shadow = False
+            item = scenes.link(bpy.data.objects.new(name, data))
+            item.location.z = 3.0
+            if kind == "AREA":
+                data.spread = 0.8
+        bpy.data.objects["Dot"].scale.x = 0.0
+        found = told(check().problems)
+        self.assertEqual([code for _, code, *_ in found].count("light_shadow"), 3)
+        self.scene.render.engine = "LODESTONE_POVRAY"
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 8, 8
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
+        bpy.ops.render.render()
+        self.assertEqual(told(last_check.get(self.scene.name).problems), found)
+
     def test_texts_curves_and_metaballs_wear_materials_too(self):
         for kind, data in (
             ("Text", bpy.data.curves.new("Text", "FONT")),

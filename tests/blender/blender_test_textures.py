@@ -74,6 +74,24 @@ class Images(TextureCase):
         self.assertEqual((codes, look.base_color.texture.picture.kind), (set(), "packed"))
         self.close(self.added[0]["base_color"], (0.0, 1.0, 0.0))
 
+    def test_a_png_that_says_it_is_times_alpha_is_read_as_any_other_as_by_cycles(self):
+        made = bpy.data.images.new("Half", 2, 2, alpha=True)
+        made.pixels = [1.0, 0.5, 0.0, 0.5] * 4
+        made.filepath_raw, made.file_format = str(self.folder / "half.png"), "PNG"
+        made.save()
+        node = self.node("ShaderNodeTexImage", ("Color", self.base))
+        node.image = bpy.data.images.load(made.filepath_raw)
+        found = []
+        for mode in ("STRAIGHT", "PREMUL"):
+            node.image.alpha_mode = mode
+            found.append(self.base_color())
+        self.close(found[0], found[1])
+
+    def test_cubic_interpolation_is_named(self):
+        node = self.load("red.png", png(255, 0, 0))
+        node.interpolation = "Cubic"
+        self.assertEqual(self.translate()[1], {"interpolation"})
+
     def test_other_formats_come_through_blender(self):
         image = self.image([(1, 0, 0, 1), (0, 0, 1, 1)])
         for kind, ending in (("TARGA", "tga"), ("BMP", "bmp"), ("TIFF", "tif"), ("HDR", "hdr")):

@@ -63,7 +63,7 @@ def source_of(image: Any, user: Any, frame: int, note: Note) -> Source:
         data=space in _DATA,
         has_alpha=alpha_mode != "NONE" and _may_have_alpha(head),
         packed_channels=alpha_mode == "CHANNEL_PACKED",
-        associated=alpha_mode == "PREMUL" and not exr and kind != PIXELS,
+        associated=alpha_mode == "PREMUL" and not exr and kind == PACKED,
         image=image,
     )
 

@@ -49,7 +49,26 @@ def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -
     if light.type == "SPOT" and light.use_square:
         text = f'Spot light "{name}" is drawn round, as Cycles does: not square'
         problems.add(name, INFO, "spot_square", text)
+    _name_limits(given, problems)
     model.add_light(given)
+
+
+def _name_limits(light: native.Light, problems: Problems) -> None:
+    """What the export will say of it (in these words, so that it counts once), for those who want
+    to know before."""
+    if light.power == 0.0 or max(light.color) == 0.0 or light.kind < native.LightKind.SPOT:
+        return
+    if not light.shadow:
+        text = "casts shadows all the same: POV-Ray has no spot or area light without"
+        problems.add(light.name, WARNING, "light_shadow", text)
+    if light.kind != native.LightKind.AREA:
+        return
+    if Vector(light.edge_u).cross(Vector(light.edge_v)).length == 0.0:
+        text = "is an area light without an area: it gives no light, as in Cycles"
+        problems.add(light.name, INFO, "light_size", text)
+    elif 0.0 < light.spread < math.pi - 0.02:
+        text = "its spread is drawn as a cone of about the same shape"
+        problems.add(light.name, INFO, "light_spread", text)
 
 
 def _direction(matrix: Matrix) -> tuple[float, float, float]:

@@ -122,6 +122,8 @@ class _Translator:
         surfaces = self._surfaces(self._shader())
         first = [value for surface, _ in surfaces for value in _in_order(surface)]
         shares = [share for _, share in surfaces]
+        if any(max(mean_of(surface.emission, self.pictures)) > 1.0 for surface, _ in surfaces):
+            self.note(WARNING, "glow", "it glows, but its light falls on nothing else")
         main = main_coordinates([*first, *shares])
         textures = Textures(self.pictures, self.note, main)
         look = None

@@ -147,6 +147,8 @@ class NodeExpressions:
         source = source_of(node.image, node.image_user, self._setting.frame, self._note)
         extension = _EXTENSIONS.get(node.extension, native.Extension.REPEAT)
         closest = node.interpolation == "Closest"
+        if node.interpolation in {"Cubic", "Smart"}:
+            self._note(INFO, "interpolation", f'image "{source.name}" is interpolated linearly')
         try:
             mapped = of_image_node(node, groups)
         except Unknown as unknown:
