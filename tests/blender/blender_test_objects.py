@@ -283,6 +283,25 @@ class Sharing(Case):
                 colors.add(tuple(round(c, 5) for c in extraction.model.measure(leaf.object).color))
         self.assertEqual(colors, {(0.0, 0.5, 0.0), (0.25, 0.5, 0.0)})
 
+    def test_an_instance_has_the_color_of_its_instancer_also_the_second_one(self):
+        shows = scenes.material("Shows")
+        nodes = shows.node_tree.nodes
+        info = nodes.new("ShaderNodeObjectInfo")
+        socket = nodes["Principled BSDF"].inputs["Base Color"]
+        shows.node_tree.links.new(info.outputs["Color"], socket)
+        inner = scenes.collection("Inner")
+        cube = scenes.cube("Cube", collection=inner)
+        cube.data.materials.append(shows)
+        cube.color = (1.0, 0.0, 0.0, 1.0)
+        for i, green in enumerate((0.25, 0.5, 0.75)):
+            empty = scenes.instance(f"Empty {i}", inner, (2 * i, 0, 0))
+            empty.color = (0.0, green, 0.0, 1.0)
+        extraction, occurrences = self.extract()
+        shown = {}
+        for item, world in occurrences:
+            shown[world[3]] = extraction.model.measure(item).color[1]
+        self.assertEqual([round(shown[x], 5) for x in (0.0, 2.0, 4.0)], [0.25, 0.5, 0.75])
+
 
 class Libraries(Case):
     def test_linked_and_overridden_collections(self):

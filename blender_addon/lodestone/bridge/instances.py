@@ -80,6 +80,7 @@ class Instances:
         self._motion = motion
         self._problems = problems
         self._tick = tick
+        self._host: Any = None  # what instances the instance at hand
         self._paths: dict[tuple, Entry | None] = {}
         self._collections: dict[int, tuple[list[Any], set[int]]] = {}
         self._hidden: dict[int, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
@@ -111,10 +112,13 @@ class Instances:
             text = f'Object "{shown.name}" is left out: its transform is not a number'
             self._problems.add(shown.name, ERROR, "bad_transform", text)
             return
+        # While anybody in Python knows an evaluated object, its instances are handed out as that
+        # object itself, in its own color: it is asked of what instances it.
+        self._host = None
         if instance.is_instance:
-            owner = instance.instance_object
+            owner, self._host = instance.instance_object, instance.parent
             path = [number for number in instance.persistent_id if number != END]
-            found = self._find(instance.parent, tuple(reversed(path)), owner)
+            found = self._find(self._host, tuple(reversed(path)), owner)
         else:
             owner, found = shown, (self.scene, self._entry(self.scene, shown), True)
         if instance.show_self:
@@ -139,7 +143,7 @@ class Instances:
         if kind not in ("MESH", "CURVES"):  # its mesh follows as an instance of itself
             entry.pending = entry.pending or direct
             return
-        leaf = self._leaves.leaf(shown, owner, self._look(context, entry, owner))
+        leaf = self._leaves.leaf(shown, owner, self._look(context, entry, owner), self._host)
         if leaf is None:
             return
         self.shown += 1
@@ -156,7 +160,7 @@ class Instances:
         look = self._look(context, entry, owner)
         if self._motion.emits_anew(owner):
             look = replace(look, deforms=True)
-        leaf = self._leaves.hair(shown, owner, look)
+        leaf = self._leaves.hair(shown, owner, look, self._host)
         if leaf is None:
             return
         self.shown += 1
@@ -171,7 +175,7 @@ class Instances:
         points = strands.point_cloud(shown.data)
         if not points:
             return
-        leaf = self._leaves.point(shown, owner, self._look(context, entry, owner))
+        leaf = self._leaves.point(shown, owner, self._look(context, entry, owner), self._host)
         for center, radius in points:
             place = matrix @ Matrix.Translation(center) @ Matrix.Scale(radius, 4)
             self._emit(leaf, owner, place, context, entry)

@@ -66,32 +66,35 @@ class Leaves:
     def __iter__(self) -> Any:
         return (leaf for leaf in self._found.values() if leaf is not None)
 
-    def leaf(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
+    def leaf(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
         """Of an evaluated object as a depsgraph instance shows it; `owner` is the evaluated object
-        that shows it (they differ in their data where nodes make a mesh). None: it has no faces
-        and no hairs."""
-        return self._get(shown.data.as_pointer(), shown, owner, look, self._add_data)
+        that shows it (they differ in their data where nodes make a mesh), `host` what instances it
+        and gives it its color. None: it has no faces and no hairs."""
+        return self._get(shown.data.as_pointer(), shown, owner, look, host, self._add_data)
 
-    def hair(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
+    def hair(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
         """Of an evaluated object's particle hair."""
         key = (HAIR, shown.original.as_pointer())
-        return self._get(key, shown, owner, look, self._add_hair)
+        return self._get(key, shown, owner, look, host, self._add_hair)
 
-    def point(self, shown: Any, owner: Any, look: Look) -> Leaf | None:
+    def point(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
         """The ball of radius 1 that every point of this point cloud shows."""
-        return self._get((POINT, shown.data.as_pointer()), shown, owner, look, self._add_point)
+        key = (POINT, shown.data.as_pointer())
+        return self._get(key, shown, owner, look, host, self._add_point)
 
-    def _get(self, data: Any, shown: Any, owner: Any, look: Look, add: Any) -> Leaf | None:
+    def _get(
+        self, data: Any, shown: Any, owner: Any, look: Look, host: Any, add: Any
+    ) -> Leaf | None:
         slots = material_slots(shown, self.override)
         materials = tuple(m.as_pointer() if m else 0 for m in slots)
-        color, frames = self._seen_from(shown, slots, materials)
+        color, frames = self._seen_from(shown, host or shown, slots, materials)
         key = (data, materials, color, frames, look)
         if key not in self._found:
             self._found[key] = add(shown, owner, slots, color, look)
         return self._found[key]
 
     def _seen_from(
-        self, shown: Any, slots: list, materials: tuple
+        self, shown: Any, colored_by: Any, slots: list, materials: tuple
     ) -> tuple[Color | None, tuple | None]:
         """What of the object its materials show: its color, and where it is seen from others."""
         if materials not in self._varying:
@@ -102,7 +105,7 @@ class Leaves:
             )
         colored, wanted = self._varying[materials]
         return (
-            tuple(shown.color) if colored else None,
+            tuple(colored_by.color) if colored else None,
             mesh_uvs.frames(shown, wanted) if wanted else None,
         )
 
