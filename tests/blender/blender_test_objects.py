@@ -302,6 +302,26 @@ class Sharing(Case):
             shown[world[3]] = extraction.model.measure(item).color[1]
         self.assertEqual([round(shown[x], 5) for x in (0.0, 2.0, 4.0)], [0.25, 0.5, 0.75])
 
+    def test_an_instance_is_textured_from_where_it_stands_also_the_second_one(self):
+        """Coordinates of the world: at every place the same mesh shows another part."""
+        paint = scenes.material("Paint")
+        tree = paint.node_tree
+        image = tree.nodes.new("ShaderNodeTexImage")
+        image.image = bpy.data.images.new("Grid", 4, 4)
+        place = tree.nodes.new("ShaderNodeNewGeometry")
+        tree.links.new(place.outputs["Position"], image.inputs["Vector"])
+        socket = tree.nodes["Principled BSDF"].inputs["Base Color"]
+        tree.links.new(image.outputs["Color"], socket)
+        inner = scenes.collection("Inner")
+        scenes.cube("Cube", collection=inner).data.materials.append(paint)
+        for i in range(3):
+            scenes.instance(f"Empty {i}", inner, (0.3 * i, 0, 0))
+        extraction, _ = self.extract()
+        hashes = {
+            extraction.model.representation(leaf.object, 0).hash for leaf in extraction.leaves
+        }
+        self.assertEqual(len(hashes), 3)
+
 
 class Libraries(Case):
     def test_linked_and_overridden_collections(self):

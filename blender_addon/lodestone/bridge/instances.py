@@ -143,7 +143,9 @@ class Instances:
         if kind not in ("MESH", "CURVES"):  # its mesh follows as an instance of itself
             entry.pending = entry.pending or direct
             return
-        leaf = self._leaves.leaf(shown, owner, self._look(context, entry, owner), self._host)
+        leaf = self._leaves.leaf(
+            shown, owner, self._look(context, entry, owner), self._host, matrix
+        )
         if leaf is None:
             return
         self.shown += 1
@@ -160,7 +162,7 @@ class Instances:
         look = self._look(context, entry, owner)
         if self._motion.emits_anew(owner):
             look = replace(look, deforms=True)
-        leaf = self._leaves.hair(shown, owner, look, self._host)
+        leaf = self._leaves.hair(shown, owner, look, self._host, matrix)
         if leaf is None:
             return
         self.shown += 1
@@ -175,7 +177,9 @@ class Instances:
         points = strands.point_cloud(shown.data)
         if not points:
             return
-        leaf = self._leaves.point(shown, owner, self._look(context, entry, owner), self._host)
+        leaf = self._leaves.point(
+            shown, owner, self._look(context, entry, owner), self._host, matrix
+        )
         for center, radius in points:
             place = matrix @ Matrix.Translation(center) @ Matrix.Scale(radius, 4)
             self._emit(leaf, owner, place, context, entry)

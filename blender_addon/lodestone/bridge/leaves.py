@@ -61,40 +61,50 @@ class Leaves:
         self._materials = Materials(model, problems, frame=scene.frame_current)
         self._varying: dict[tuple, tuple[bool, list | None]] = {}  # by materials
         self._black: int | None = None
+        self._place: Any = None  # world matrix of the instance at hand
         self._found: dict[tuple, Leaf | None] = {}
 
     def __iter__(self) -> Any:
         return (leaf for leaf in self._found.values() if leaf is not None)
 
-    def leaf(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
+    def leaf(
+        self, shown: Any, owner: Any, look: Look, host: Any = None, place: Any = None
+    ) -> Leaf | None:
         """Of an evaluated object as a depsgraph instance shows it; `owner` is the evaluated object
         that shows it (they differ in their data where nodes make a mesh), `host` what instances it
-        and gives it its color. None: it has no faces and no hairs."""
-        return self._get(shown.data.as_pointer(), shown, owner, look, host, self._add_data)
+        and gives it its color, `place` its world matrix (that of an instance is not its object's).
+        None: it has no faces and no hairs."""
+        return self._get(shown.data.as_pointer(), shown, owner, look, host, place, self._add_data)
 
-    def hair(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
+    def hair(
+        self, shown: Any, owner: Any, look: Look, host: Any = None, place: Any = None
+    ) -> Leaf | None:
         """Of an evaluated object's particle hair."""
         key = (HAIR, shown.original.as_pointer())
-        return self._get(key, shown, owner, look, host, self._add_hair)
+        return self._get(key, shown, owner, look, host, place, self._add_hair)
 
-    def point(self, shown: Any, owner: Any, look: Look, host: Any = None) -> Leaf | None:
+    def point(
+        self, shown: Any, owner: Any, look: Look, host: Any = None, place: Any = None
+    ) -> Leaf | None:
         """The ball of radius 1 that every point of this point cloud shows."""
         key = (POINT, shown.data.as_pointer())
-        return self._get(key, shown, owner, look, host, self._add_point)
+        return self._get(key, shown, owner, look, host, place, self._add_point)
 
     def _get(
-        self, data: Any, shown: Any, owner: Any, look: Look, host: Any, add: Any
+        self, data: Any, shown: Any, owner: Any, look: Look, host: Any, place: Any, add: Any
     ) -> Leaf | None:
         slots = material_slots(shown, self.override)
         materials = tuple(m.as_pointer() if m else 0 for m in slots)
-        color, frames = self._seen_from(shown, host or shown, slots, materials)
+        place = shown.matrix_world if place is None else place
+        color, frames = self._seen_from(place, host or shown, slots, materials)
         key = (data, materials, color, frames, look)
         if key not in self._found:
+            self._place = place
             self._found[key] = add(shown, owner, slots, color, look)
         return self._found[key]
 
     def _seen_from(
-        self, shown: Any, colored_by: Any, slots: list, materials: tuple
+        self, place: Any, colored_by: Any, slots: list, materials: tuple
     ) -> tuple[Color | None, tuple | None]:
         """What of the object its materials show: its color, and where it is seen from others."""
         if materials not in self._varying:
@@ -106,7 +116,7 @@ class Leaves:
         colored, wanted = self._varying[materials]
         return (
             tuple(colored_by.color) if colored else None,
-            mesh_uvs.frames(shown, wanted) if wanted else None,
+            mesh_uvs.frames(place, wanted) if wanted else None,
         )
 
     # ---- What they are made of ----
@@ -121,6 +131,7 @@ class Leaves:
                 size = 0 if buffers is None else len(buffers.counts)
             else:
                 wanted = [self._materials.wanted(material, color) for material in slots]
+                wanted = mesh_uvs.placed(wanted, self._place)
                 buffers = mesh.extract(shown, wanted)
                 size = 0 if buffers is None else buffers.triangle_count
         except RuntimeError as error:

@@ -3,6 +3,7 @@
 
 from array import array
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from mathutils import Matrix
@@ -76,7 +77,7 @@ def _to_space(mesh: Any, shown: Any, wanted: Coordinates) -> tuple[float, ...]:
     if wanted.kind == "GENERATED":
         matrix = matrix @ _generated(mesh)
     elif wanted.kind == "FRAME":
-        matrix = matrix @ frame_of(shown, wanted)
+        matrix = matrix @ frame_of(shown.matrix_world, wanted)
     return (*matrix[0], *matrix[1], *matrix[2])
 
 
@@ -84,20 +85,35 @@ def depend_on_place(wanted: Sequence[Any]) -> bool:
     return any(item.coordinates is not None and item.coordinates.kind == "FRAME" for item in wanted)
 
 
-def frames(shown: Any, wanted: Sequence[Any]) -> tuple[float, ...]:
+def frames(world: Matrix, wanted: Sequence[Any]) -> tuple[float, ...]:
     """What the texture coordinates of these slots depend on besides the mesh: the same mesh has
     other ones at another place."""
     found: list[float] = []
     for item in wanted:
         if item.coordinates is not None and item.coordinates.kind == "FRAME":
-            matrix = frame_of(shown, item.coordinates)
+            matrix = frame_of(world, item.coordinates)
             found.extend(round(v, 6) for row in matrix[:3] for v in row)
     return tuple(found)
 
 
-def frame_of(shown: Any, wanted: Coordinates) -> Matrix:
-    """From the object's own frame to that of the object its coordinates are of."""
-    world = shown.matrix_world
+def placed(wanted: Sequence[Any], world: Matrix) -> list[Any]:
+    """With coordinates in the object's own frame for those in another one's."""
+    return [_placed(item, world) for item in wanted]
+
+
+def _placed(item: Any, world: Matrix) -> Any:
+    given = item.coordinates
+    if given is None or given.kind != "FRAME":
+        return item
+    rows = given.rows
+    matrix = Matrix((rows[0:4], rows[4:8], rows[8:12], (0.0, 0.0, 0.0, 1.0)))
+    matrix = matrix @ frame_of(world, given)
+    rows = (*matrix[0], *matrix[1], *matrix[2])
+    return replace(item, coordinates=replace(given, kind="OBJECT", name="", frame=None, rows=rows))
+
+
+def frame_of(world: Matrix, wanted: Coordinates) -> Matrix:
+    """From an object's own frame to that of the object its coordinates are of."""
     return world if wanted.frame is None else wanted.frame.matrix_world.inverted_safe() @ world
 
 
