@@ -33,8 +33,8 @@ class Poses:
 class _DeformingLeaves(Leaves):
     """Nothing else is there."""
 
-    def _get(self, data: Any, shown: Any, owner: Any, look: Look, add: Any) -> Leaf | None:
-        return super()._get(data, shown, owner, look, add) if look.deforms else None
+    def _get(self, data: Any, shown: Any, owner: Any, look: Look, *how: Any) -> Leaf | None:
+        return super()._get(data, shown, owner, look, *how) if look.deforms else None
 
 
 def wanted(depsgraph: Any, still: dict[str, list[str]] | None) -> bool:
