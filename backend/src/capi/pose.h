@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lodestone/lodestone.h"
+
 #include "model/faces.h"
 #include "model/pose.h"
 
