@@ -6,6 +6,7 @@
 #include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
 #include "povray_export/light_writer.h"
+#include "povray_export/magnification.h"
 #include "povray_export/number.h"
 #include "povray_export/penumbra.h"
 #include "povray_export/representation_writer.h"
@@ -294,36 +295,54 @@ private:
         return out;
     }
 
+    std::string drawn_objects(double times) {
+        std::string out;
+        for (const Use& use : uses_) {
+            if (!includes_[use.file].drawn)
+                continue;
+            const quality::Node& node = cut_.nodes[use.node];
+            out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
+            if (options_.false_color) {
+                const Kind kind = includes_[use.file].representation->summary.kind;
+                append_flat_texture(out, color_of(kind, node.lod));
+                out += ' ';
+            }
+            append_matrix(out, magnified(use.world, times));
+            append_hidden(out, node.hidden);
+            out += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
+            append_count(out, node.lod);
+            out += '\n';
+            ++report_.occurrences;
+        }
+        return out;
+    }
+
     std::string scene() {
-        std::string objects;
         Bound bound;
         std::vector<Bound> occluders;
         for (const Use& use : uses_) {
             if (!includes_[use.file].drawn)
                 continue;
-            const quality::Node& node = cut_.nodes[use.node];
             const Summary& summary = includes_[use.file].representation->summary;
             occluders.push_back(transformed(summary.bound, use.world));
             bound = merged(bound, occluders.back());
-            objects += "object{" + identifier_of(includes_[use.file].hash) + ' ';
-            if (options_.false_color) {
-                append_flat_texture(objects, color_of(summary.kind, node.lod));
-                objects += ' ';
-            }
-            append_matrix(objects, use.world);
-            append_hidden(objects, node.hidden);
-            objects += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
-            append_count(objects, node.lod);
-            objects += '\n';
-            ++report_.occurrences;
         }
+        const double times = magnification(view_, occluders);
+        bound = magnified(bound, times);
+        const std::string objects = drawn_objects(times);
         std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
         append_number(out, view_.pixel_error, 6);
         out += "\n// ";
         append_count(out, report_.occurrences);
         out +=
             " occurrences; render it from this folder with: povray scene.ini\n"
-            "#version 3.7;\n\n"
+            "#version 3.7;\n\n";
+        if (times > 1) {
+            out += "// All is ";
+            append_count(out, static_cast<uint64_t>(times));
+            out += " times as large: POV-Ray takes what is nearer than .001 for one point.\n";
+        }
+        out +=
             "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
             "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
             "global_settings{assumed_gamma 1 max_trace_level ";
@@ -338,10 +357,11 @@ private:
         }
         if (!transparent())
             out += sky_.statement;
-        append_camera(out, view_.camera, options_.antialiasing, problems_);
+        append_camera(out, magnified(view_.camera, times), options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights)
-                append_light(out, seen(light, occluders), bound, options_.antialiasing, problems_);
+                append_light(out, magnified(seen(light, occluders), times), bound,
+                             options_.antialiasing, problems_);
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)
