@@ -385,6 +385,23 @@ TEST(Visible, SceneOfAnotherMeshIsRefused) {
     EXPECT_THROW(measure::seen_from_outside(shapes::cube(), scene, 4, 1), Error);
 }
 
+// A group's shell lost the boards of its roofs, and its levels had holes where tiles had gone.
+TEST(Visible, BoardBetweenTilesIsSeenThroughTheirGaps) {
+    constexpr int kSide = 24;
+    constexpr float kTile = 0.995f;  // of a cell's width
+    Mesh mesh = shapes::quad(kSide, kSide);
+    for (const double height : {-0.002, 0.002}) {
+        for (int i = 0; i < kSide * kSide; ++i)
+            append(mesh, shapes::quad(kTile, kTile),
+                   {glm::dmat3(1.0), {i % kSide, i / kSide, height}});
+    }
+    const ray::Scene scene(mesh);
+    for (const uint64_t seed : {1u, 2u, 3u}) {
+        const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, scene, 24, seed);
+        EXPECT_EQ(seen, std::vector<uint8_t>(seen.size(), 1)) << seed;
+    }
+}
+
 TEST(Visible, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
     Mesh mesh = shapes::box(glm::dvec3(0), glm::dvec3(2));
     append(mesh, shapes::sphere(0.5, 3), {glm::dmat3(1.0), glm::dvec3(1)});

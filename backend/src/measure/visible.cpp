@@ -18,6 +18,7 @@ constexpr double kConfidence = 1.96;             // 95 % of a normal distributio
 constexpr uint64_t kFirstBatch = 512;
 constexpr uint64_t kFewestHits = 64;  // before the estimated error is believed
 constexpr uint32_t kMostTags = uint32_t{1} << 24u;
+constexpr double kMostRaysTimes = 64;
 
 /// Sums of what is shown.
 struct ShownSums {
@@ -223,6 +224,14 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         return seen;
     const Sides sides = sides_of(mesh, scene);
     const double lift = ray_lift(radius_of(mesh));
+    double mean = 0;
+    for (size_t i = 0; i < seen.size(); ++i)
+        mean += glm::length(area_vector(mesh, i)) / static_cast<double>(seen.size());
+    // A board of two triangles is as large as the thousand tiles on it, and seen between them.
+    const auto rays_of = [&](double area) {
+        const double share = area > mean ? std::min(area / mean, kMostRaysTimes) : 1;
+        return static_cast<int>(std::ceil(share * rays_per_triangle));
+    };
     const auto see = [&](size_t index) {
         const glm::dvec3 area = area_vector(mesh, index);
         const double length = glm::length(area);
@@ -234,7 +243,8 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const glm::dvec3 ab = glm::dvec3(mesh.positions[t.y]) - a;
         const glm::dvec3 ac = glm::dvec3(mesh.positions[t.z]) - a;
         Random random(scramble(seed) + index, index);
-        for (int i = 0; i < rays_per_triangle; ++i) {
+        const int rays = rays_of(length);
+        for (int i = 0; i < rays; ++i) {
             const bool back = sides.open ? (i & 1) != 0 : sides.turned[index] != 0;
             const glm::dvec3 outward = back ? -normal : normal;
             const double u[4] = {random.uniform(), random.uniform(), random.uniform(),
