@@ -192,6 +192,17 @@ class Sessions(unittest.TestCase):
                 child.wait()
             self.assertEqual(process_session.sessions([child.pid])[child.pid], [])
 
+    def test_a_killed_processs_log_is_not_empty(self):
+        text = (
+            "import ctypes, os, signal; from lodestone.core import process_session\n"
+            "c = ctypes.CDLL(None); c.printf(b'before\\n'); process_session.speak_in_lines()\n"
+            "c.printf(b'after\\n'); os.kill(os.getpid(), signal.SIGKILL)"
+        )
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        command = [sys.executable, "-c", text]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (-signal.SIGKILL, "before\nafter\n"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -46,6 +46,15 @@ def follow(supervisor: int) -> None:
         os._exit(1)
 
 
+def speak_in_lines() -> None:
+    """What this process prints, in C too, reaches its log line by line: the last words of one that
+    is killed would be lost."""
+    libc = ctypes.CDLL(None)
+    line_buffered = 1  # _IOLBF
+    libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, line_buffered, ctypes.c_size_t(0))
+    libc.fflush(None)
+
+
 def sessions(wanted: Iterable[int]) -> dict[int, list[int]]:
     """The processes of each wanted session that are not over yet, in one walk through /proc."""
     found: dict[int, list[int]] = {session: [] for session in wanted}
