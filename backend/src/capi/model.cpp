@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <utility>
 
 using namespace lodestone;
 using namespace lodestone::capi;
@@ -165,6 +166,21 @@ Mesh mesh_of(const lds_strands_view& view, size_t material_count) {
         {points, {view.radii, view.point_count}, {view.counts, view.strand_count}, slots, uvs});
 }
 
+/// `make` gives the mesh and its pose, once the arguments are known to be there.
+template <typename Make>
+lds_status add_leaf(lds_model* model, const lds_object_info* info, const uint32_t* materials,
+                    size_t material_count, lds_object* out_object, const Make& make) {
+    return guard([&] {
+        require(model, "model");
+        require(out_object, "out_object");
+        if (material_count > 0)
+            require(materials, "materials");
+        auto [mesh, pose] = make();
+        *out_object = add_mesh_object(*model, info, std::move(mesh), std::move(pose), materials,
+                                      material_count);
+    });
+}
+
 }  // namespace
 
 lds_object_info lodestone::capi::object_info(const lds_object_info* info) {
@@ -238,47 +254,32 @@ lds_status lds_model_write(lds_model* model, const char* path) {
 lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
                               const lds_mesh_view* mesh, const uint32_t* materials,
                               size_t material_count, lds_object* out_object) {
-    return guard([&] {
-        require(model, "model");
-        require(out_object, "out_object");
-        if (material_count > 0)
-            require(materials, "materials");
+    return add_leaf(model, info, materials, material_count, out_object, [&] {
         const lds_mesh_view& view = checked(mesh, "mesh");
         Mesh made = mesh_of(view, material_count);
         std::shared_ptr<const Pose> pose = pose_of(view, object_info(info), made, material_count);
-        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
-                                      material_count);
+        return std::pair(std::move(made), std::move(pose));
     });
 }
 
 lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
                                const lds_faces_view* faces, const uint32_t* materials,
                                size_t material_count, lds_object* out_object) {
-    return guard([&] {
-        require(model, "model");
-        require(out_object, "out_object");
-        if (material_count > 0)
-            require(materials, "materials");
+    return add_leaf(model, info, materials, material_count, out_object, [&] {
         const Faces given = faces_of(faces);
         Mesh made = mesh_of(given, material_count);
         std::shared_ptr<const Pose> pose = pose_of(given, object_info(info), made, material_count);
-        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
-                                      material_count);
+        return std::pair(std::move(made), std::move(pose));
     });
 }
 
 lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
                                  const lds_strands_view* strands, const uint32_t* materials,
                                  size_t material_count, lds_object* out_object) {
-    return guard([&] {
-        require(model, "model");
-        require(out_object, "out_object");
-        if (material_count > 0)
-            require(materials, "materials");
+    return add_leaf(model, info, materials, material_count, out_object, [&] {
         Mesh made = mesh_of(checked(strands, "strands"), material_count);
         std::shared_ptr<const Pose> pose = pose_of(made, object_info(info), material_count);
-        *out_object = add_mesh_object(*model, info, std::move(made), std::move(pose), materials,
-                                      material_count);
+        return std::pair(std::move(made), std::move(pose));
     });
 }
 
