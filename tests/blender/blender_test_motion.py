@@ -251,6 +251,22 @@ class Followed(unittest.TestCase):
         self.assertEqual(self.build(17, "backwards")[2], last)
         self.assertEqual(self.build(3, "backwards")[2], first)
 
+    def test_what_wears_a_view_layers_override_is_followed(self):
+        material = bpy.data.materials.new("Override")
+        material.use_nodes = True
+        nodes = material.node_tree.nodes
+        picture = nodes.new("ShaderNodeTexImage")
+        picture.image = bpy.data.images.new("Picture", 4, 4)
+        picture.image.generated_type = "COLOR_GRID"
+        links = material.node_tree.links
+        links.new(picture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+        coordinates = nodes.new("ShaderNodeTexCoord")  # a place in the mesh for every corner
+        links.new(coordinates.outputs["Generated"], picture.inputs["Vector"])
+        self.scene.view_layers[0].material_override = material
+        _, problems, levels = self.build(3)
+        self.assertEqual([problem for problem in problems if problem[1] == "not_followed"], [])
+        self.assertGreater(len(levels), 1)
+
     def test_original_has_no_levels(self):
         self.scene.lodestone.deforming = "ORIGINAL"
         report, problems, levels = self.build(3)

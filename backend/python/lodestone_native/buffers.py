@@ -26,7 +26,6 @@ class MeshBuffers:
     corner_uvs: array | None = None  # [corner][2]
     corner_colors: array | None = None  # [corner][4] linear RGBA, straight
     slots: array | None = None  # [triangle]
-    connectivity: int = 0  # 64 bits that two shapes of one mesh share; 0: its triangles tell
 
     def struct(self) -> structs.MeshView:
         """Points into the buffers: keep them until the call is over. Raises ValueError when the

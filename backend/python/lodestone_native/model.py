@@ -159,7 +159,7 @@ class Model(Handle):
         role: int = Role.ORDINARY,
         deforms: bool = False,
     ) -> Object:
-        info = _info(uid, name, role, deforms, mesh.connectivity)
+        info = _info(uid, name, role, deforms)
         return self._add_leaf(library().lds_model_add_mesh, info, mesh.struct(), materials)
 
     def add_faces(
@@ -376,16 +376,8 @@ class Model(Handle):
         return record(out)
 
 
-def _info(
-    uid: str, name: str, role: int, deforms: bool, connectivity: int = 0
-) -> structs.ObjectInfo:
-    return structs.ObjectInfo(
-        uid=text_in(uid),
-        name=text_in(name),
-        role=role,
-        deforms=int(deforms),
-        connectivity=connectivity,
-    )
+def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
+    return structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms))
 
 
 def _changed(options: Any, changes: dict[str, Any]) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
 from . import ids, scene
-from .leaves import DRAWN, Leaf, Leaves, Look
+from .leaves import DRAWN, Leaf, Leaves, Look, override_of
 from .motion import Motion, frames_to_sample
 from .settings import SceneSettings
 
@@ -80,7 +80,7 @@ def _fill(
     model: Any, depsgraph: Any, still: dict[str, list[str]] | None, tick: Callable[[], None]
 ) -> None:
     problems, uids = Problems(), ids.Uids()  # of the frames that are drawn they are told anyway
-    leaves = _DeformingLeaves(model, depsgraph.scene, uids, problems)
+    leaves = _DeformingLeaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
     scene.walked(depsgraph, leaves, problems, tick, Motion(still))
     root = model.add_group(uids.claim(ids.scene_uid(depsgraph.scene.name)), "Poses")
     for leaf in leaves:
