@@ -80,6 +80,8 @@ class _Run:
         self.scene = depsgraph.scene_eval
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
+        self.build = "ALL" if engine.is_animation else settings.build_on_render
+        self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
         self.settings = Settings(
             pixel_error=settings.pixel_error_render,
@@ -155,8 +157,8 @@ class _Run:
             except OSError as error:
                 text = f"Cannot make the folder for the levels: {error}"
                 raise Refused("folder_unwritable", text) from None
-            options = native.BuildOptions(poses=self.poses.models)
-            model.build(str(self.store), options, self.work.new_job("Levels"))
+            options = self._build_options(self.settings.view(view, size))
+            self.left = model.build(str(self.store), options, self.work.new_job("Levels")).left
         try:
             kept = store_path.scene_folder(self.store)
             with _folder.use(kept, self.keep, self.frame) as folder:
@@ -167,6 +169,16 @@ class _Run:
         except OSError as error:
             text = f"Cannot write the scene for POV-Ray: {error}"
             raise Refused("folder_unwritable", text) from None
+
+    def _build_options(self, view):
+        """What properties.BUILD_ON_RENDER says."""
+        poses = self.poses.models
+        if self.build == "ALL":
+            return native.BuildOptions(poses=poses)
+        options = native.BuildOptions(poses=poses, view=view)
+        if self.build == "NONE":
+            options.share = 0.0
+        return options
 
     # ---- Progress ----
 
@@ -204,6 +216,7 @@ class _Run:
                 cut["largest_error_px"],
                 cut["largest_error_name"],
                 made.in_use,
+                self.left,
             ),
         )
 

@@ -48,6 +48,17 @@ DEFORMING = (
         "in each, and levels may flicker. For stills",
     ),
 )
+BUILD_ON_RENDER = (
+    (
+        "HELPFUL",
+        "What Helps",
+        "Before a still, only what saves it time, for at most a fifth of the time that it takes: "
+        "the first picture comes about as soon as one of full detail, the next ones sooner. "
+        "Animations build everything first, for all their frames gain from it",
+    ),
+    ("ALL", "Everything", "Levels of everything that has none yet or has changed"),
+    ("NONE", "Nothing", "Use the levels that there are; only Update Levels makes them"),
+)
 KEEP = (
     ("NEVER", "Never", "Remove the files of the POV-Ray scene after each render"),
     ("FAILED", "If Failed", "Keep them when POV-Ray fails, to look at what it was given"),
@@ -105,6 +116,12 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         description="What becomes of objects that move, grow, wave or are posed in an animation",
         items=DEFORMING,
         default="FOLLOW",
+    )
+    build_on_render: EnumProperty(
+        name="Build on Render",
+        description="Which levels are made before a picture",
+        items=BUILD_ON_RENDER,
+        default="HELPFUL",
     )
     keep_scene_files: EnumProperty(
         name="Keep Scene Files",

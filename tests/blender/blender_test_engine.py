@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
+from lodestone.core import last_render
 
 
 class Engine(unittest.TestCase):
@@ -143,6 +144,37 @@ class Engine(unittest.TestCase):
         self.assertEqual(len(written[0]), 2)
         self.assertEqual(written[1:], [written[0]] * 2)
         self.assertEqual(list(self.folder.glob("lodestone/*/r")), [])  # nothing is left
+
+    def drawn(self, **render):
+        bpy.ops.render.render(**render)
+        return last_render.get(self.scene.name)
+
+    def test_before_a_still_only_what_helps_it_is_built(self):
+        scenes.sun()
+        for name, subdivisions in (("Light", 4), ("Heavy", 8)):
+            bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions)
+            bpy.context.object.name = name
+        self.scene.camera.location.z = 500.0  # a ball is a few pixels
+        originals = 1280 + 327680
+        first = self.drawn()
+        self.assertLess(first.triangles, originals)
+        self.assertGreater(first.triangles, 300000)  # the heavy one would keep us waiting
+        self.assertGreater(first.without_levels, 0)
+        self.scene.lodestone.build_on_render = "ALL"
+        whole = self.drawn()
+        self.assertLess(whole.triangles, originals / 100)
+        self.assertEqual(whole.without_levels, 0)
+
+    def test_an_animation_builds_everything_first_and_nothing_is_built_when_told_so(self):
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=7)
+        self.scene.camera.location.z = 500.0
+        self.scene.lodestone.build_on_render = "NONE"
+        self.assertEqual(self.drawn().triangles, 81920)
+        self.scene.lodestone.build_on_render = "HELPFUL"
+        self.scene.frame_end = 1
+        self.assertLess(self.drawn(animation=True).triangles, 8192)
+        self.scene.lodestone.build_on_render = "NONE"
+        self.assertLess(self.drawn().triangles, 8192)
 
     def test_without_a_camera_nothing_is_written(self):
         scenes.cube()

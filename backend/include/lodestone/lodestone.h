@@ -619,6 +619,10 @@ typedef struct lds_build_options {
                                 follow it in every frame. An object is found by its uid; one that
                                 is in none of them with the faces it has now is drawn as it is */
     size_t pose_count;                    /* 0: all that deforms is drawn as it is */
+    const struct lds_view* view; /* build only what this picture gains most from; what is left
+                                    stays stale. NULL: everything */
+    double share;                /* with a view: most time to build over the picture's, both
+                                    guessed from counts; usual 0.2 */
 } lds_build_options;
 LDS_API lds_build_options lds_build_options_default(void);
 
@@ -631,6 +635,7 @@ typedef struct lds_build_report {
     uint64_t bytes_written;
     double wall_s;
     double cpu_s;
+    uint64_t left; /* still stale: what options.view does not call for */
 } lds_build_report;
 
 /* What lds_model_build would do: fills objects, built, triangles and wall_s (a guess). */

@@ -55,10 +55,15 @@ class SimplifyOptions(structs.SimplifyOptions):
 
 class BuildOptions(structs.BuildOptions):
     """`scope`: a sequence of Objects; only what is reachable from them is built. `poses`: Models of
-    the same scene in other frames, to be kept open for as long as the options are used."""
+    the same scene in other frames, to be kept open for as long as the options are used. `view`: a
+    View; only what its picture gains most from is built, in `share` of the picture's time."""
 
     def __new__(
-        cls, scope: Sequence[Object] = (), poses: "Sequence[Model]" = (), **changes: Any
+        cls,
+        scope: Sequence[Object] = (),
+        poses: "Sequence[Model]" = (),
+        view: Any = None,
+        **changes: Any,
     ) -> Any:
         options = _changed(library().lds_build_options_default(), changes)
         if poses:
@@ -68,6 +73,8 @@ class BuildOptions(structs.BuildOptions):
         if scope:
             options.scope = (Object * len(scope))(*scope)  # ctypes keeps it alive with options
             options.scope_count = len(scope)
+        if view is not None:
+            options.view = ctypes.pointer(view.struct())
         return options
 
 

@@ -348,6 +348,18 @@ class SimplifyReport(Sized):
     ]
 
 
+class View(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("camera", Camera),
+        ("width", c_int32),
+        ("height", c_int32),
+        ("pixel_error", c_double),
+        ("kinds", c_uint32),
+        ("border", c_int32 * 4),
+    ]
+
+
 class BuildOptions(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -362,6 +374,8 @@ class BuildOptions(Sized):
         ("scope_count", c_size_t),
         ("poses", POINTER(c_void_p)),
         ("pose_count", c_size_t),
+        ("view", POINTER(View)),
+        ("share", c_double),
     ]
 
 
@@ -375,18 +389,7 @@ class BuildReport(Sized):
         ("bytes_written", c_uint64),
         ("wall_s", c_double),
         ("cpu_s", c_double),
-    ]
-
-
-class View(Sized):
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("camera", Camera),
-        ("width", c_int32),
-        ("height", c_int32),
-        ("pixel_error", c_double),
-        ("kinds", c_uint32),
-        ("border", c_int32 * 4),
+        ("left", c_uint64),
     ]
 
 

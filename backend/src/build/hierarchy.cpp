@@ -3,6 +3,8 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "build/demand.h"
+#include "build/effort.h"
 #include "build/flatten.h"
 #include "build/stand_ins.h"
 
@@ -14,10 +16,6 @@
 
 namespace lodestone::build {
 namespace {
-
-// A rough figure for estimates: triangles that one core measures and simplifies in a second.
-constexpr double kTrianglesPerSecond = 150000;
-constexpr double kSecondsPerObject = 0.02;
 
 constexpr const char* kNotFollowed =
     "drawn as it is: its faces, or what is painted on them, are not those of any frame that levels "
@@ -142,6 +140,12 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
     return inside;
 }
 
+/// Something stale that is to be built.
+struct Task : Stale {
+    Hash wanted = 0;           // its build hash
+    std::optional<Bind> bind;  // of what deforms
+};
+
 /// An object that deforms, and what its levels come from.
 struct Following {
     ObjectIndex index;
@@ -174,9 +178,8 @@ public:
         const std::vector<uint8_t> deforming = with_deforming(model_);
         const Poses poses(settings_.poses);
 
-        std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
-        std::map<Hash, ObjectIndex> first_of;              // content-equal objects are built once
-        std::vector<std::pair<ObjectIndex, ObjectIndex>> copies;
+        std::vector<Task> tasks;
+        std::map<Hash, size_t> task_of;  // content-equal objects are built once
         for (const ObjectIndex index : order) {
             Object& object = model_.objects[index];
             if (object.representations.empty())
@@ -195,23 +198,36 @@ public:
                 }
                 wanted = Hasher().value(wanted).value(bind->hash).result();
             }
-            const auto first = first_of.find(wanted);
-            if (first != first_of.end()) {
-                copies.emplace_back(index, first->second);
+            const auto same = task_of.find(wanted);
+            if (same != task_of.end()) {
+                tasks[same->second].copies.push_back(index);
             } else if (const Object* stored = shelf.find(wanted)) {
-                first_of.emplace(wanted, index);
                 adopt(object, *stored, shelf.stored(), palette_);
-            } else if (bind && inside[index]) {
-                first_of.emplace(wanted, index);
-                following_.push_back({index, wanted, *bind});
             } else if (inside[index]) {
-                first_of.emplace(wanted, index);
-                stale[heights[index]].push_back(index);
-                ++report.built;
-                total_ += weight(object);
-                if (!object.group())
-                    report.triangles += object.representations[0].summary.cost.triangles;
+                task_of.emplace(wanted, tasks.size());
+                tasks.push_back({{index, {}}, wanted, std::move(bind)});
             }
+        }
+        const size_t all = tasks.size();
+        if (settings_.demand)
+            keep_called_for(tasks);
+        report.left = all - tasks.size();
+
+        std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
+        std::vector<std::pair<ObjectIndex, ObjectIndex>> copies;
+        for (Task& task : tasks) {
+            for (const ObjectIndex copy : task.copies)
+                copies.emplace_back(copy, task.index);
+            if (task.bind) {
+                following_.push_back({task.index, task.wanted, *task.bind});
+                continue;
+            }
+            const Object& object = model_.objects[task.index];
+            stale[heights[task.index]].push_back(task.index);
+            ++report.built;
+            total_ += weight(object);
+            if (!object.group())
+                report.triangles += object.representations[0].summary.cost.triangles;
         }
         follow(report);
         for (auto& [height, objects] : stale) {
@@ -235,6 +251,18 @@ private:
         return static_cast<double>(
                    std::min<uint64_t>(object.representations[0].summary.cost.triangles, 60000)) +
                1000;
+    }
+
+    /// Leaves what a demand does not call for as it is.
+    void keep_called_for(std::vector<Task>& tasks) const {
+        const std::vector<Stale> stale(tasks.begin(), tasks.end());
+        const std::vector<uint8_t> called = called_for(model_, stale, settings_, job_);
+        size_t kept = 0;
+        for (size_t i = 0; i < tasks.size(); ++i) {
+            if (called[i] != 0)
+                std::swap(tasks[kept++], tasks[i]);
+        }
+        tasks.resize(kept);
     }
 
     void copy_lists(std::vector<std::pair<ObjectIndex, ObjectIndex>>& copies,
@@ -397,7 +425,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const std::vector<uint8_t> deforming = with_deforming(model);
     const Poses poses(settings.poses);
     std::set<Hash> binds;  // counted already
-    double triangles = 0;
+    double seconds = 0;
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.representations.empty())
@@ -414,15 +442,11 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
             continue;
         }
         ++report.built;
-        const uint64_t own = object.representations[0].summary.cost.triangles;
         if (!object.group())
-            report.triangles += own;
-        triangles +=
-            static_cast<double>(object.group() ? std::min(own, settings.group_triangles) : own);
+            report.triangles += object.representations[0].summary.cost.triangles;
+        seconds += seconds_to_build(object, settings);
     }
-    report.wall_s =
-        (triangles / kTrianglesPerSecond + kSecondsPerObject * static_cast<double>(report.built)) /
-        static_cast<double>(hardware_threads());
+    report.wall_s = seconds / static_cast<double>(hardware_threads());
     return report;
 }
 

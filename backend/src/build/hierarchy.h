@@ -12,6 +12,7 @@ namespace lodestone::build {
 struct Report {
     uint64_t objects = 0;  // reachable from the root
     uint64_t built = 0;    // of these, new or changed
+    uint64_t left = 0;     // stale still: what settings.demand does not call for
     uint64_t representations = 0;
     uint64_t triangles = 0;  // of the finest meshes that are new or changed
     uint64_t bytes_written = 0;

@@ -4,8 +4,10 @@
 
 #include "base/hash.h"
 #include "model/object.h"
+#include "model/view.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lodestone {
@@ -15,6 +17,12 @@ struct Model;
 }  // namespace lodestone
 
 namespace lodestone::build {
+
+/// What a build is for when there is no time for all of it.
+struct Demand {
+    View view;           // with the Pixel Error its picture is taken at
+    double share = 0.2;  // most time to build, over what the picture takes as things are (a guess)
+};
 
 struct Settings {
     /// Triangles of a level over those of the next finer one. Larger: a closer fit to every
@@ -35,6 +43,9 @@ struct Settings {
     /// The same scene in a few frames that are always the same ones: what deforms takes its levels
     /// from one collapse for these, in every frame. Empty: it has none. Not part of the hash.
     std::vector<const Model*> poses;
+    /// Build only what one picture gains most from, in a share of its time. What is left keeps its
+    /// finest level alone, and stays stale. Not part of the hash.
+    std::optional<Demand> demand;
 };
 
 /// Of everything that changes a result, and of the version of the algorithms.

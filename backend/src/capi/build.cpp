@@ -12,7 +12,9 @@ using namespace lodestone::capi;
 
 namespace {
 
-constexpr size_t kOptionsBefore = offsetof(lds_build_options, poses);  // poses
+// Sizes of version 1: callers built with it go on working.
+constexpr size_t kFirstOptions = offsetof(lds_build_options, poses);
+constexpr size_t kFirstReport = offsetof(lds_build_report, left);
 
 build::Settings settings_of(const lds_model& model, const lds_build_options& options) {
     build::Settings settings;
@@ -37,6 +39,11 @@ build::Settings settings_of(const lds_model& model, const lds_build_options& opt
         require(options.poses[i], "a pose");
         settings.poses.push_back(&options.poses[i]->model);
     }
+    if (options.view != nullptr) {
+        if (!(options.share >= 0) || !std::isfinite(options.share))
+            fail(Status::InvalidArgument, "share is ", options.share, "; it must be 0 or more");
+        settings.demand = build::Demand{view_of(options.view), options.share};
+    }
     return settings;
 }
 
@@ -49,6 +56,7 @@ lds_build_report report_of(const build::Report& report) {
     out.bytes_written = report.bytes_written;
     out.wall_s = report.wall_s;
     out.cpu_s = report.cpu_s;
+    out.left = report.left;
     return out;
 }
 
@@ -63,6 +71,7 @@ lds_build_options lds_build_options_default(void) {
     options.samples = settings.samples;
     options.group_triangles = settings.group_triangles;
     options.seed = settings.seed;
+    options.share = build::Demand().share;
     return options;
 }
 
@@ -72,12 +81,12 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        const lds_build_options given = grown(options, kOptionsBefore, "options");
+        const lds_build_options given = grown(options, kFirstOptions, "options");
         const ThreadLimit limit(given.threads);
-        hand_out(out_report,
-                 report_of(build::estimate(model->model, segment::Store(store),
-                                           settings_of(*model, given))),
-                 "out_report");
+        hand_out_grown(out_report,
+                       report_of(build::estimate(model->model, segment::Store(store),
+                                                 settings_of(*model, given))),
+                       kFirstReport, "out_report");
     });
 }
 
@@ -86,8 +95,8 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        checked(out_report, "out_report");
-        const lds_build_options given = grown(options, kOptionsBefore, "options");
+        require_size(out_report, kFirstReport, "out_report");
+        const lds_build_options given = grown(options, kFirstOptions, "options");
         const build::Settings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();
@@ -96,6 +105,6 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
             build::build_hierarchy(model->model, target, settings, model->problems, job_of(job));
         model->store.emplace(target);
         model->summarized = true;
-        hand_out(out_report, report_of(report), "out_report");
+        hand_out_grown(out_report, report_of(report), kFirstReport, "out_report");
     });
 }

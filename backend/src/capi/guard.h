@@ -60,14 +60,20 @@ const Struct& checked(const Struct* value, const char* what) {
     return *value;
 }
 
-/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least` is
-/// the size of version 1.
+/// Throws unless a struct that has grown is at least as long as in version 1.
 template <typename Struct>
-Struct grown(const Struct* value, size_t least, const char* what) {
+void require_size(const Struct* value, size_t least, const char* what) {
     require(value, what);
     if (value->struct_size < least)
         fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ", least,
              " or more expected");
+}
+
+/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least` is
+/// the size of version 1.
+template <typename Struct>
+Struct grown(const Struct* value, size_t least, const char* what) {
+    require_size(value, least, what);
     Struct out{};
     std::memcpy(&out, value, std::min<size_t>(value->struct_size, sizeof out));
     return out;
@@ -76,10 +82,7 @@ Struct grown(const Struct* value, size_t least, const char* what) {
 /// Copies as much of a result out as the caller's struct can hold; throws before anything is written.
 template <typename Struct>
 void hand_out_grown(Struct* out, Struct value, size_t least, const char* what) {
-    require(out, what);
-    if (out->struct_size < least)
-        fail(Status::InvalidArgument, what, ".struct_size is ", out->struct_size, "; ", least,
-             " or more expected");
+    require_size(out, least, what);
     value.struct_size = out->struct_size;
     std::memcpy(out, &value, std::min<size_t>(value.struct_size, sizeof value));
 }

@@ -14,6 +14,7 @@ class LastRender:
     largest_error_px: float
     largest_error_name: str
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)
+    without_levels: int = 0  # objects and groups not built yet
 
 
 _renders: dict[str, LastRender] = {}

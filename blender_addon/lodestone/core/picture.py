@@ -34,6 +34,11 @@ class Settings:
             program=self.program,
         )
 
+    def view(self, camera: Any, size: tuple[int, int]) -> Any:
+        return native.View(
+            camera, size[0], size[1], self.pixel_error, POVRAY_KINDS, self.border
+        )
+
     def stamp(self) -> dict[str, str]:
         """What a picture's file says about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
@@ -60,10 +65,7 @@ def cut_and_export(
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
     folder.mkdir(parents=True, exist_ok=True)
-    view = native.View(
-        camera, size[0], size[1], settings.pixel_error, POVRAY_KINDS, settings.border
-    )
-    with native.Cut(model, view, job) as cut:
+    with native.Cut(model, settings.view(camera, size), job) as cut:
         parts = {"cut": report.cut_part(cut.summary())}
         in_use = levels_in_use(model, cut)
         exported = native.povray_export(cut, str(folder), settings.povray(), job)

@@ -34,6 +34,7 @@ class LODESTONE_RENDER_PT_levels(Panel):
         settings = context.scene.lodestone
         layout.prop(settings, "pixel_error_render", text="Pixel Error")
         layout.prop(settings, "deforming")
+        layout.prop(settings, "build_on_render")
         layout.prop(settings, "scope")
         row = layout.row(align=True)
         row.operator("lodestone.update_levels", icon="FILE_REFRESH")
@@ -68,6 +69,9 @@ class LODESTONE_RENDER_PT_levels_view(EnginePanel, Panel):
             ).path = render.largest_error_name
         else:
             values.label(text=f"{render.largest_error_px:.2f} px")
+        if render.without_levels:
+            names.label(text="Without Levels Yet")
+            values.label(text=f"{render.without_levels:,} (Update Levels makes them)")
 
 
 def draw_levels(layout, context, item):
