@@ -13,11 +13,12 @@ files, at full detail, no levels built. Prints a table and writes JSON; no numbe
 import argparse
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import benching
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
@@ -31,40 +32,25 @@ FEW = 100_000  # triangles; per million of them says nothing about smaller scene
 TIMEOUT = 900
 
 
-def turns(rounds: int) -> list[tuple[int, str]]:
-    """Which kind runs when: now the one first, now the other, so that a busy machine slows both."""
-    return [
-        (number, kind)
-        for number in range(rounds)
-        for kind in (KINDS if number % 2 == 0 else reversed(KINDS))
-    ]
-
-
-def spread(numbers: list[float]) -> dict[str, float]:
-    return {"min": min(numbers), "median": statistics.median(numbers), "max": max(numbers)}
-
-
 def summary(rounds: list[dict]) -> dict[str, dict]:
     """Spreads over the rounds, {kind: what it took} each; ratios are of one round each."""
     out = {}
     for measure in ("cpu_s", "bytes", "memory_bytes"):
         for kind in KINDS:
-            out[f"{kind}_{measure}"] = spread([one[kind][measure] for one in rounds])
+            out[f"{kind}_{measure}"] = benching.spread([one[kind][measure] for one in rounds])
         pairs = [(one["bundled"][measure], one["lodestone"][measure]) for one in rounds]
         least = 1e-3 if measure == "cpu_s" else 1.0
-        out[f"{measure}_ratio"] = spread([a / max(b, least) for a, b in pairs])
+        out[f"{measure}_ratio"] = benching.spread([a / max(b, least) for a, b in pairs])
     ours = [one["lodestone"] for one in rounds]
     for measure in ("extract_cpu_s", "write_cpu_s", "depsgraph_cpu_s"):
-        out[measure] = spread([one[measure] for one in ours])
-    out["second_cpu_s"] = spread([one["second_frame"]["cpu_s"] for one in ours])
-    out["second_written"] = spread([one["second_frame"]["files_written"] for one in ours])
+        out[measure] = benching.spread([one[measure] for one in ours])
+    out["second_cpu_s"] = benching.spread([one["second_frame"]["cpu_s"] for one in ours])
+    out["second_written"] = benching.spread([one["second_frame"]["files_written"] for one in ours])
     if ours[0]["triangles"] >= FEW:
-        out["per_million"] = spread([1e6 * one["cpu_s"] / one["triangles"] for one in ours])
+        out["per_million"] = benching.spread(
+            [1e6 * one["cpu_s"] / one["triangles"] for one in ours]
+        )
     return out
-
-
-def cell(found: dict[str, float], unit: float = 1.0, digits: int = 2) -> str:
-    return " / ".join(f"{found[key] / unit:.{digits}f}" for key in ("min", "median", "max"))
 
 
 def table(found: dict[str, dict]) -> list[str]:
@@ -75,7 +61,9 @@ def table(found: dict[str, dict]) -> list[str]:
     ]
 
     def row(label: str, key: str, unit: float = 1.0, digits: int = 2, goal: str = "") -> None:
-        cells = [cell(one[key], unit, digits) if key in one else "" for one in found.values()]
+        cells = [
+            benching.cell(one[key], unit, digits) if key in one else "" for one in found.values()
+        ]
         lines.append(f"| {label} | " + " | ".join(cells) + f" | {goal} |")
 
     row("bundled add-on, CPU s", "bundled_cpu_s")
@@ -133,7 +121,7 @@ def measured(blend: Path, rounds: int) -> list[dict]:
     """The rounds: {kind: what it took}."""
     found: list[dict] = [{} for _ in range(rounds)]
     with tempfile.TemporaryDirectory(dir=blend.parent) as scratch:
-        for number, kind in turns(rounds):
+        for number, kind in benching.turns(rounds, KINDS):
             found[number][kind] = export(kind, blend, Path(scratch))
             print(f"{blend.stem} {number} {kind}: {found[number][kind]['cpu_s']:.3f} s", flush=True)
     return found
@@ -159,7 +147,7 @@ def main() -> None:
     options = options_of()
     if not (STAGE / "addons" / "lodestone").is_dir():
         sys.exit("bench_export.py: build first (cmake --build --preset release)")
-    busy = os.getloadavg()[0]
+    busy = benching.load()
     folder = options.folder.resolve()
     blends = {name: make_scene(name, folder) for name in options.scenes}
     rounds = {name: measured(blend, options.rounds) for name, blend in blends.items() if blend}
@@ -167,24 +155,15 @@ def main() -> None:
         print("bench_export.py: nothing to measure, skipped")
         return
     found = {name: summary(one) for name, one in rounds.items()}
-    print(
-        f"\nMinimum / median / maximum of {options.rounds} rounds; {os.cpu_count()} cores, "
-        f"load {busy:.1f} before the first\n"
-    )
+    print(f"\n{benching.said(options.rounds, busy)}\n")
     print("\n".join(table(found)))
-    options.json.parent.mkdir(parents=True, exist_ok=True)
     data = {
-        "schema": 1,
-        "verb": "bench",
         "input": sorted(rounds),
-        "cores": os.cpu_count(),
-        "load_before": busy,
         "goals": {"ratio": GOAL_RATIO, "per_million": GOAL_PER_MILLION},
         "rounds": rounds,
         "summary": found,
     }
-    options.json.write_text(json.dumps(data, indent=1) + "\n", "utf-8")
-    print(f"\n{options.json}")
+    benching.write(options.json, busy, data)
 
 
 if __name__ == "__main__":

@@ -11,11 +11,12 @@ that a busy machine slows both. Prints a table and writes JSON; no number makes 
 import argparse
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import benching
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
@@ -62,10 +63,6 @@ def measured(pictures: list[dict], empty: int) -> list[dict]:
     return [rounds[number] for number in sorted(rounds)]
 
 
-def spread(numbers: list[float]) -> dict[str, float]:
-    return {"min": min(numbers), "median": statistics.median(numbers), "max": max(numbers)}
-
-
 def summary(rounds: list[dict]) -> dict[str, dict]:
     """By measure: the spread of both kinds and of each round's ratio full / approximated."""
     out = {}
@@ -74,9 +71,9 @@ def summary(rounds: list[dict]) -> dict[str, dict]:
         # Below a millisecond or a byte a ratio says nothing but "a lot".
         least = 1.0 if measure == "memory_bytes" else 1e-3
         out[measure] = {
-            "full": spread(full),
-            "approximated": spread(approximated),
-            "ratio": spread([f / max(a, least) for f, a in zip(full, approximated)]),
+            "full": benching.spread(full),
+            "approximated": benching.spread(approximated),
+            "ratio": benching.spread([f / max(a, least) for f, a in zip(full, approximated)]),
             "goal": goal,
         }
     return out
@@ -89,17 +86,12 @@ def table(found: dict[str, dict]) -> list[str]:
         "|---|---|---|---|---|",
     ]
     for measure, one in found.items():
-
-        def cell(key: str, unit: float, digits: int) -> str:
-            return " / ".join(f"{one[key][k] / unit:.{digits}f}" for k in ("min", "median", "max"))
-
         unit = UNITS[measure]
         digits = 1 if measure == "memory_bytes" else 2
         goal = f">= {one['goal']:g}" if one["goal"] else ""
-        lines.append(
-            f"| {LABELS[measure]} | {cell('full', unit, digits)} "
-            f"| {cell('approximated', unit, digits)} | {cell('ratio', 1.0, 1)} | {goal} |"
-        )
+        full, ours = (benching.cell(one[kind], unit, digits) for kind in KINDS)
+        ratio = benching.cell(one["ratio"], digits=1)
+        lines.append(f"| {LABELS[measure]} | {full} | {ours} | {ratio} | {goal} |")
     return lines
 
 
@@ -138,7 +130,7 @@ def main() -> None:
     sys.path.insert(0, str(ADDON))
     import lodestone_native as native
 
-    busy = os.getloadavg()[0]
+    busy = benching.load()
     empty = native.povray_empty_bytes(*options.size)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -148,27 +140,20 @@ def main() -> None:
     found = summary(rounds)
     print(
         f"\nCamera {options.camera}, {options.size[0]} x {options.size[1]}, Pixel Error "
-        f"{options.pixel_error:g}; minimum / median / maximum of {len(rounds)} rounds; "
-        f"{os.cpu_count()} cores, load {busy:.1f} before the first\n"
+        f"{options.pixel_error:g}; {benching.said(len(rounds), busy)}\n"
     )
     print("\n".join(table(found)))
-    options.json.parent.mkdir(parents=True, exist_ok=True)
     data = {
-        "schema": 1,
-        "verb": "bench",
         "input": str(options.blend),
         "camera": options.camera,
         "size": options.size,
         "pixel_error": options.pixel_error,
-        "cores": os.cpu_count(),
-        "load_before": busy,
         "build": batch["build"],
         "empty_scene_bytes": empty,
         "rounds": rounds,
         "summary": found,
     }
-    options.json.write_text(json.dumps(data, indent=1) + "\n", "utf-8")
-    print(f"\n{options.json}")
+    benching.write(options.json, busy, data)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How long the first F12 of a scene takes, and the next ones, beside a picture of full detail.
+
+    /usr/bin/python3 tests/bench/bench_first_picture.py [FILE.blend ...] [--rounds 5]
+
+Without files: build/samples/street.blend, which samples/quickstart.sh makes. Every round opens the
+file in a Blender of its own, with no levels, and counts what both programs take from F12 to the
+picture: of full detail, then at Pixel Error 1 the first, second and third time, then with all
+levels built first, then once more. Prints a table and writes JSON; no number makes it fail.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import benching
+
+ROOT = Path(__file__).resolve().parents[2]
+STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
+INSIDE = Path(__file__).with_name("bench_first_picture_blender.py")
+PICTURES = {  # goal: most of it over the picture of full detail
+    "full": ("full detail", None),
+    "first": ("first F12 at Pixel Error 1", 1.2),
+    "second": ("second", None),
+    "third": ("third", None),
+    "whole": ("all levels built first", 3.0),
+    "after": ("then", 1.0),
+}
+TIMEOUT = 1800
+
+
+def measured(blend: Path, size: list[int], camera: str) -> dict:
+    """{picture: {"cpu_s", "wall_s", "triangles"}} of one round."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        report = folder / "report.json"
+        environment = {
+            **os.environ,
+            "BLENDER_USER_SCRIPTS": str(STAGE),
+            "LODESTONE_CACHE": str(folder / "cache"),
+        }
+        command = ["blender", "-b", "--factory-startup", str(blend), "--addons", "lodestone"]
+        command += ["--python-exit-code", "1", "--python", str(INSIDE), "--"]
+        command += [str(folder / "copy.blend"), str(report), *map(str, size), camera]
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=TIMEOUT, env=environment, check=False
+        )
+        if done.returncode != 0 or not report.is_file():
+            sys.exit(f"bench_first_picture.py: {blend} failed:\n{done.stdout[-2000:]}{done.stderr}")
+        return json.loads(report.read_text("utf-8"))
+
+
+def summary(found: list[dict]) -> dict[str, dict]:
+    """By picture: spreads of CPU and wall seconds, and of each round's ratio to full detail."""
+    out = {}
+    for picture, (_, goal) in PICTURES.items():
+        ratios = [one[picture]["cpu_s"] / max(one["full"]["cpu_s"], 1e-3) for one in found]
+        out[picture] = {
+            "cpu_s": benching.spread([one[picture]["cpu_s"] for one in found]),
+            "wall_s": benching.spread([one[picture]["wall_s"] for one in found]),
+            "ratio": benching.spread(ratios),
+            "triangles": found[-1][picture]["triangles"],
+            "goal": goal,
+        }
+    return out
+
+
+def table(found: dict[str, dict]) -> list[str]:
+    lines = [
+        "| picture | CPU s | wall s | CPU over full detail | goal | triangles |",
+        "|---|---|---|---|---|---|",
+    ]
+    for picture, (label, _) in PICTURES.items():
+        one = found[picture]
+        goal = f"<= {one['goal']:g}" if one["goal"] else ""
+        lines.append(
+            f"| {label} | {benching.cell(one['cpu_s'], digits=1)} "
+            f"| {benching.cell(one['wall_s'], digits=1)} | {benching.cell(one['ratio'])} | {goal} "
+            f"| {one['triangles']:,} |"
+        )
+    return lines
+
+
+def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("blend", type=Path, nargs="*")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--size", type=int, nargs=2, default=[640, 360], metavar=("W", "H"))
+    parser.add_argument("--camera", default="", help="by name; default: far, else the scene's")
+    parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "first.json")
+    options = parser.parse_args(arguments)
+    if options.rounds < 1:
+        parser.error("--rounds is at least 1")
+    options.blend = options.blend or [ROOT / "build" / "samples" / "street.blend"]
+    return options
+
+
+def main() -> None:
+    options = options_of()
+    if not (STAGE / "addons" / "lodestone").is_dir():
+        sys.exit("bench_first_picture.py: build first (cmake --build --preset release)")
+    busy = benching.load()
+    results = {}
+    for blend in options.blend:
+        if not blend.is_file():
+            sys.exit(f"bench_first_picture.py: there is no {blend}; samples/quickstart.sh makes it")
+        found = []
+        for number in range(options.rounds):
+            found.append(measured(blend.resolve(), options.size, options.camera))
+            print(f"{blend.stem} {number}: {found[-1]['first']['cpu_s']:.1f} s", flush=True)
+        results[blend.stem] = {"rounds": found, "summary": summary(found)}
+        print(f"\n{blend.stem}: {benching.said(options.rounds, busy)}\n")
+        print("\n".join(table(results[blend.stem]["summary"])))
+    benching.write(options.json, busy, {"input": sorted(results), "scenes": results})
+
+
+if __name__ == "__main__":
+    main()
