@@ -4,7 +4,6 @@
 import ctypes
 from array import array
 from collections.abc import Iterator, Sequence
-from itertools import chain
 from typing import Any
 
 from . import structs
@@ -225,22 +224,30 @@ class Model(Handle):
             check(library().lds_model_hide_placement(self.handle, group, hidden))
 
     def add_placements(
-        self, group: Object, placements: Sequence[tuple[Object, Sequence[float], str, int]]
+        self,
+        group: Object,
+        children: Sequence[Object],
+        transforms: Sequence[float],
+        names: Sequence[str],
+        hidden: Sequence[int],
     ) -> None:
-        """(child, transform, name, hidden) each, as add_placement() takes them; all or none."""
-        number = len(placements)
-        rows = array("d", chain.from_iterable(place for _, place, _, _ in placements))
-        if len(rows) != 12 * number:
-            raise ValueError("a transform has other than 12 numbers")
+        """In columns what add_placement() takes, 12 numbers a transform; all or none."""
+        number = len(children)
+        if (len(transforms), len(names), len(hidden)) != (12 * number, number, number):
+            raise ValueError("columns of placements differ in length")
+        rows = array("d", transforms)
+        texts = text_in("\0".join(names)).split(b"\0") if number else []  # all at a stroke
+        if len(texts) != number:
+            raise ValueError("a name holds NUL")
         check(
             library().lds_model_add_placements(
                 self.handle,
                 group,
                 number,
-                (Object * number)(*(child for child, _, _, _ in placements)),
+                (Object * number).from_buffer_copy(b"".join(map(bytes, children))),
                 rows.buffer_info()[0] if number else None,
-                (ctypes.c_char_p * number)(*(text_in(name) for _, _, name, _ in placements)),
-                (ctypes.c_uint32 * number)(*(hidden for _, _, _, hidden in placements)),
+                (ctypes.c_char_p * number)(*texts),
+                (ctypes.c_uint32 * number)(*hidden),
             )
         )
 

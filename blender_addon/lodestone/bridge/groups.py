@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Groups from collections: membership gives the tree, instancing empties the sharing."""
 
+from array import array
 from collections import defaultdict
 from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import Any
 
 from ..core import identity
 from . import ids
-from .instances import Context, Emitted, Entry, Rows, offset, rows
+from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
+from .listed import Rows, rows
 from .motion import Motion
+from .placements import Placements
 
-IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
 MOST_CHILDREN = 64  # of an emitter's group: more are grouped by position
-Placement = tuple[Any, Rows, str, int]  # object, transform, name, hidden from which ray classes
+_ORIGINAL = attrgetter("original")
 
 
 @dataclass
@@ -26,13 +30,13 @@ class Branch:
     name: str
     environment: bool
     children: list["Branch"] = field(default_factory=list)
-    objects: list[int] = field(default_factory=list)  # original pointers
+    objects: list[Any] = field(default_factory=list)  # originals
 
 
 def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
     """Of what a view layer includes: render-hidden collections are left out, excluded ones lend
     nothing but their included children."""
-    claimed: set[int] = set()
+    claimed: set[Any] = set()
 
     def branch(layer: Any, inherited: bool) -> Branch:
         collection = layer.collection
@@ -56,7 +60,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
 
 def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
     """Of an evaluated collection as its instances show it: layers play no part."""
-    claimed: set[int] = {collection.original.as_pointer()}
+    claimed: set[Any] = {collection.original}
 
     def branch(item: Any, inherited: bool) -> Branch:
         environment = inherited or roles.is_environment(item)
@@ -70,27 +74,23 @@ def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
     return branch(collection, False)
 
 
-def _claim(claimed: set[int], collection: Any) -> bool:
-    key = collection.original.as_pointer()
-    if key in claimed:
+def _claim(claimed: set[Any], collection: Any) -> bool:
+    original = collection.original
+    if original in claimed:
         return False
-    claimed.add(key)
+    claimed.add(original)
     return True
 
 
-def _own(claimed: set[int], collection: Any) -> list[int]:
-    """The collection's own objects that belong to no earlier one."""
-    found = []
-    for item in collection.objects:
-        key = item.original.as_pointer()
-        if key not in claimed:
-            claimed.add(key)
-            found.append(key)
+def _own(claimed: set[Any], collection: Any) -> list[Any]:
+    """The originals of the collection's own objects that belong to no earlier one."""
+    found = [item for item in map(_ORIGINAL, collection.objects) if item not in claimed]
+    claimed.update(found)
     return found
 
 
-def environment_objects(branch: Branch) -> set[int]:
-    """Original pointers of the objects in environment branches."""
+def environment_objects(branch: Branch) -> set[Any]:
+    """Originals of the objects in environment branches."""
     found = set(branch.objects) if branch.environment else set()
     for child in branch.children:
         found |= environment_objects(child)
@@ -120,52 +120,56 @@ class Groups:
         self._above: list[Branch] = []  # branches around the one at hand, with collections
         self._made: dict[tuple, Any] = {}
         self._branches: dict[int, Branch] = {}
-        self._emitters: dict[int, list[tuple[list[Emitted], Any]]] = {}
+        self._emitters: dict[Any, list[tuple[list[Emitted], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
-        self.parts: dict[ids.Key, set[Any]] = defaultdict(set)  # what a datablock became
+        self.parts: dict[ids.Key, list[Any]] = defaultdict(list)  # what a datablock became
 
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
         rest = dict(context.entries)
-        changing: list[Placement] = []
+        changing = Placements()
         placements, anew = self._members(context, branch, rest, changing)
         for entry in rest.values():  # shown, but in no branch: never lose it
             extra = self._entry(entry)
             if extra:
                 self.unplaced.append(entry.name)
-                placements += extra
+                placements.extend(extra)
         if changing:
             uid = identity.stable_id(ids.scene_uid(branch.name), "changing")
             name = f"{branch.name} in motion"
-            placements.append((self._intern(uid, name, False, changing, True), IDENTITY, name, 0))
+            placements.add(self._intern(uid, name, False, changing, True), IDENTITY, name)
         return self._group(branch, placements, anew)
 
     def _members(
-        self, context: Context, branch: Branch, rest: dict[int, Entry], changing: list[Placement]
-    ) -> tuple[list[Placement], bool]:
+        self, context: Context, branch: Branch, rest: dict[Any, Entry], changing: Placements
+    ) -> tuple[Placements, bool]:
         """What of a context is in a branch, and whether it changes in an animation. What does in
         the scene itself goes to `changing`: a group of things that rest keeps its levels in every
         frame. An instanced collection is drawn as it is while it changes."""
-        placements: list[Placement] = []
+        placements = Placements()
         anew = False
         self._above.append(branch)
         for child in branch.children:
             group = self._group(child, *self._members(context, child, rest, changing))
             if group is not None:
-                placements.append((group, IDENTITY, child.name, 0))
-        for key in branch.objects:
-            entry = rest.pop(key, None)
+                placements.add(group, IDENTITY, child.name)
+        for original in branch.objects:
+            entry = rest.pop(original, None)
             if entry is None:
+                continue
+            if entry.rests:
+                item = entry.leaf.object
+                placements.add(item, entry.place, entry.key[2])
+                self.parts[entry.key] = [item]
                 continue
             made, changes = self._entry(entry), self._changes(entry)
             if changes and context.collection is None:
-                changing += made
+                changing.extend(made)
                 for above in self._above:
                     if above.collection is not None:
-                        collection = ids.key_of("collection", above.collection)
-                        self.parts[collection].update(placement[0] for placement in made)
+                        self.parts[ids.key_of("collection", above.collection)] += made.objects
             else:
-                placements += made
+                placements.extend(made)
                 anew = anew or changes
         self._above.pop()
         return placements, anew
@@ -173,17 +177,17 @@ class Groups:
     def _changes(self, entry: Entry) -> bool:
         """Whether an animation moves it, or makes another thing of it or of what it emits."""
         motion, item = self._motion, entry.object
-        if motion.moves(item) or (entry.leaf is not None and motion.deforms(item)):
+        if (entry.leaf is not None and entry.leaf.deforms) or motion.moves(item):
             return True
         return bool(entry.emitted or entry.hair) and motion.emits_anew(item)
 
-    def _entry(self, entry: Entry) -> list[Placement]:
-        placements: list[Placement] = []
+    def _entry(self, entry: Entry) -> Placements:
+        placements = Placements()
         if entry.leaf is not None:
-            placements.append((entry.leaf.object, rows(entry.matrix), entry.name, entry.hidden))
+            placements.add(entry.leaf.object, entry.place, entry.name, entry.hidden)
         if entry.hair is not None:
             name = f"{entry.name} {HAIR}"
-            placements.append((entry.hair.object, rows(entry.matrix), name, entry.hidden))
+            placements.add(entry.hair.object, entry.place, name, entry.hidden)
         if entry.content is not None:
             collection = entry.content.collection
             pointer = collection.as_pointer()
@@ -191,24 +195,25 @@ class Groups:
                 self._branches[pointer] = collection_branch(collection, self._roles)
             group = self.build(entry.content, self._branches[pointer])
             if group is not None:
-                place = rows(entry.matrix @ offset(collection))
-                placements.append((group, place, entry.name, entry.hidden))
+                place = rows(entry.object.matrix_world @ offset(collection))
+                placements.add(group, place, entry.name, entry.hidden)
         if entry.emitted:
             name = f"{entry.name} instances"
-            placements.append((self._emitter(entry), IDENTITY, name, entry.hidden))
-        made = (placement[0] for placement in placements)
-        self.parts[ids.key_of("object", entry.object)].update(made)
+            placements.add(self._emitter(entry), IDENTITY, name, entry.hidden)
+        self.parts[entry.key] += placements.objects
         return placements
 
     def _emitter(self, entry: Entry) -> Any:
         """Its group of instances. In every context that shows it they are the same but for
         rounding, which must not keep the contexts from sharing one group."""
-        known = self._emitters.setdefault(entry.object.original.as_pointer(), [])
+        known = self._emitters.setdefault(entry.object.original, [])
         for emitted, group in known:
             if _same_but_for_rounding(emitted, entry.emitted):
                 return group
         uid = identity.stable_id(ids.uid_of("object", entry.object), "instances")
-        children = [(leaf.object, place, leaf.data, hid) for leaf, place, hid in entry.emitted]
+        children = Placements()
+        for leaf, place, hidden in entry.emitted:
+            children.add(leaf.object, place, leaf.data, hidden)
         environment = self._roles.is_environment(entry.object)
         anew = self._motion.emits_anew(entry.object)
         group = self._intern(uid, f"{entry.name} instances", environment, children, anew)
@@ -217,9 +222,7 @@ class Groups:
         known.append((entry.emitted, group))
         return group
 
-    def _group(
-        self, branch: Branch, placements: list[Placement], changes: bool = False
-    ) -> Any | None:
+    def _group(self, branch: Branch, placements: Placements, changes: bool = False) -> Any | None:
         if not placements:
             return None
         if branch.collection is None:
@@ -228,7 +231,7 @@ class Groups:
             uid = ids.uid_of("collection", branch.collection)
         group = self._intern(uid, branch.name, branch.environment, placements, changes)
         if branch.collection is not None:
-            self.parts[ids.key_of("collection", branch.collection)].add(group)
+            self.parts[ids.key_of("collection", branch.collection)].append(group)
         return group
 
     def _intern(
@@ -236,14 +239,20 @@ class Groups:
         uid: str,
         name: str,
         environment: bool,
-        placements: list[Placement],
+        placements: Placements,
         changes: bool = False,
     ) -> Any:
-        key = (uid, environment, changes, tuple((p[0].key, *p[1:]) for p in placements))
+        key = (uid, environment, changes, placements.key)
         group = self._made.get(key)
         if group is None:
             claimed = self._uids.claim(uid)
             group = self._model.add_group(claimed, name, ids.role(environment), changes)
-            self._model.add_placements(group, placements)
+            self._model.add_placements(
+                group,
+                placements.objects,
+                placements.transforms,
+                placements.names,
+                placements.hidden,
+            )
             self._made[key] = group
         return group

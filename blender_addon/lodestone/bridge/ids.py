@@ -3,8 +3,13 @@
 
 from typing import Any
 
+import bpy
+
 from ..core import identity
 from ..core.native import lodestone_native as native
+
+
+_STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # what add-ons store, among custom properties
 
 
 def library_of(datablock: Any) -> str:
@@ -26,6 +31,13 @@ def settings_of(datablock: Any) -> Any | None:
         return datablock.lodestone if datablock.is_property_set("lodestone") else None
     except TypeError:  # a kind of datablock that has no such settings
         return None
+
+
+def has_settings(datablock: Any) -> bool:
+    """Whether the file holds any settings of an object or collection."""
+    if _STORED_AMONG_CUSTOM:
+        return "lodestone" in datablock  # a sixth of the time
+    return settings_of(datablock) is not None
 
 
 def stored_uid(datablock: Any) -> str:

@@ -7,43 +7,52 @@ instances. Where a path leads through anything but instanced collections (geomet
 particles, vertices), the rest of it is opaque and the instance belongs to that emitter.
 """
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import Any
 
 from mathutils import Matrix
 
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
-from .leaves import DRAWN, Leaf, Leaves, Look, undrawn
+from .leaves import DRAWN, MATERIAL, Leaf, Look, undrawn
+from .listed import Listed, Rows, rows
 from .motion import Motion
+from .plain import plain
+from .users import Users
 from .visibility import Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
-Rows = tuple[float, ...]  # 12: row-major 3x4
 Emitted = tuple[Leaf, Rows, int]  # what, where, hidden from which ray classes
+_ORIGINAL = attrgetter("original")
 
 
-def rows(matrix: Matrix) -> Rows:
-    x, y, z, _ = matrix  # half the time of asking for one after the other
-    return x[:] + y[:] + z[:]
-
-
-@dataclass
 class Entry:
     """One object in one context: what of it is shown there."""
 
-    object: Any  # evaluated
-    name: str
-    matrix: Matrix  # in the context's frame
-    hidden: int  # from these ray classes
-    holdout: bool
-    leaf: Leaf | None = None
+    # What most have, and so need not be given
+    hidden = 0  # from these ray classes
+    holdout = False
     hair: Leaf | None = None  # of its particle systems
     content: "Context | None" = None  # of the collection it instances
-    emitted: list[Emitted] = field(default_factory=list)
-    pending: bool = False  # shown, but no mesh: converted when nothing else shows it
+    emitted: list[Emitted] | tuple = ()
+    pending = False  # shown, but no mesh: converted when nothing else shows it
+
+    def __init__(
+        self, item: Any, key: ids.Key, place: Rows, leaf: Leaf | None = None, rests: bool = False
+    ) -> None:
+        """An evaluated object; its transform to the context's frame. `rests`: nothing changes it,
+        and its leaf is all that it shows."""
+        self.object = item
+        self.key = key
+        self.place = place
+        self.leaf = leaf
+        self.rests = rests
+
+    @property
+    def name(self) -> str:
+        return self.key[2]
 
 
 @dataclass
@@ -53,9 +62,9 @@ class Context:
     collection: Any | None  # evaluated; None: the scene
     frame: Matrix  # to the world
     members: list[Any]  # all_objects, evaluated
-    environment: set[int]  # original pointers of objects whose collections are environment
+    environment: set[Any]  # originals of objects whose collections are environment
     holdout: bool = False  # all of it
-    entries: dict[int, Entry] = field(default_factory=dict)  # by original pointer
+    entries: dict[Any, Entry] = field(default_factory=dict)  # by original
     inverse: Matrix | None = None
 
 
@@ -64,7 +73,7 @@ class Instances:
 
     def __init__(
         self,
-        leaves: Leaves,
+        leaves: Users,
         visibility: Visibility,
         roles: ids.Roles,
         motion: Motion,
@@ -82,20 +91,63 @@ class Instances:
         self._tick = tick
         self._host: Any = None  # what instances the instance at hand
         self._paths: dict[tuple, Entry | None] = {}
-        self._collections: dict[int, tuple[list[Any], set[int]]] = {}
-        self._hidden: dict[int, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
+        self._collections: dict[int, tuple[list[Any], set[Any]]] = {}
+        self._hidden: dict[Any, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
+        self._looks: dict[Any, Look] = {}  # by original, but for what the context adds
+        self._plain: dict[tuple, Leaf] = {}  # of plain objects, by what they are made of
+        self._one_slot: set[Any] = set()  # meshes
+        self._keys: dict[Any, ids.Key] = {}  # by original
 
-    def walk(self, depsgraph: Any, environment: set[int]) -> None:
-        """`environment`: original pointers of the objects that an environment collection holds."""
+    def walk(self, listed: Listed, environment: set[Any]) -> None:
+        """`environment`: originals of the objects that an environment collection holds."""
         self.scene.environment = environment
-        for number, instance in enumerate(depsgraph.object_instances):
+        plain_here = not self._visibility.by_layer
+        for number, instance in listed:
             if number % 256 == 0:
                 self._tick()
-            if instance.show_self or instance.show_particles:
-                self._take(instance)
+            if not instance.show_self:
+                if instance.show_particles:
+                    self._take(instance, listed.place(number))
+                continue
+            if plain_here and not instance.is_instance:
+                shown = instance.object
+                loose = plain(shown)
+                if loose is not None:
+                    self._take_plain(shown, listed.place(number), loose)
+                    continue
+            self._take(instance, listed.place(number))
         self._convert_pending()
 
-    def _take(self, instance: Any) -> None:
+    def _take_plain(self, shown: Any, place: Rows | None, loose: bool) -> None:
+        """What most instances are, on the shortest way. It has no entry yet: what instances
+        others is not plain."""
+        if place is None:
+            return self._name_bad_place(shown.name)
+        original, data = shown.original, shown.data
+        key = ("object", "", shown.name)
+        marked = original in self.scene.environment
+        if data in self._one_slot:  # then everybody who shows them has one: no list is made
+            made_of = (data, marked, shown.active_material)
+        else:
+            made_of = (data, marked, *map(MATERIAL, shown.material_slots))
+        leaf = self._plain.get(made_of)
+        if leaf is not None:
+            self._leaves.users_of(leaf)[key] = None
+        else:
+            leaf = self._leaves.leaf(
+                key, shown, shown, Look(marked, False, self._motion.deforms(shown))
+            )
+            if leaf is None:
+                return
+            if len(made_of) == 3:
+                self._one_slot.add(data)
+            if leaf.settled:
+                self._plain[made_of] = leaf
+        self.shown += 1
+        rests = not leaf.deforms and (loose or not self._motion.moves(shown))
+        self.scene.entries[original] = Entry(shown, key, place, leaf, rests)
+
+    def _take(self, instance: Any, place: Rows | None) -> None:
         shown = instance.object
         kind = shown.type
         if kind == "LIGHT":
@@ -107,11 +159,8 @@ class Instances:
             self._problems.add(shown.name, ERROR, "object_kind", text)
         if what is not None or kind not in DRAWN:
             return
-        matrix = instance.matrix_world
-        if not math.isfinite(sum(rows(matrix))):
-            text = f'Object "{shown.name}" is left out: its transform is not a number'
-            self._problems.add(shown.name, ERROR, "bad_transform", text)
-            return
+        if place is None:
+            return self._name_bad_place(shown.name)
         # While anybody in Python knows an evaluated object, its instances are handed out as that
         # object itself, in its own color: it is asked of what instances it.
         self._host = None
@@ -121,10 +170,15 @@ class Instances:
             found = self._find(self._host, tuple(reversed(path)), owner)
         else:
             owner, found = shown, (self.scene, self._entry(self.scene, shown), True)
+        matrix = instance.matrix_world
         if instance.show_self:
             self._take_data(shown, owner, matrix, instance.is_instance, *found)
         if instance.show_particles and kind == "MESH":
             self._take_hair(shown, owner, matrix, *found)
+
+    def _name_bad_place(self, name: str) -> None:
+        text = f'Object "{name}" is left out: its transform is not a number'
+        self._problems.add(name, ERROR, "bad_transform", text)
 
     def _take_data(
         self,
@@ -143,9 +197,8 @@ class Instances:
         if kind not in ("MESH", "CURVES"):  # its mesh follows as an instance of itself
             entry.pending = entry.pending or direct
             return
-        leaf = self._leaves.leaf(
-            shown, owner, self._look(context, entry, owner), self._host, matrix
-        )
+        look = self._look(context, entry, owner)
+        leaf = self._leaves.leaf(self._key(owner), shown, owner, look, self._host, matrix)
         if leaf is None:
             return
         self.shown += 1
@@ -161,8 +214,8 @@ class Instances:
         self._tick()
         look = self._look(context, entry, owner)
         if self._motion.emits_anew(owner):
-            look = replace(look, deforms=True)
-        leaf = self._leaves.hair(shown, owner, look, self._host, matrix)
+            look = look._replace(deforms=True)
+        leaf = self._leaves.hair(self._key(owner), shown, owner, look, self._host, matrix)
         if leaf is None:
             return
         self.shown += 1
@@ -177,9 +230,8 @@ class Instances:
         points = strands.point_cloud(shown.data)
         if not points:
             return
-        leaf = self._leaves.point(
-            shown, owner, self._look(context, entry, owner), self._host, matrix
-        )
+        look = self._look(context, entry, owner)
+        leaf = self._leaves.point(self._key(owner), shown, owner, look, self._host, matrix)
         for center, radius in points:
             place = matrix @ Matrix.Translation(center) @ Matrix.Scale(radius, 4)
             self._emit(leaf, owner, place, context, entry)
@@ -187,21 +239,36 @@ class Instances:
 
     def _emit(self, leaf: Leaf, owner: Any, matrix: Matrix, context: Context, entry: Entry) -> None:
         hidden = 0 if _is_self(entry, owner) else self._seen(owner)[0]
+        if not entry.emitted:
+            entry.emitted = []
         entry.emitted.append((leaf, self._relative(context, matrix), hidden))
 
     def _look(self, context: Context, entry: Entry, owner: Any) -> Look:
-        pointer = owner.original.as_pointer()
-        marked = pointer in context.environment or self._roles.is_environment(owner)
-        holdout = entry.holdout or (not _is_self(entry, owner) and self._seen(owner)[1])
-        return Look(marked, holdout, self._motion.deforms(owner))
+        original = owner.original
+        look = self._looks.get(original)
+        if look is None:
+            marked = self._roles.is_environment(owner)
+            look = self._looks[original] = Look(marked, False, self._motion.deforms(owner))
+        if original in context.environment:
+            look = look._replace(environment=True)
+        if entry.holdout or (original != entry.object.original and self._seen(owner)[1]):
+            look = look._replace(holdout=True)
+        return look
 
     def _seen(self, owner: Any) -> tuple[int, bool]:
         """Ray classes that an emitted object is hidden from, and whether it is a holdout."""
-        key = owner.original.as_pointer()
-        if key not in self._hidden:
-            visibility = self._visibility
-            self._hidden[key] = (visibility.hidden(owner, False), visibility.holdout(owner, False))
-        return self._hidden[key]
+        original = owner.original
+        if original not in self._hidden:
+            seen = self._visibility
+            self._hidden[original] = (seen.hidden(owner, False), seen.holdout(owner, False))
+        return self._hidden[original]
+
+    def _key(self, item: Any) -> ids.Key:
+        original = item.original
+        key = self._keys.get(original)
+        if key is None:
+            key = self._keys[original] = ids.key_of("object", item)
+        return key
 
     # ---- Paths ----
 
@@ -209,7 +276,7 @@ class Instances:
         """The context and entry an instance belongs to, and whether it is the entry's object
         itself rather than something the entry emits."""
         context, entry = self.scene, self._entry(self.scene, parent)
-        key: tuple = (entry.object.original.as_pointer(),)
+        key: tuple = (entry.object.original,)
         for place, number in enumerate(path):
             if entry.content is None:
                 return context, entry, False
@@ -228,16 +295,16 @@ class Instances:
 
     def _entry(self, context: Context, item: Any) -> Entry:
         """The entry of an evaluated object, made when it is new."""
-        key = item.original.as_pointer()
-        entry = context.entries.get(key)
+        original = item.original
+        entry = context.entries.get(original)
         if entry is None:
             in_scene = context.collection is None
-            hidden = self._visibility.hidden(item, in_scene)
-            holdout = context.holdout or self._visibility.holdout(item, in_scene)
-            if holdout and not context.holdout:
-                self._visibility.name_holdout(item.name)
-            entry = Entry(item, item.name, item.matrix_world.copy(), hidden, holdout)
-            context.entries[key] = entry
+            entry = Entry(item, self._key(item), rows(item.matrix_world))
+            entry.hidden = self._visibility.hidden(item, in_scene)
+            entry.holdout = context.holdout or self._visibility.holdout(item, in_scene)
+            if entry.holdout and not context.holdout:
+                self._visibility.name_holdout(entry.name)
+            context.entries[original] = entry
             if item.instance_type == "COLLECTION" and item.instance_collection is not None:
                 entry.content = self._content(context, entry)
         return entry
@@ -246,11 +313,11 @@ class Instances:
         collection = entry.object.instance_collection
         pointer = collection.as_pointer()
         if pointer not in self._collections:
-            marked: set[int] = set()
+            marked: set[Any] = set()
             _mark(collection, False, marked, self._roles)
             self._collections[pointer] = (list(collection.all_objects), marked)
         members, marked = self._collections[pointer]
-        frame = context.frame @ entry.matrix @ offset(collection)
+        frame = context.frame @ entry.object.matrix_world @ offset(collection)
         return Context(collection, frame, members, marked, entry.holdout)
 
     def _relative(self, context: Context, world: Matrix) -> Rows:
@@ -275,7 +342,7 @@ class Instances:
                 if entry.pending and entry.leaf is None and not entry.emitted:
                     self._tick()
                     look = self._look(context, entry, entry.object)
-                    entry.leaf = self._leaves.leaf(entry.object, entry.object, look)
+                    entry.leaf = self._leaves.leaf(entry.key, entry.object, entry.object, look)
                     self.shown += entry.leaf is not None
 
 
@@ -285,13 +352,13 @@ def offset(collection: Any) -> Matrix:
 
 
 def _is_self(entry: Entry, owner: Any) -> bool:
-    return entry.object.original.as_pointer() == owner.original.as_pointer()
+    return entry.object.original == owner.original
 
 
-def _mark(collection: Any, inherited: bool, marked: set[int], roles: ids.Roles) -> None:
+def _mark(collection: Any, inherited: bool, marked: set[Any], roles: ids.Roles) -> None:
     environment = inherited or roles.is_environment(collection)
     if environment:
-        marked.update(item.original.as_pointer() for item in collection.objects)
+        marked.update(map(_ORIGINAL, collection.objects))
     for child in collection.children:
         _mark(child, environment, marked, roles)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Leaf objects: each drawn mesh with its materials, extracted once however often it is placed."""
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 from ..core import identity
 from ..core.native import lodestone_native as native
@@ -15,6 +16,7 @@ UNDRAWN = {"VOLUME": "volumes", "GPENCIL": "grease pencil"}
 HAIR = "hair"  # of particles; also in the names of leaves
 POINT = "point"
 Color = tuple[float, float, float, float]
+MATERIAL = attrgetter("material")
 
 
 def undrawn(shown: Any) -> str | None:
@@ -28,7 +30,7 @@ def undrawn(shown: Any) -> str | None:
     return UNDRAWN.get(shown.type)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Leaf:
     """An added object, and what it shows by Blender's names."""
 
@@ -37,10 +39,11 @@ class Leaf:
     data: str
     materials: tuple[str, ...]
     size: int  # triangles of a mesh, strands of hair, 1 of a point
+    deforms: bool = False  # see Look
+    settled: bool = True  # it is the same whoever shows it, and wherever
 
 
-@dataclass(frozen=True)
-class Look:
+class Look(NamedTuple):
     """What decides how an object's data are drawn, besides the data and its materials."""
 
     environment: bool = False
@@ -94,13 +97,16 @@ class Leaves:
         self, data: Any, shown: Any, owner: Any, look: Look, host: Any, place: Any, add: Any
     ) -> Leaf | None:
         slots = material_slots(shown, self.override)
-        materials = tuple(m.as_pointer() if m else 0 for m in slots)
+        materials = tuple(material.as_pointer() if material else 0 for material in slots)
         place = shown.matrix_world if place is None else place
         color, frames = self._seen_from(place, host or shown, slots, materials)
         key = (data, materials, color, frames, look)
         if key not in self._found:
             self._place = place
-            self._found[key] = add(shown, owner, slots, color, look)
+            leaf = add(shown, owner, slots, color, look)
+            if leaf is not None and not (color is None and frames is None):
+                leaf = replace(leaf, settled=False)
+            self._found[key] = leaf
         return self._found[key]
 
     def _seen_from(
@@ -147,7 +153,7 @@ class Leaves:
             if error.status != native.Status.INVALID_ARGUMENT:
                 raise
             return self._unreadable(owner, error)  # a file may hold faces of what is not there
-        return Leaf(item, uid, shown.data.name, _names(slots), size)
+        return Leaf(item, uid, shown.data.name, _names(slots), size, look.deforms)
 
     def _unreadable(self, owner: Any, error: Exception) -> None:
         text = f'Object "{owner.name}" cannot be read and is left out: {error}'
@@ -164,7 +170,8 @@ class Leaves:
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
         name, role = f"{owner.name} {HAIR}", ids.role(look.environment)
         item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
-        return Leaf(item, uid, f"{shown.name} {HAIR}", _names(slots), len(buffers.counts))
+        name = f"{shown.name} {HAIR}"
+        return Leaf(item, uid, name, _names(slots), len(buffers.counts), look.deforms)
 
     def _add_point(
         self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
@@ -226,7 +233,7 @@ def material_slots(shown: Any, override: Any = None) -> list[Any]:
         return []
     if override is not None:
         return [override] * max(1, len(shown.material_slots))
-    return [slot.material for slot in shown.material_slots]
+    return list(map(MATERIAL, shown.material_slots))
 
 
 def override_of(depsgraph: Any) -> Any | None:

@@ -30,6 +30,7 @@ _IN_TIME = {
 }
 _TIME_NODES = {"INPUT_SCENE_TIME", "SIMULATION_INPUT", "SIMULATION_OUTPUT"}
 _MOST_NESTED = 32
+_object_properties: dict[str, list[str]] = {}  # names, by type of modifier
 
 
 def animated(datablock: Any | None) -> bool:
@@ -166,11 +167,17 @@ class Motion:
 
 def _targets(modifier: Any) -> Iterable[Any]:
     """The objects a modifier looks at, its nodes' inputs included."""
-    for name, prop in modifier.bl_rna.properties.items():
-        if prop.type == "POINTER" and prop.fixed_type.identifier == "Object":
-            target = getattr(modifier, name)
-            if target is not None:
-                yield target
+    kind = modifier.type
+    if kind not in _object_properties:
+        _object_properties[kind] = [
+            name
+            for name, prop in modifier.bl_rna.properties.items()
+            if prop.type == "POINTER" and prop.fixed_type.identifier == "Object"
+        ]
+    for name in _object_properties[kind]:
+        target = getattr(modifier, name)
+        if target is not None:
+            yield target
     if modifier.type == "NODES":
         for key in modifier.keys():
             value = modifier[key]

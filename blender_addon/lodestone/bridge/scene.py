@@ -13,10 +13,11 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
-from . import camera, groups, ids, lights, world
+from . import camera, compat, groups, ids, lights, world
 from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
+from .listed import Listed
 from .motion import Motion, Still
 from .users import Users
 from .visibility import Visibility
@@ -31,7 +32,7 @@ class Extraction:
     leaves: list[Leaf] = field(default_factory=list)
     shown: int = 0  # instances the depsgraph shows with faces
     lights: int = 0
-    parts: dict[ids.Key, set[Any]] = field(default_factory=dict)
+    parts: dict[ids.Key, list[Any]] = field(default_factory=dict)
     users: dict[Subject, tuple[Subject, ...]] = field(default_factory=dict)  # by material
 
     def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
@@ -118,14 +119,16 @@ def walked(
     problems: Problems,
     tick: Callable[[], None],
     motion: Motion | None = None,
+    listed: Listed | None = None,
 ) -> Walk:
-    """`leaves` are Leaves, or what takes their place where nothing is to be extracted."""
+    """`leaves` are Leaves, or what takes their place where nothing is to be extracted; `listed` is
+    what takes the place of all that the depsgraph lists."""
     roles = ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
     branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
     visibility = Visibility(depsgraph.view_layer_eval, problems)
     found = Instances(users, visibility, roles, motion or Still(), problems, tick)
-    found.walk(depsgraph, groups.environment_objects(branch))
+    found.walk(listed or Listed(depsgraph), groups.environment_objects(branch))
     return Walk(found, branch, users, roles)
 
 
@@ -149,7 +152,7 @@ def _add_cameras(model: Any, scene: Any) -> None:
     """All of the scene, its own one first, for programs that render the store. What is not exact
     about one is told when it is used."""
     frame = camera.Frame.of(scene.render)
-    items = [item for item in scene.objects if item.type == "CAMERA"]
+    items = list(compat.of_type(scene.objects, "CAMERA"))
     items.sort(key=lambda item: (item != scene.camera, item.name))
     for item in items:
         matrix = item.matrix_world

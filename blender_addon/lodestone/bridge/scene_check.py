@@ -6,6 +6,7 @@ for the leaves and one for the model, so that there is one set of rules. What it
 depsgraph of the viewport, less what renders hide; what only renders show is added as it is stored.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +16,7 @@ from ..core.problems import ERROR, Problems
 from . import camera, requirements, scene, strands
 from .images import ImageHeads
 from .leaves import material_slots, override_of
+from .listed import Listed, Rows, rows
 from .materials import Materials
 
 
@@ -29,10 +31,10 @@ def check(
     the current one, which `depsgraph` is of. `problems` are those known already."""
     recorder, heads = Recorder(), ImageHeads()
     shown = Shown(depsgraph, rendered_objects(rendered_layers(original, view_layer)))
+    evaluated = depsgraph.scene_eval
     override = override_of(depsgraph)
     glances = Glances(Materials(None, problems, frame=original.frame_current), override)
-    walk = scene.walked(shown, glances, problems, tick)
-    evaluated = shown.scene_eval
+    walk = scene.walked(depsgraph, glances, problems, tick, None, shown)
     scene.surroundings(recorder, evaluated, walk.found.lights, problems, heads)
     if walk.found.shown == 0:
         problems.add("", ERROR, "nothing_to_render", requirements.NOTHING)
@@ -60,6 +62,13 @@ class Recorder:
         return self._given
 
 
+class Glance:
+    """What takes a leaf's place."""
+
+    deforms = False
+    settled = True
+
+
 class Glances:
     """Stands where Leaves does: translates materials, looks at most at whether there are faces."""
 
@@ -71,7 +80,7 @@ class Glances:
     def leaf(self, shown: Any, *_: Any) -> Any | None:
         """As Leaves.leaf(): None when there is nothing to draw."""
         slots = material_slots(shown, self.override)
-        key = (shown.data.as_pointer(), tuple(m.as_pointer() if m else 0 for m in slots))
+        key = (shown.data, *slots)
         if key not in self._found:
             self._found[key] = self._look(shown, slots)
         return self._found[key]
@@ -89,7 +98,7 @@ class Glances:
     def _of_materials(self, shown: Any) -> Any:
         for material in material_slots(shown, self.override):
             self._materials.index(material)
-        return SimpleNamespace(object=None)
+        return Glance()
 
     def _look(self, shown: Any, slots: list[Any]) -> Any | None:
         if shown.type == "MESH" and not _has_faces(shown):
@@ -98,7 +107,7 @@ class Glances:
             return None
         for material in slots:
             self._materials.index(material)
-        return SimpleNamespace(object=None)
+        return Glance()
 
 
 def _has_faces(shown: Any) -> bool:
@@ -106,35 +115,41 @@ def _has_faces(shown: Any) -> bool:
     return len(shown.data.polygons) > 0 or shown.mode == "EDIT"
 
 
-class Shown:
-    """A viewport depsgraph as if it were that of a render."""
+class Shown(Listed):
+    """What a viewport's depsgraph lists as if it were that of a render."""
 
-    def __init__(self, depsgraph: Any, rendered: dict[int, Any]) -> None:
-        self._depsgraph = depsgraph
+    def __init__(self, depsgraph: Any, rendered: dict[Any, Any]) -> None:
+        """`rendered`: see rendered_objects()."""
+        super().__init__(depsgraph)
         self._rendered = rendered
+        self._stored: list[Any] = []  # transforms of what is added, by -1 - its number
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._depsgraph, name)
-
-    @property
-    def object_instances(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[tuple[int, Any]]:
         rendered, met = self._rendered, set()
-        for instance in self._depsgraph.object_instances:
+        for number, instance in super().__iter__():
             if instance.is_instance:
                 host = instance.parent.original
-                if host.as_pointer() not in rendered or self._hidden(instance, host):
+                if host not in rendered or self._hidden(instance, host):
                     continue
-                met.add(host.as_pointer())
+                met.add(host)
             else:
-                pointer = instance.object.original.as_pointer()
-                if pointer not in rendered:
+                original = instance.object.original
+                if original not in rendered:
                     continue
-                met.add(pointer)
-            yield instance
+                met.add(original)
+            yield number, instance
         seen: set[int] = set()
-        for pointer, item in rendered.items():
-            if pointer not in met:
-                yield from _as_stored(item, seen)
+        for original, item in rendered.items():
+            if original not in met:
+                for instance in _as_stored(item, seen):
+                    self._stored.append(instance.matrix_world)
+                    yield -len(self._stored), instance
+
+    def place(self, number: int) -> Rows | None:
+        if number >= 0:
+            return super().place(number)
+        place = rows(self._stored[-1 - number])
+        return place if math.isfinite(sum(place)) else None
 
     def _hidden(self, instance: Any, host: Any) -> bool:
         """Whether a member of an instanced collection is left out of renders."""
@@ -171,9 +186,9 @@ def rendered_layers(original: Any, view_layer: Any) -> list[Any]:
     return [view_layer] if original.render.use_single_layer or not chosen else chosen
 
 
-def rendered_objects(layers: list[Any]) -> dict[int, Any]:
-    """The view layers' own objects that a render shows, by pointer."""
-    found: dict[int, Any] = {}
+def rendered_objects(layers: list[Any]) -> dict[Any, Any]:
+    """The view layers' own objects that a render shows, by themselves, in order."""
+    found: dict[Any, Any] = {}
 
     def walk(layer: Any) -> None:
         if layer.collection.hide_render:
@@ -181,7 +196,7 @@ def rendered_objects(layers: list[Any]) -> dict[int, Any]:
         if not layer.exclude:
             for item in layer.collection.objects:
                 if not item.hide_render:
-                    found[item.as_pointer()] = item
+                    found[item] = item
         for child in layer.children:
             walk(child)
 

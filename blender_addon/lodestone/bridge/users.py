@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects show which material: noted on the way to the leaves, whoever makes them."""
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -16,45 +15,56 @@ class Users:
     def __init__(self, leaves: Any) -> None:
         self._leaves = leaves
         self._slots_of = partial(material_slots, override=leaves.override)
-        self._seen: set[tuple[int, int]] = set()
-        self._slots: dict[int, list[Subject]] = {}  # materials by leaf
-        self._found: dict[Subject, dict[Subject, None]] = {}
+        self._users: dict[Any, dict[Subject, None]] = {}  # by leaf
+        self._materials: dict[Any, list[Subject]] = {}  # by leaf
+        self._seen: set[Subject] = set()  # materials
 
-    def leaf(self, shown: Any, owner: Any, *how: Any) -> Any:
-        return self._noted(self._leaves.leaf(shown, owner, *how), shown, owner, self._worn)
-
-    def __getattr__(self, name: str) -> Callable[..., Any]:
-        """The other ways to a leaf, of what has no faces: all its materials are seen."""
-        give = getattr(self._leaves, name)
-        return lambda shown, owner, *how: self._noted(
-            give(shown, owner, *how), shown, owner, self._slots_of
-        )
-
-    def _noted(self, leaf: Any, shown: Any, owner: Any, worn: Callable[[Any], list]) -> Any:
-        if leaf is None:
-            return None
-        pair = (id(leaf), owner.original.as_pointer())
-        if pair not in self._seen:
-            self._seen.add(pair)
-            if id(leaf) not in self._slots:  # leaves live as long as their model
-                self._slots[id(leaf)] = [
-                    ids.key_of("material", material) for material in worn(shown) if material
-                ]
-            user = ids.key_of("object", owner)
-            for material in self._slots[id(leaf)]:
-                self._found.setdefault(material, {})[user] = None
+    def leaf(self, user: Subject, shown: Any, *how: Any) -> Any:
+        """As Leaves.leaf(), for an object."""
+        leaf = self._leaves.leaf(shown, *how)
+        if leaf is not None:
+            known = self._users.get(leaf)
+            if known is None:
+                known = self._met(leaf, _worn_by_faces(shown, self._slots_of(shown)))
+            known[user] = None
         return leaf
 
-    def _worn(self, shown: Any) -> list[Any]:
-        return _worn_by_faces(shown, self._slots_of(shown))
+    def users_of(self, leaf: Any) -> dict[Subject, None]:
+        """Of a leaf that was given out: to note one more."""
+        return self._users[leaf]
+
+    def hair(self, user: Subject, shown: Any, *how: Any) -> Any:
+        return self._noted(self._leaves.hair(shown, *how), user, shown)
+
+    def point(self, user: Subject, shown: Any, *how: Any) -> Any:
+        return self._noted(self._leaves.point(shown, *how), user, shown)
+
+    def _noted(self, leaf: Any, user: Subject, shown: Any) -> Any:
+        """Of what has no faces all materials are seen."""
+        if leaf is not None:
+            known = self._users.get(leaf)
+            if known is None:
+                known = self._met(leaf, self._slots_of(shown))
+            known[user] = None
+        return leaf
+
+    def _met(self, leaf: Any, worn: list[Any]) -> dict[Subject, None]:
+        subjects = [ids.key_of("material", material) for material in worn if material]
+        self._materials[leaf] = subjects
+        self._seen.update(subjects)
+        return self._users.setdefault(leaf, {})
 
     def found(self) -> dict[Subject, tuple[Subject, ...]]:
         """The objects of every material that a face of them wears."""
-        return {material: tuple(users) for material, users in self._found.items()}
+        found: dict[Subject, dict[Subject, None]] = {}
+        for leaf, users in self._users.items():
+            for material in self._materials[leaf]:
+                found.setdefault(material, {}).update(users)
+        return {material: tuple(users) for material, users in found.items()}
 
     def concerns(self, problem: Problem) -> bool:
         """False for a material that no face wears: whatever is wrong with it, nobody sees it."""
-        return problem.kind != "material" or problem.subject in self._found
+        return problem.kind != "material" or problem.subject in self._seen
 
 
 def _worn_by_faces(shown: Any, slots: list[Any]) -> list[Any]:

@@ -30,6 +30,11 @@ class Visibility:
             "holdout_get": any(layer.holdout for layer in layers),
         }
 
+    @property
+    def by_layer(self) -> bool:
+        """Whether collections of the view layer hide any of its objects from some rays."""
+        return any(self._any.values())
+
     def hidden(self, item: Any, in_scene: bool) -> int:
         """The ray classes that do not see it. `in_scene`: it is an object of the scene itself, not
         of a collection that is instanced (only then does its place in the view layer count)."""

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Placements: what a group places, in columns as the backend takes them."""
+
+from array import array
+from typing import Any
+
+from .listed import Rows
+
+
+class Placements:
+    """Children of one group in the making, in order."""
+
+    def __init__(self) -> None:
+        self.objects: list[Any] = []  # lodestone_native.Object
+        self.transforms = array("f")  # 12 each, as Rows
+        self.names: list[str] = []
+        self.hidden: list[int] = []  # bits of the ray classes that do not see it
+
+    def __len__(self) -> int:
+        return len(self.objects)
+
+    def add(self, item: Any, place: Rows, name: str, hidden: int = 0) -> None:
+        self.objects.append(item)
+        self.transforms.extend(place)
+        self.names.append(name)
+        self.hidden.append(hidden)
+
+    def extend(self, others: "Placements") -> None:
+        self.objects += others.objects
+        self.transforms += others.transforms
+        self.names += others.names
+        self.hidden += others.hidden
+
+    @property
+    def key(self) -> tuple:
+        """Equal for placements that are equal in everything."""
+        objects = b"".join(map(bytes, self.objects))
+        return (objects, self.transforms.tobytes(), tuple(self.names), tuple(self.hidden))
