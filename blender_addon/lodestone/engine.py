@@ -15,6 +15,7 @@ import bpy
 
 from . import preferences
 from .bridge import camera, ignored, picture, poses, requirements, scene
+from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import last_check, last_render, motion_file, progress, store_path
 from .core.native import lodestone_native as native
@@ -49,6 +50,7 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
     def update(self, data, depsgraph):
         self.lodestone_blend = data.filepath  # bpy.data is out of bounds inside render()
         self.lodestone_libraries = Problems()
+        requirements.names(data, self.lodestone_libraries)
         requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
     def render(self, depsgraph):
@@ -100,6 +102,7 @@ class _Run:
         self._shown = ""
 
     def render(self):
+        layer = picture.layer_of(self.depsgraph)
         self._required()
         still = motion_file.read(self.store)
         if self.settings.pixel_error > 0.0:
@@ -116,7 +119,7 @@ class _Run:
             triangles = progress.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
             view = camera.extract(camera_object, frame, self.problems)
-            camera.report_render(self.scene.render, self.scene.name, self.problems)
+            camera.report_render(self.scene.render, name_of(self.scene), self.problems)
             size = (frame.width, frame.height)
             left, bottom, *part = picture.border(self.scene.render, *size)
             border = (left, size[1] - bottom - part[1], *part)
@@ -126,13 +129,12 @@ class _Run:
         self._remember(totals, made)
         left, top, *part = self.settings.border
         part = picture.cropped(image, left, size[1] - top - part[1], *part)
-        name = self.depsgraph.view_layer_eval.name
-        picture.hand_over(self.engine, name, part, self.settings.stamp())
+        picture.hand_over(self.engine, layer, part, self.settings.stamp())
         self._report()
 
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""
-        key = (self.scene.name, self.depsgraph.view_layer_eval.name)
+        key = (name_of(self.scene), name_of(self.depsgraph.view_layer_eval))
         if key not in _poses:
             _poses[key] = poses.read(self.depsgraph, self.engine.frame_set, still, self._tick)
             self.scene = self.depsgraph.scene_eval
@@ -208,7 +210,7 @@ class _Run:
     def _remember(self, totals, made):
         cut = made.parts["cut"]
         last_render.put(
-            self.scene.name,
+            name_of(self.scene),
             last_render.LastRender(
                 totals.triangles_placed,
                 cut["triangles"],
@@ -222,7 +224,7 @@ class _Run:
 
     def _remember_check(self):
         """What was found, with what this frame's other view layers had."""
-        frame = (self.scene.name, self.scene.frame_current)
+        frame = (name_of(self.scene), self.scene.frame_current)
         before, problems, users = getattr(self.engine, "lodestone_found", (None, (), {}))
         every = Problems()
         if before == frame:
@@ -234,7 +236,7 @@ class _Run:
         every.extend(self.problems)
         found = tuple(every)
         self.engine.lodestone_found = (frame, found, self.users)
-        last_check.put(self.scene.name, last_check.Check(found, self.users))
+        last_check.put(name_of(self.scene), last_check.Check(found, self.users))
 
     def fail(self, code, text):
         """No picture: the reason is reported and stays in the panel."""

@@ -9,6 +9,7 @@ import traceback
 import bpy
 
 from .bridge import camera, check, poses, scene
+from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .core.native import lodestone_native as native
 from .core.text import sentence, valid
@@ -61,7 +62,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             try:
                 for name, size in request.cameras:
                     if not name and request.without_camera:
-                        raise CameraMissing(NO_CAMERA.format(depsgraph.scene_eval.name))
+                        raise CameraMissing(NO_CAMERA.format(name_of(depsgraph.scene_eval)))
                     request.frames.append(_frame(depsgraph, name, size, extraction.problems))
                 if request.compare:
                     request.differences = check.compare_occurrences(depsgraph, extraction)
@@ -86,15 +87,15 @@ def _frame(depsgraph, name, size, problems):
     evaluated = depsgraph.scene_eval
     found = evaluated.camera
     if name:  # not by get(), which crashes Blender over a name that is no UTF-8
-        found = next((item for item in evaluated.objects if item.name == name), None)
+        found = next((item for item in evaluated.objects if name_of(item) == name), None)
     if found is None or found.type != "CAMERA":
         if name:
-            raise CameraMissing(f'Scene "{evaluated.name}" has no camera "{valid(name)}"')
-        raise CameraMissing(NO_CAMERA.format(evaluated.name))
+            raise CameraMissing(f'Scene "{name_of(evaluated)}" has no camera "{valid(name)}"')
+        raise CameraMissing(NO_CAMERA.format(name_of(evaluated)))
     frame = camera.Frame.of(evaluated.render)
     if size is not None:
         frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
-    camera.report_render(evaluated.render, evaluated.name, problems)
+    camera.report_render(evaluated.render, name_of(evaluated), problems)
     found = found.evaluated_get(depsgraph)
     return camera.extract(found, frame, problems), (frame.width, frame.height)
 

@@ -190,21 +190,96 @@ class OtherNames(unittest.TestCase):
         scenes.cube("Cube.ABCDEFGH", size=3.0)
         scenes.sun()
 
-    def test_a_name_that_is_no_text_is_told_instead_of_a_traceback(self):
+    def dressed(self):
+        """Makes whatever has a name that a picture may hang on."""
+        cube = bpy.data.objects["Cube.ABCDEFGH"]
+        mesh = cube.data
+        uvs = mesh.uv_layers.new(name="First")
+        uvs.data.foreach_set("uv", [0.75, 0.5] * len(mesh.loops))
+        uvs = mesh.uv_layers.new(name="Map.ABCDEFGH")
+        uvs.data.foreach_set("uv", [0.25, 0.5] * len(mesh.loops))
+        layer = mesh.color_attributes.new("Dye.ABCDEFGH", "FLOAT_COLOR", "CORNER")
+        layer.data.foreach_set("color", [0.2, 0.9, 0.4, 1.0] * len(mesh.loops))
+        made = scenes.material("Clay.ABCDEFGH", (0.5, 0.5, 0.5))
+        tree = made.node_tree
+        texture, uv = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
+        dye, mix = tree.nodes.new("ShaderNodeVertexColor"), tree.nodes.new("ShaderNodeMixRGB")
+        (self.folder / "picture.in.png").write_bytes(png((220, 20, 30), (30, 40, 200)))
+        texture.image = bpy.data.images.load(str(self.folder / "picture.in.png"))
+        texture.image.pack()
+        uv.uv_map, dye.layer_name, mix.blend_type = uvs.name, layer.name, "MULTIPLY"
+        for number, node in enumerate(tree.nodes):
+            node.name = f"{number}.ABCDEFGH"
+        tree.links.new(uv.outputs[0], texture.inputs[0])
+        mix.inputs[0].default_value = 1.0
+        tree.links.new(texture.outputs[0], mix.inputs[1])
+        tree.links.new(dye.outputs[0], mix.inputs[2])
+        shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+        tree.links.new(mix.outputs[0], shader.inputs["Base Color"])
+        mesh.materials.append(made)
+        holder = scenes.collection("Things.ABCDEFGH", self.scene.collection)
+        twin = scenes.cube("Twin.ABCDEFGH", (1.5, 0.0, 1.0), data=mesh, collection=holder)
+        twin.modifiers.new("Triangles", "TRIANGULATE")
+        instance = scenes.link(bpy.data.objects.new("Copy.ABCDEFGH", None))
+        instance.instance_type, instance.instance_collection = "COLLECTION", holder
+        instance.location = (-3.0, 0.0, 0.0)
+        self.scene.world = bpy.data.worlds.new("World.ABCDEFGH")
+        for things in (bpy.data.images, bpy.data.lights, bpy.data.cameras, bpy.data.objects):
+            for number, thing in enumerate(things):
+                if not thing.name.endswith("ABCDEFGH"):
+                    thing.name = f"{number}.ABCDEFGH"
+        self.scene.view_layers[0].name = "Layer.ABCDEFGH"
+
+    def rendered(self):
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(str(self.folder / "picture.png"))
+        pixels = list(image.pixels)
+        bpy.data.images.remove(image)
+        (self.folder / "picture.png").unlink()
+        return pixels
+
+    def test_a_picture_does_not_depend_on_names_that_are_no_text(self):
+        from lodestone.core import last_check
+
+        self.dressed()
         path = self.folder / "damaged.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=False)
-        path.write_bytes(
-            path.read_bytes().replace(b"OBCube.ABCDEFGH", b"OBCube.caf\xe9\xff\xed\xa0\x80")
-        )
+        expected = self.rendered()
+        self.assertGreater(len({tuple(expected[i : i + 3]) for i in range(0, 256, 4)}), 3)
+        data = path.read_bytes()
+        self.assertGreater(data.count(b".ABCDEFGH"), 20)
+        path.write_bytes(data.replace(b".ABCDEFGH", b".caf\xe9\xff\xed\xa0\x80"))
         bpy.ops.wm.open_mainfile(filepath=str(path))
         with self.assertRaises(UnicodeDecodeError):
             [item.name for item in bpy.data.objects]
+        bpy.ops.lodestone.check_scene()
+        checked = [problem.message for problem in last_check.get("Scene").problems]
+        self.assertTrue(self.rendered() == expected)
+        found = [problem.message for problem in last_check.get("Scene").problems]
+        self.assertEqual(sorted(checked), sorted(found))
+        self.assertIn(
+            r'"Cube.caf\xe9\xff\xed\xa0\x80" has a name that is not valid text (UTF-8) in the file',
+            found,
+        )
+        bpy.context.scene.lodestone.pixel_error_render = 1.0
+        bpy.ops.lodestone.update_levels()
+        self.assertTrue((self.folder / "lodestone" / "damaged").is_dir())
+        self.rendered()
+
+    def test_a_scene_whose_name_is_no_text_is_told_instead_of_a_traceback(self):
+        self.scene.name = "Scene.ABCDEFGH"
+        scenes.cube("Cube", size=3.0)
+        self.scene.view_layers.new("Layer.ABCDEFGH")
+        path = self.folder / "damaged.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=False)
+        data = path.read_bytes()
+        path.write_bytes(data.replace(b".ABCDEFGH", b".caf\xe9\xff\xed\xa0\x80"))
+        bpy.ops.wm.open_mainfile(filepath=str(path))
         for work in (
             lambda: bpy.ops.render.render(write_still=True),
-            bpy.ops.lodestone.check_scene,
             bpy.ops.lodestone.update_levels,
         ):
-            with self.assertRaisesRegex(RuntimeError, r'"Cube.caf\\xe9\\xff.*rename'):
+            with self.assertRaisesRegex(RuntimeError, r"caf\\xe9\\xff.*rename"):
                 work()
         self.assertFalse((self.folder / "picture.png").exists())
 

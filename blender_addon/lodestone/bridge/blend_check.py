@@ -7,8 +7,9 @@ from typing import Any
 
 import bpy
 
-from ..core.problems import ERROR, INFO, Problems
-from ..core.text import readable
+from ..core.problems import ERROR, Problems
+from . import requirements
+from .ids import name_of
 
 
 def check_file(problems: Problems, scripts_ran: bool) -> None:
@@ -16,8 +17,8 @@ def check_file(problems: Problems, scripts_ran: bool) -> None:
     for library in bpy.data.libraries:
         path = bpy.path.abspath(library.filepath, library=library.library)
         if not os.path.exists(path):
-            text = f'Library "{library.name}" is missing ({path}): what it holds is left out'
-            problems.add(library.name, ERROR, "library_missing", text)
+            text = f'Library "{name_of(library)}" is missing ({path}): what it holds is left out'
+            problems.add(name_of(library), ERROR, "library_missing", text)
     written = tuple(bpy.data.version[:2])
     if written > tuple(bpy.app.version[:2]):
         text = (
@@ -26,7 +27,7 @@ def check_file(problems: Problems, scripts_ran: bool) -> None:
         )
         problems.add("", ERROR, "newer_blender", text)
     if not scripts_ran:
-        for owner in sorted({owner.name for owner in _owners_of_scripts()}):
+        for owner in sorted({name_of(owner) for owner in _owners_of_scripts()}):
             text = (
                 f'A driver of "{owner}" is Python and was not run: what it drives stays as it was '
                 "saved (--trust-scripts runs it)"
@@ -37,24 +38,14 @@ def check_file(problems: Problems, scripts_ran: bool) -> None:
 def repair_names(problems: Problems) -> None:
     """Gives what is called by bytes that are no UTF-8 a name that Blender can tell. Only for a file
     that is not saved afterwards."""
-    for item in list(_datablocks()):  # renaming sorts them anew
-        try:
-            item.name
-        except UnicodeDecodeError as error:
-            item.name = readable(error.object)
-            text = f'"{item.name}" has a name that is not valid text (UTF-8) in the file'
-            problems.add(item.name, INFO, "unreadable_name", text)
-
-
-def _datablocks() -> Iterator[Any]:
-    for value in bpy.data.bl_rna.properties:
-        if value.type == "COLLECTION":
-            yield from getattr(bpy.data, value.identifier)
+    for item in list(requirements.unreadable(bpy.data)):  # renaming sorts them anew
+        item.name = name_of(item)
+        requirements.name_unreadable(item, problems)
 
 
 def _owners_of_scripts() -> Iterator[Any]:
     """Datablocks with drivers that Blender runs as Python: it works out simple ones itself."""
-    for item in _datablocks():
+    for item in requirements.datablocks(bpy.data):
         for owner in (
             item,
             getattr(item, "node_tree", None),

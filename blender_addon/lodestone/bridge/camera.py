@@ -8,6 +8,7 @@ from mathutils import Vector
 
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
+from .ids import name_of
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,8 @@ def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
     """Of an evaluated camera object."""
     data = camera.data
     if data.type == "PANO":
-        text = f'Camera "{camera.name}" is panoramic; it is drawn as a perspective camera'
-        problems.add(camera.name, WARNING, "camera_panoramic", text)
+        text = f'Camera "{name_of(camera)}" is panoramic; it is drawn as a perspective camera'
+        problems.add(name_of(camera), WARNING, "camera_panoramic", text)
     focus_distance, aperture = depth_of_field(camera, problems)
     matrix = camera.matrix_world.normalized()
     turn, place = matrix.to_3x3(), matrix.translation
@@ -69,7 +70,7 @@ def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
         position = place
         direction = turn @ Vector((center_x, center_y, -1.0))
     return native.Camera(
-        name=camera.name,
+        name=name_of(camera),
         orthographic=orthographic,
         position=tuple(position),
         direction=tuple(direction),
@@ -96,8 +97,8 @@ def depth_of_field(camera: Any, problems: Problems) -> tuple[float, float]:
     stop = max(dof.aperture_fstop, 1e-5)
     lens = 1.0 if data.type == "ORTHO" else data.lens * 1e-3
     if dof.aperture_blades > 2 or dof.aperture_ratio != 1.0:
-        text = f'Blades of the lens of camera "{camera.name}" are left out: its blur is round'
-        problems.add(camera.name, INFO, "lens_blades", text)
+        text = f'Blades of the lens of camera "{name_of(camera)}" are left out: its blur is round'
+        problems.add(name_of(camera), INFO, "lens_blades", text)
     return (max(distance, 1e-5), lens / stop)
 
 

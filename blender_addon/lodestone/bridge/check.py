@@ -6,6 +6,7 @@ from typing import Any
 
 from mathutils import Matrix
 
+from .ids import name_of
 from .leaves import DRAWN, material_slots, override_of, undrawn
 from .scene import Extraction
 
@@ -29,19 +30,19 @@ def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
         shown = instance.object
         if shown.type not in DRAWN or undrawn(shown):
             continue
-        names = tuple(m.name if m else "" for m in material_slots(shown, override))
+        names = tuple(name_of(m) if m else "" for m in material_slots(shown, override))
         matrix = instance.matrix_world
         if instance.show_particles and shown.type == "MESH":
             hairs = _hairs(shown)
             if hairs:
-                found[(f"{shown.name} hair", names, hairs)].append(_rows(matrix))
+                found[(f"{name_of(shown)} hair", names, hairs)].append(_rows(matrix))
         if not instance.show_self:
             continue
         if shown.type == "POINTCLOUD":
             for point in shown.data.points:
                 if point.radius > 0.0:
                     place = matrix @ Matrix.Translation(point.co) @ Matrix.Scale(point.radius, 4)
-                    found[(f"{shown.data.name} point", names, 1)].append(_rows(place))
+                    found[(f"{name_of(shown.data)} point", names, 1)].append(_rows(place))
             continue
         size = 0
         if shown.type == "CURVES":
@@ -52,7 +53,7 @@ def shown_instances(depsgraph: Any) -> dict[Key, list[tuple[float, ...]]]:
                 triangles[pointer] = sum(len(p.vertices) - 2 for p in shown.data.polygons)
             size = triangles[pointer]
         if size:
-            found[(shown.data.name, names, size)].append(_rows(matrix))
+            found[(name_of(shown.data), names, size)].append(_rows(matrix))
     return found
 
 
@@ -62,7 +63,9 @@ def _hairs(shown: Any) -> int:
     for system in shown.particle_systems:
         settings = system.settings
         rendered = any(
-            m.type == "PARTICLE_SYSTEM" and m.show_render and m.particle_system.name == system.name
+            m.type == "PARTICLE_SYSTEM"
+            and m.show_render
+            and name_of(m.particle_system) == name_of(system)
             for m in shown.modifiers
         )
         if rendered and settings.type == "HAIR" and settings.render_type == "PATH":

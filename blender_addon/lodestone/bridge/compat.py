@@ -8,6 +8,8 @@ from typing import Any
 
 import bpy
 
+from .ids import called
+
 _ZERO = {code: array(code, [0]) for code in "bfiI"}
 
 
@@ -75,7 +77,7 @@ def color_attribute(mesh: Any, name: str) -> Any | None:
     """The color attribute of that name, else, for "", the one active for rendering."""
     attributes = mesh.color_attributes
     if name:
-        found = attributes.get(name)
+        found = called(attributes, name)
     else:
         index = getattr(attributes, "render_color_index", 0)
         found = attributes[index] if 0 <= index < len(attributes) else None

@@ -9,6 +9,7 @@ from mathutils import Euler, Matrix, Vector
 
 from ..core.native import lodestone_native as native
 from . import graph
+from .ids import name_of
 
 Rows = tuple[float, ...]
 Projection = native.Projection
@@ -97,7 +98,7 @@ def _source(node: Any, output: Any) -> Coordinates:
     name = output.name
     if node.type == "UVMAP":
         _not_of_instancer(node)
-        return Coordinates(name=node.uv_map)
+        return Coordinates(name=name_of(node, "uv_map"))
     if node.type == "TEX_COORD":
         if name == "UV":
             _not_of_instancer(node)
@@ -108,11 +109,11 @@ def _source(node: Any, output: Any) -> Coordinates:
         if name == "Object":
             if node.object is None:
                 return Coordinates("OBJECT")
-            return Coordinates("FRAME", node.object.name, node.object)
+            return Coordinates("FRAME", name_of(node.object), node.object)
     if node.type == "NEW_GEOMETRY" and name == "Position":
         return Coordinates("FRAME")
     if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and name != "Alpha":
-        return Coordinates(name=node.attribute_name)
+        return Coordinates(name=name_of(node, "attribute_name"))
     label = f"{name} coordinates" if node.type == "TEX_COORD" else node.bl_label
     raise Unknown(label)
 

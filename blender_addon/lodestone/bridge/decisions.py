@@ -8,6 +8,7 @@ import bpy
 
 from ..core import identity
 from . import ids
+from .ids import name_of
 
 _INHERITED = {"rna_type", "name"}
 
@@ -29,7 +30,7 @@ def reachable(collections: Iterable[Any], objects: Iterable[Any]) -> list[Thing]
             waiting += [("object", member) for member in item.objects]
         elif item.instance_type == "COLLECTION" and item.instance_collection is not None:
             waiting.append(("collection", item.instance_collection))
-    return sorted(found.values(), key=lambda thing: (thing[0], thing[1].name_full))
+    return sorted(found.values(), key=lambda thing: (thing[0], name_of(thing[1], "name_full")))
 
 
 def scope_keys(context: Any, scope: str) -> list[ids.Key] | None:
@@ -66,7 +67,8 @@ def issue_uids(things: Iterable[Thing]) -> list[tuple[Any, str]]:
     ]
     before = [ids.stored_uid(item) for _, item in local]
     described = [
-        (kind, "", item.name, stored, decided(item)) for (kind, item), stored in zip(local, before)
+        (kind, "", name_of(item), stored, decided(item))
+        for (kind, item), stored in zip(local, before)
     ]
     uids = identity.assign_uids(described, filter(None, others))
     changed = []

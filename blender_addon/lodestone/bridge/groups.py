@@ -9,6 +9,7 @@ from typing import Any
 
 from ..core import identity
 from . import ids
+from .ids import name_of
 from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
 from .listed import Rows, rows
@@ -41,7 +42,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
     def branch(layer: Any, inherited: bool) -> Branch:
         collection = layer.collection
         environment = inherited or roles.is_environment(collection)
-        made = Branch(collection, collection.name, environment)
+        made = Branch(collection, name_of(collection), environment)
         for child in layer.children:
             if child.collection.hide_render:
                 continue
@@ -54,7 +55,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
         return made
 
     root = branch(view_layer.layer_collection, False)
-    root.collection, root.name = None, scene.name
+    root.collection, root.name = None, name_of(scene)
     return root
 
 
@@ -64,7 +65,7 @@ def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
 
     def branch(item: Any, inherited: bool) -> Branch:
         environment = inherited or roles.is_environment(item)
-        made = Branch(item, item.name, environment)
+        made = Branch(item, name_of(item), environment)
         for child in item.children:
             if not child.hide_render and _claim(claimed, child):
                 made.children.append(branch(child, environment))

@@ -7,9 +7,25 @@ import bpy
 
 from ..core import identity
 from ..core.native import lodestone_native as native
+from ..core.text import readable
 
 
 _STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # what add-ons store, among custom properties
+
+
+def name_of(thing: Any, field: str = "name") -> str:
+    """What Blender calls something, or another text of it, made readable where it is no text:
+    damaged and very old files hold any bytes. Never look such things up by get(), keys() or
+    repr(): these leave an error behind that takes Blender down."""
+    try:
+        return getattr(thing, field)
+    except UnicodeDecodeError as error:
+        return readable(error.object)
+
+
+def called(things: Any, name: str) -> Any | None:
+    """The first of them with that name, as name_of() gives it."""
+    return next((thing for thing in things if name_of(thing) == name), None)
 
 
 def library_of(datablock: Any) -> str:
@@ -21,7 +37,7 @@ Key = tuple[str, str, str]  # "object" or "collection", library, name
 
 
 def key_of(kind: str, datablock: Any) -> Key:
-    return (kind, library_of(datablock), datablock.name)
+    return (kind, library_of(datablock), name_of(datablock))
 
 
 def settings_of(datablock: Any) -> Any | None:
@@ -51,7 +67,7 @@ def uid_of(kind: str, datablock: Any) -> str:
     stored = stored_uid(datablock)
     if identity.is_uid(stored):
         return stored
-    return identity.named_id(kind, library_of(datablock), datablock.name)
+    return identity.named_id(kind, library_of(datablock), name_of(datablock))
 
 
 def scene_uid(name: str) -> str:
@@ -62,7 +78,7 @@ def named_id_of(material: Any | None) -> str:
     """A material's id by library and name; "" for an empty slot."""
     if material is None:
         return ""
-    return identity.named_id("material", library_of(material), material.name)
+    return identity.named_id("material", library_of(material), name_of(material))
 
 
 def is_environment(datablock: Any) -> bool:

@@ -11,6 +11,7 @@ from typing import Any
 import bpy
 
 from ..core.problems import ERROR, WARNING
+from .ids import name_of
 
 FILE, PACKED, PIXELS, MISSING = "file", "packed", "pixels", "missing"
 Note = Callable[[str, str, str], None]  # severity, code, words
@@ -47,14 +48,18 @@ def source_of(image: Any, user: Any, frame: int, note: Note) -> Source:
     """Of an image as an image user (or None) shows it at a frame."""
     space = image.colorspace_settings.name
     if space and space not in _DISPLAY and space not in _LINEAR:  # "": of a broken image
-        note(WARNING, "color_space", f'color space {space} of image "{image.name}" counts as sRGB')
+        note(
+            WARNING,
+            "color_space",
+            f'color space {space} of image "{name_of(image)}" counts as sRGB',
+        )
     kind, path, head = _place(image, user, frame, note)
     alpha_mode = image.alpha_mode
     exr = head.startswith(b"\x76\x2f\x31\x01")
     if exr and space in _DISPLAY:
         kind = PIXELS  # Blender decodes it twice: its own pixels tell how
     return Source(
-        name=image.name,
+        name=name_of(image),
         kind=kind,
         key=image.as_pointer(),
         path=path if kind == FILE else "",
@@ -70,7 +75,7 @@ def source_of(image: Any, user: Any, frame: int, note: Note) -> Source:
 
 def _place(image: Any, user: Any, frame: int, note: Note) -> tuple[str, str, bytes]:
     """Kind, path, and the first bytes ("" where only Blender can tell)."""
-    name, origin = image.name, image.source
+    name, origin = name_of(image), image.source
     if origin == "VIEWER":
         note(ERROR, "image_missing", f'image "{name}" exists only while Blender renders')
         return MISSING, "", b""

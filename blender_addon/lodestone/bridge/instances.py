@@ -16,6 +16,7 @@ from mathutils import Matrix
 
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
+from .ids import name_of
 from .leaves import DRAWN, MATERIAL, Leaf, Look, undrawn
 from .listed import Listed, Rows, rows
 from .motion import Motion
@@ -122,9 +123,9 @@ class Instances:
         """What most instances are, on the shortest way. It has no entry yet: what instances
         others is not plain."""
         if place is None:
-            return self._name_bad_place(shown.name)
+            return self._name_bad_place(name_of(shown))
         original, data = shown.original, shown.data
-        key = ("object", "", shown.name)
+        key = ("object", "", name_of(shown))
         marked = original in self.scene.environment
         if data in self._one_slot:  # then everybody who shows them has one: no list is made
             made_of = (data, marked, shown.active_material)
@@ -151,16 +152,16 @@ class Instances:
         shown = instance.object
         kind = shown.type
         if kind == "LIGHT":
-            self.lights.append((shown.data, instance.matrix_world.copy(), shown.name))
+            self.lights.append((shown.data, instance.matrix_world.copy(), name_of(shown)))
             return
         what = undrawn(shown)
         if what is not None:
-            text = f'Object "{shown.name}" is left out: {what} cannot be drawn'
-            self._problems.add(shown.name, ERROR, "object_kind", text)
+            text = f'Object "{name_of(shown)}" is left out: {what} cannot be drawn'
+            self._problems.add(name_of(shown), ERROR, "object_kind", text)
         if what is not None or kind not in DRAWN:
             return
         if place is None:
-            return self._name_bad_place(shown.name)
+            return self._name_bad_place(name_of(shown))
         # While anybody in Python knows an evaluated object, its instances are handed out as that
         # object itself, in its own color: it is asked of what instances it.
         self._host = None

@@ -9,6 +9,7 @@ from ..core import identity
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, Problems
 from . import ids, mesh, mesh_uvs, strands
+from .ids import name_of
 from .materials import Materials
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
@@ -153,11 +154,11 @@ class Leaves:
             if error.status != native.Status.INVALID_ARGUMENT:
                 raise
             return self._unreadable(owner, error)  # a file may hold faces of what is not there
-        return Leaf(item, uid, shown.data.name, _names(slots), size, look.deforms)
+        return Leaf(item, uid, name_of(shown.data), _names(slots), size, look.deforms)
 
     def _unreadable(self, owner: Any, error: Exception) -> None:
-        text = f'Object "{owner.name}" cannot be read and is left out: {error}'
-        self._problems.add(owner.name, ERROR, "mesh_unreadable", text)
+        text = f'Object "{name_of(owner)}" cannot be read and is left out: {error}'
+        self._problems.add(name_of(owner), ERROR, "mesh_unreadable", text)
 
     def _add_hair(
         self, shown: Any, owner: Any, slots: list, color: Color | None, look: Look
@@ -168,9 +169,9 @@ class Leaves:
         if buffers is None:
             return None
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
-        name, role = f"{owner.name} {HAIR}", ids.role(look.environment)
+        name, role = f"{name_of(owner)} {HAIR}", ids.role(look.environment)
         item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
-        name = f"{shown.name} {HAIR}"
+        name = f"{name_of(shown)} {HAIR}"
         return Leaf(item, uid, name, _names(slots), len(buffers.counts), look.deforms)
 
     def _add_point(
@@ -179,9 +180,9 @@ class Leaves:
         # A point shows its first material only
         indices = self._indices(slots[:1], color, look)
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), POINT), color, look)
-        name, role = f"{owner.name} {POINT}", ids.role(look.environment)
+        name, role = f"{name_of(owner)} {POINT}", ids.role(look.environment)
         item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
-        return Leaf(item, uid, f"{shown.data.name} {POINT}", _names(slots), 1)
+        return Leaf(item, uid, f"{name_of(shown.data)} {POINT}", _names(slots), 1)
 
     # ---- Materials ----
 
@@ -211,19 +212,19 @@ class Leaves:
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:
         """Its uid and name: a shared mesh's own, else those of the object that shows it."""
         if shown.type != "MESH" or owner.type != "MESH":
-            return ids.uid_of("object", owner), owner.name
+            return ids.uid_of("object", owner), name_of(owner)
         if shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes
-            base = identity.stable_id(ids.uid_of("object", owner), "nodes", shown.data.name)
-            return base, f"{owner.name}: {shown.data.name}"
+            base = identity.stable_id(ids.uid_of("object", owner), "nodes", name_of(shown.data))
+            return base, f"{name_of(owner)}: {name_of(shown.data)}"
         if owner.is_modified(self._scene, "RENDER"):
-            return ids.uid_of("object", owner), owner.name
+            return ids.uid_of("object", owner), name_of(owner)
         base = ids.uid_of("mesh", shown.data)
         if slots != list(shown.data.materials):
             own = [ids.named_id_of(m) for m in shown.data.materials]
             linked = [ids.named_id_of(m) for m in slots]
             if own != linked:  # materials linked to the object
                 base = identity.stable_id(base, *linked)
-        return base, shown.data.name
+        return base, name_of(shown.data)
 
 
 def material_slots(shown: Any, override: Any = None) -> list[Any]:
@@ -243,4 +244,4 @@ def override_of(depsgraph: Any) -> Any | None:
 
 
 def _names(slots: list) -> tuple[str, ...]:
-    return tuple(material.name if material else "" for material in slots)
+    return tuple(name_of(material) if material else "" for material in slots)

@@ -14,6 +14,7 @@ from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
 from . import graph, ids, looks
 from .coordinates import Coordinates
+from .ids import name_of
 from .looks import DEFAULT, Look, Value, VertexColors, gray
 from .node_expressions import NodeExpressions, Setting, mean_of
 from .pictures import NoPictures, Pictures
@@ -55,7 +56,7 @@ class Materials:
         key = self._key(material, color)
         if key not in self._indices:
             look = self.look(material, color)
-            name = "" if material is None else material.name
+            name = "" if material is None else name_of(material)
             if self._model is None:
                 self._indices[key] = len(self._indices)
             else:
@@ -114,7 +115,7 @@ class _Translator:
         self.values = NodeExpressions(pictures, self.note, setting)
 
     def note(self, severity: str, code: str, text: str) -> None:
-        name = self.material.name
+        name = name_of(self.material)
         text = f'Material "{name}": {text}'
         self.problems.add(name, severity, code, text, library=ids.library_of(self.material))
 

@@ -11,6 +11,7 @@ from mathutils import Matrix
 from . import compat
 from ..core.native import lodestone_native as native
 from .coordinates import Coordinates
+from .ids import called
 
 
 def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates | None]) -> array:
@@ -60,7 +61,7 @@ def corners_of_slots(mesh: Any, wanted: Sequence[Any], kind: Any) -> Iterator[tu
 
 def _layer(mesh: Any, name: str) -> Any | None:
     if name:
-        return mesh.uv_layers.get(name)
+        return called(mesh.uv_layers, name)
     return next((layer for layer in mesh.uv_layers if layer.active_render), None)
 
 

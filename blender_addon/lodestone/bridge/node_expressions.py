@@ -16,6 +16,7 @@ from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING
 from . import graph, node_tables
 from .coordinates import Coordinates, Unknown, of_image_node
+from .ids import name_of
 from .image_sources import MISSING, Source, missing, source_of
 
 Note = Callable[[str, str, str], None]  # severity, code, words
@@ -165,17 +166,18 @@ class NodeExpressions:
         return own_value(node.outputs[0])
 
     def _vertex_color(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression:
-        leaf = VertexColor(node.layer_name)
+        leaf = VertexColor(name_of(node, "layer_name"))
         return e.alpha(leaf) if output.name == "Alpha" else e.texel(leaf)
 
     def _attribute(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression | None:
+        name = name_of(node, "attribute_name")
         if node.attribute_type == "GEOMETRY":
-            leaf = VertexColor(node.attribute_name)
+            leaf = VertexColor(name)
             value = e.alpha(leaf) if output.name == "Alpha" else e.texel(leaf)
             return e.luma(value) if output.name == "Fac" else value
-        if node.attribute_name == "color" and output.name in {"Color", "Vector", "Alpha"}:
+        if name == "color" and output.name in {"Color", "Vector", "Alpha"}:
             return self._object_color(output.name == "Alpha")
-        text = f'attribute "{node.attribute_name}" of the {node.attribute_type.lower()} is left out'
+        text = f'attribute "{name}" of the {node.attribute_type.lower()} is left out'
         self._note(WARNING, "attribute", text)
         return e.number(0.0, False)
 

@@ -40,6 +40,17 @@ def _pixel(share: float, size: int) -> int:
     return int(struct.unpack("f", struct.pack("f", share * size))[0])
 
 
+def layer_of(depsgraph: Any) -> str:
+    """What hand_over() calls the view layer. Raises UnicodeDecodeError for a name that is no text
+    where there are others: results go to layers by their names."""
+    try:
+        return depsgraph.view_layer_eval.name
+    except UnicodeDecodeError:
+        if len(depsgraph.scene.view_layers) > 1:
+            raise
+        return ""  # the only one
+
+
 def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str]) -> None:
     """Into the layer's combined pass; other passes stay empty. The result's corner is that of the
     border. `stamp` becomes text in the saved file. An exception between begin and end would take

@@ -11,6 +11,7 @@ from typing import Any
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
 from . import ids, scene
+from .ids import name_of
 from .leaves import DRAWN, Leaf, Leaves, Look, override_of
 from .motion import Motion, frames_to_sample
 from .settings import SceneSettings
@@ -82,7 +83,7 @@ def _fill(
     problems, uids = Problems(), ids.Uids()  # of the frames that are drawn they are told anyway
     leaves = _DeformingLeaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
     scene.walked(depsgraph, leaves, problems, tick, Motion(still))
-    root = model.add_group(uids.claim(ids.scene_uid(depsgraph.scene.name)), "Poses")
+    root = model.add_group(uids.claim(ids.scene_uid(name_of(depsgraph.scene))), "Poses")
     for leaf in leaves:
         model.add_placement(root, leaf.object, _IDENTITY, leaf.data)
     model.set_root(root)

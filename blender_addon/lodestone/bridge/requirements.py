@@ -2,13 +2,14 @@
 """What a picture needs besides the scene: a camera, POV-Ray, a folder, the libraries."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from ..core import store_path
 from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, Problems
+from ..core.problems import ERROR, INFO, Problems
+from .ids import name_of
 
 NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 NOTHING = "Nothing to render: no object with faces is visible in renders"
@@ -18,7 +19,7 @@ def camera(scene: Any, problems: Problems) -> Any | None:
     """The scene's camera object, or a problem."""
     found = scene.camera
     if found is None or found.type != "CAMERA":
-        problems.add("", ERROR, "no_camera", NO_CAMERA.format(scene.name))
+        problems.add("", ERROR, "no_camera", NO_CAMERA.format(name_of(scene)))
         return None
     return found
 
@@ -40,6 +41,33 @@ def folder(store: Path, problems: Problems) -> None:
             return
 
 
+def names(data: Any, problems: Problems) -> None:
+    """`data` is Blender's."""
+    for item in unreadable(data):
+        name_unreadable(item, problems)
+
+
+def unreadable(data: Any) -> Iterator[Any]:
+    """Datablocks whose names are bytes that are no UTF-8."""
+    for item in datablocks(data):
+        try:
+            item.name
+        except UnicodeDecodeError:
+            yield item
+
+
+def name_unreadable(item: Any, problems: Problems) -> None:
+    name = name_of(item)
+    text = f'"{name}" has a name that is not valid text (UTF-8) in the file'
+    problems.add(name, INFO, "unreadable_name", text)
+
+
+def datablocks(data: Any) -> Iterator[Any]:
+    for value in data.bl_rna.properties:
+        if value.type == "COLLECTION":
+            yield from getattr(data, value.identifier)
+
+
 def libraries(found: Iterable[Any], blend: str, problems: Problems) -> None:
     """`blend` is the path of the open file, to which Blender keeps library paths relative."""
     for library in found:
@@ -47,5 +75,5 @@ def libraries(found: Iterable[Any], blend: str, problems: Problems) -> None:
         if path.startswith("//"):
             path = os.path.join(os.path.dirname(blend), path[2:])
         if not os.path.exists(path):
-            text = f'Library "{library.name}" is missing ({path}): what it holds is left out'
-            problems.add(library.name, ERROR, "library_missing", text)
+            text = f'Library "{name_of(library)}" is missing ({path}): what it holds is left out'
+            problems.add(name_of(library), ERROR, "library_missing", text)

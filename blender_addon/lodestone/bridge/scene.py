@@ -14,6 +14,7 @@ from typing import Any
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
 from . import camera, compat, groups, ids, lights, world
+from .ids import name_of
 from .images import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
@@ -69,7 +70,7 @@ def _extract(
         tree = groups.Groups(model, uids, walk.roles, motion)
         root = tree.build(walk.found.scene, walk.branch)
         if root is None:
-            root = model.add_group(uids.claim(ids.scene_uid(scene.name)), scene.name)
+            root = model.add_group(uids.claim(ids.scene_uid(name_of(scene))), name_of(scene))
         model.set_root(root)
         for name in tree.unplaced:
             report_outside(problems, name)
@@ -153,7 +154,7 @@ def _add_cameras(model: Any, scene: Any) -> None:
     about one is told when it is used."""
     frame = camera.Frame.of(scene.render)
     items = list(compat.of_type(scene.objects, "CAMERA"))
-    items.sort(key=lambda item: (item != scene.camera, item.name))
+    items.sort(key=lambda item: (item != scene.camera, name_of(item)))
     for item in items:
         matrix = item.matrix_world
         if all(math.isfinite(value) for row in matrix for value in row):

@@ -14,6 +14,7 @@ from typing import Any
 from ..core.last_check import Check
 from ..core.problems import ERROR, Problems
 from . import camera, requirements, scene, strands
+from .ids import name_of
 from .images import ImageHeads
 from .leaves import material_slots, override_of
 from .listed import Listed, Rows, rows
@@ -41,7 +42,7 @@ def check(
     eye = requirements.camera(evaluated, problems)
     if eye is not None:
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
-    camera.report_render(evaluated.render, evaluated.name, problems)
+    camera.report_render(evaluated.render, name_of(evaluated), problems)
     problems.keep(walk.users.concerns)
     return Check(tuple(problems), walk.users.found())
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from mathutils import Euler, Matrix, Vector
 
+from .ids import name_of
 from .sky_texture import SkySun, mean_of_sky, sun_of_sky
 
 Value = Any  # a float for numbers, a tuple of three for colors and vectors
@@ -98,7 +99,7 @@ class SkyNodes:
             raise Unknown(node.bl_label)
         vector = self.direction(node)
         if self._texel(image, 0.5, 0.5) is None:
-            raise Unknown(f'image "{image.name}"')
+            raise Unknown(f'image "{name_of(image)}"')
 
         def sample(d: Vector) -> Value:
             x, y, z = vector(d)
@@ -176,7 +177,7 @@ class SkyNodes:
         if getattr(node, "mode", "RGB") != "RGB":
             raise Unknown(node.bl_label)
         color = self.color(node.inputs[0])
-        place = [item.name for item in node.outputs].index(socket.name)
+        place = [name_of(item) for item in node.outputs].index(socket.name)
         return lambda d: color(d)[place]
 
     _sepxyz = _seprgb = _separate_color = _separate

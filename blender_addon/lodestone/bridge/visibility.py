@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
+from .ids import name_of
 
 RayClass = native.RayClass
 _SWITCHES = (  # Blender's names, the ray class of ours
@@ -45,12 +46,12 @@ class Visibility:
             if not getattr(item, name, True):
                 hidden |= ray_class
         if getattr(item, "visible_transmission", True) != getattr(item, "visible_camera", True):
-            text = f'Object "{item.name}" is seen through glass just as the camera sees it'
-            self._problems.add(item.name, INFO, "visible_transmission", text)
+            text = f'Object "{name_of(item)}" is seen through glass just as the camera sees it'
+            self._problems.add(name_of(item), INFO, "visible_transmission", text)
         if getattr(item, "is_shadow_catcher", False):
             hidden |= RayClass.CAMERA | RayClass.REFLECTION
-            text = f'Object "{item.name}" is a shadow catcher: left out with the shadows on it'
-            self._problems.add(item.name, WARNING, "shadow_catcher", text)
+            text = f'Object "{name_of(item)}" is a shadow catcher: left out with the shadows on it'
+            self._problems.add(name_of(item), WARNING, "shadow_catcher", text)
         if in_scene and self._in_layer(item, "indirect_only_get"):
             hidden |= RayClass.CAMERA
         return int(hidden)

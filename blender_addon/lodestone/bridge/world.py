@@ -14,6 +14,7 @@ from mathutils import Vector
 from ..core import exr
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
+from .ids import name_of
 from .images import ImageHeads, ImageMeans, read_pixels, to_linear
 from .node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
@@ -70,7 +71,7 @@ class _Reader:
             return World(tuple(self._world.color))
         node = parts[0].node
         if len(parts) > 1 or parts[0].shares:
-            found = self._drawn(parts, f'its first background, "{node.name}", alone')
+            found = self._drawn(parts, f'its first background, "{name_of(node)}", alone')
             if found is not None:
                 return found
         if not any(node.inputs[name].is_linked for name in ("Color", "Strength")):
@@ -106,27 +107,27 @@ class _Reader:
     def _picture(self, image: Any) -> int | None:
         if self._glance:
             if self._means.mean(image) is None:
-                self._note(ERROR, "image_missing", f'image "{image.name}" cannot be read')
+                self._note(ERROR, "image_missing", f'image "{name_of(image)}" cannot be read')
             return 0
         linear = image.colorspace_settings.name != "sRGB"
         given = image.source == "FILE" and not image.is_dirty and image.file_format in _READ
         try:
             if given and image.packed_file is not None:
                 data = image.packed_file.data
-                return self._model.add_picture(image.name, data=data, linear=linear)
+                return self._model.add_picture(name_of(image), data=data, linear=linear)
             if given:
                 path = bpy.path.abspath(image.filepath, library=image.library)
                 if os.path.isfile(path):
-                    return self._model.add_picture(image.name, path=path, linear=linear)
+                    return self._model.add_picture(name_of(image), path=path, linear=linear)
         except native.LodestoneError as error:
             if error.status not in {native.Status.BAD_FILE, native.Status.IO}:
                 raise
         found = self._pixels(image)
         if found is None:
-            self._note(ERROR, "image_missing", f'image "{image.name}" cannot be read')
+            self._note(ERROR, "image_missing", f'image "{name_of(image)}" cannot be read')
             return None
         width, height, pixels = found
-        return self._model.add_picture(image.name, data=exr.encode(width, height, pixels))
+        return self._model.add_picture(name_of(image), data=exr.encode(width, height, pixels))
 
     # ---- Nodes, looked at all around ----
 
@@ -160,7 +161,7 @@ class _Reader:
                 except (ArithmeticError, ValueError, TypeError):
                     pixels.extend((0.0, 0.0, 0.0))
         data = exr.encode(WIDTH, HEIGHT, pixels)
-        return World((0.0, 0.0, 0.0), self._model.add_picture(self._world.name, data=data))
+        return World((0.0, 0.0, 0.0), self._model.add_picture(name_of(self._world), data=data))
 
     def _add_suns(self, nodes: SkyNodes, light: "Light") -> None:
         """Those of skies as lights, as far as the nodes behind let their light through."""
@@ -170,7 +171,7 @@ class _Reader:
             nodes.lit_by = None
             x, y, z = sun.direction
             given = native.Light(
-                name=self._world.name,
+                name=name_of(self._world),
                 kind=native.LightKind.SUN,
                 color=color,
                 power=1.0,
@@ -231,7 +232,7 @@ class _Reader:
         return tuple(min(1e9, max(0.0, strength * c)) for c in tint)
 
     def _note(self, severity: str, code: str, text: str) -> None:
-        name = self._world.name
+        name = name_of(self._world)
         self._problems.add(name, severity, f"world_{code}", f'World "{name}": {text}')
 
 
@@ -251,10 +252,10 @@ def _parts(socket: Any, shares: tuple, above: set, found: list[Part]) -> None:
     """The backgrounds that feed this socket, the first one first. `above`: names of the nodes on
     the way here."""
     link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
-    if link is None or link.from_node.name in above or len(found) >= MOST_BACKGROUNDS:
+    if link is None or name_of(link.from_node) in above or len(found) >= MOST_BACKGROUNDS:
         return
     node = link.from_node
-    above = {*above, node.name}
+    above = {*above, name_of(node)}
     if node.type in {"BACKGROUND", "EMISSION"}:
         found.append(Part(node, shares))
     elif node.type == "MIX_SHADER":

@@ -4,7 +4,7 @@
 import bpy
 
 from .. import preferences
-from ..bridge import ignored, requirements, scene_check
+from ..bridge import ids, ignored, requirements, scene_check
 from ..core import causes, last_check, last_render, store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
@@ -16,10 +16,11 @@ def check_scene(context):
     problems, scene = Problems(), context.scene
     requirements.povray(preferences.povray_program(), problems)
     requirements.folder(store_path.store_folder(bpy.data.filepath), problems)
+    requirements.names(bpy.data, problems)
     requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
     depsgraph = context.evaluated_depsgraph_get()
     found = scene_check.check(scene, context.view_layer, depsgraph, problems)
-    last_check.put(scene.name, found)
+    last_check.put(ids.name_of(scene), found)
     return found
 
 
