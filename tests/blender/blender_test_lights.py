@@ -163,6 +163,83 @@ class Lights(unittest.TestCase):
         self.assertAlmostEqual(direction.dot(Vector(added[0].edge_v)), 0.0, places=6)
         self.assertLess(direction.z, 0.0)
 
+    def glowing(self, made, strength, color=(1.0, 0.85, 0.6)):
+        """The same, of a material that only emits."""
+        material = bpy.data.materials.new("Glow")
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        emission = tree.nodes.new("ShaderNodeEmission")
+        emission.inputs["Color"].default_value = (*color, 1.0)
+        emission.inputs["Strength"].default_value = strength
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(emission.outputs[0], output.inputs[0])
+        made.data.materials.append(material)
+        return made
+
+    def shape(self, kind, location, turn=(0, 0, 0), scale=(1, 1, 1), **sizes):
+        """Of Blender's primitives; the camera does not see it, what it lights is compared."""
+        getattr(bpy.ops.mesh, f"primitive_{kind}_add")(location=location, rotation=turn, **sizes)
+        made = bpy.context.object
+        made.scale, made.visible_camera = scale, False
+        return made
+
+    def glows(self):
+        from lodestone.core import last_check
+
+        found = last_check.get(self.scene.name).problems
+        return [problem.message for problem in found if problem.code == "glow"]
+
+    def test_a_panel_that_glows_lights_both_of_its_sides(self):
+        panel = self.shape("plane", (0.0, -0.4, 0.9), (0.3, -1.2, 0.5), (1.2, 0.6, 1.0), size=1.0)
+        self.glowing(panel, 3.0)
+        self.same_as_cycles()
+        self.assertEqual(self.glows(), [])
+
+    def test_a_disk_and_a_thin_box_that_glow(self):
+        disk = self.shape("circle", (-1.4, -0.4, 1.0), (0.2, 0.1, 0), radius=0.4, fill_type="NGON")
+        self.glowing(disk, 4.0)
+        box = self.shape("cube", (1.2, -0.3, -0.4), (0, 0.2, 0.4), (0.9, 0.5, 0.05), size=1.0)
+        self.glowing(box, 5.0)
+        self.same_as_cycles()
+
+    def test_bulbs_that_glow_in_an_instanced_collection(self):
+        holder = scenes.collection("Lamps")
+        bulb = self.shape("uv_sphere", (0.0, 0.0, 0.0), radius=0.12)
+        for collection in bulb.users_collection:
+            collection.objects.unlink(bulb)
+        holder.objects.link(bulb)
+        self.glowing(bulb, 40.0)
+        for place in ((-1.5, -0.5, 1.0), (1.4, -0.6, -0.9)):
+            lamp = scenes.link(bpy.data.objects.new("Lamp", None))
+            lamp.instance_type, lamp.instance_collection = "COLLECTION", holder
+            lamp.location = place
+        self.scene.cycles.samples = 2048  # it takes many to hit so small a thing evenly
+        self.same_as_cycles()
+
+    def test_a_screen_glows_to_its_front_and_its_case_keeps_the_light_in(self):
+        screen = self.shape("cube", (0.1, -0.4, 0.9), (0.5, 0.3, 0.2), (1.0, 0.7, 0.2), size=1.0)
+        screen.data.materials.append(scenes.matte("Case", (0.1, 0.1, 0.1)))
+        self.glowing(screen, 4.0)
+        lowest = min(screen.data.polygons, key=lambda face: face.center.z)
+        lowest.material_index = 1
+        self.same_as_cycles()
+
+    def test_what_glows_and_is_no_light_is_named(self):
+        self.glowing(self.shape("cylinder", (0, 0, 2), radius=0.05, depth=3.0), 3.0)
+        self.shape("torus", (0, 0, 3)).data.materials.append(bpy.data.materials["Glow"])
+        lamp("SUN", (0, 0, 0), energy=2.0)
+        self.render("LODESTONE_POVRAY")
+        self.assertEqual(
+            self.glows(), ['Material "Glow": it glows, but its light falls on nothing else']
+        )
+        self.shape("plane", (0, 0, 4)).data.materials.append(bpy.data.materials["Glow"])
+        self.render("LODESTONE_POVRAY")
+        self.assertEqual(
+            self.glows(),
+            ['Material "Glow": it glows, but the light of some of it falls on nothing else'],
+        )
+
     def test_a_light_of_negative_power_takes_away(self):
         lamp("SUN", (0, 0, 0), energy=3.0, angle=0.0)
         lamp("POINT", (1.0, -0.5, 1.0), energy=-20.0, shadow_soft_size=0.0)

@@ -371,16 +371,21 @@ class Materials(MaterialCase):
         glow.inputs["Strength"].default_value = 3.0
         self.tree.links.new(self.principled.outputs[0], add.inputs[1])
         look, codes = self.translate()
-        self.assertEqual(codes, {"glow"})
+        self.assertEqual(codes, set())
         self.close(look.emission.color, (3.0, 1.5, 0.0))
+        self.close(look.radiance, (3.0, 1.5, 0.0))
         self.close(look.base_color.color, (0.2, 0.4, 0.6))
 
-    def test_a_lamp_shade_that_glows_lights_nothing_else_and_is_named(self):
+    def test_what_it_radiates_is_the_mean_of_what_glows_through_its_holes_and_mixtures(self):
         emission = self.principled.inputs["Emission"]
         emission.default_value = (1.0, 0.8, 0.5, 1.0)
-        for strength, expected in ((1.0, set()), (1.1, {"glow"}), (0.0, set())):
-            self.principled.inputs["Emission Strength"].default_value = strength
-            self.assertEqual(self.translate()[1], expected, strength)
+        self.principled.inputs["Emission Strength"].default_value = 4.0
+        self.close(self.translate()[0].radiance, (4.0, 3.2, 2.0))
+        self.principled.inputs["Alpha"].default_value = 0.5
+        self.close(self.translate()[0].radiance, (2.0, 1.6, 1.0))
+        node = self.mix(self.principled, self.node("ShaderNodeBsdfDiffuse"))
+        node.inputs[0].default_value = 0.75
+        self.close(self.translate()[0].radiance, (0.5, 0.4, 0.25))
 
     def test_a_fresnel_factor_is_its_mean_and_named(self):
         gloss = self.node("ShaderNodeBsdfGlossy")

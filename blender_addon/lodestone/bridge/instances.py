@@ -16,13 +16,14 @@ from mathutils import Matrix
 
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
+from .glow import Glows
 from .ids import name_of
 from .leaves import DRAWN, MATERIAL, Leaf, Look, undrawn
 from .listed import Listed, Rows, rows
 from .motion import Motion
 from .plain import plain
 from .users import Users
-from .visibility import Visibility
+from .visibility import RayClass, Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
 Emitted = tuple[Leaf, Rows, int]  # what, where, hidden from which ray classes
@@ -82,7 +83,8 @@ class Instances:
         tick: Callable[[], None],
     ) -> None:
         self.scene = Context(None, Matrix(), [], set())
-        self.lights: list[tuple[Any, Matrix, str]] = []
+        self.lights: list[tuple[Any, Matrix, str]] = []  # light, world, name
+        self.glows = Glows()
         self.shown = 0
         self._leaves = leaves
         self._visibility = visibility
@@ -146,7 +148,10 @@ class Instances:
                 self._plain[made_of] = leaf
         self.shown += 1
         rests = not leaf.deforms and (loose or not self._motion.moves(shown))
-        self.scene.entries[original] = Entry(shown, key, place, leaf, rests)
+        entry = self.scene.entries[original] = Entry(shown, key, place, leaf, rests)
+        if leaf.glow is not None:
+            entry.rests = False
+            entry.hidden = self.glows.add(leaf.glow, shown.matrix_world, entry.name)
 
     def _take(self, instance: Any, place: Rows | None) -> None:
         shown = instance.object
@@ -203,11 +208,22 @@ class Instances:
         if leaf is None:
             return
         self.shown += 1
+        hidden = self._glows(leaf, matrix, entry, owner)
         own = is_instance and owner.type != "MESH" and _is_self(entry, owner)
         if direct and entry.leaf is None or own and entry.leaf is None:
             entry.leaf = leaf
+            entry.hidden |= hidden
         else:
-            self._emit(leaf, owner, matrix, context, entry)
+            self._emit(leaf, owner, matrix, context, entry, hidden)
+
+    def _glows(self, leaf: Leaf, matrix: Matrix, entry: Entry, owner: Any) -> int:
+        """Notes what shines; returns the ray classes that must not see it therefore."""
+        if leaf.glow is None:
+            return 0
+        hidden = entry.hidden | (0 if _is_self(entry, owner) else self._seen(owner)[0])
+        if hidden & RayClass.RADIOSITY:  # what lights nothing in Cycles
+            return 0
+        return self.glows.add(leaf.glow, matrix, name_of(owner))
 
     def _take_hair(
         self, shown: Any, owner: Any, matrix: Matrix, context: Context, entry: Entry, direct: bool
@@ -220,6 +236,7 @@ class Instances:
         if leaf is None:
             return
         self.shown += 1
+        self._glows(leaf, matrix, entry, owner)
         if direct:
             entry.hair = leaf
         else:
@@ -233,13 +250,22 @@ class Instances:
             return
         look = self._look(context, entry, owner)
         leaf = self._leaves.point(self._key(owner), shown, owner, look, self._host, matrix)
+        self._glows(leaf, matrix, entry, owner)
         for center, radius in points:
             place = matrix @ Matrix.Translation(center) @ Matrix.Scale(radius, 4)
             self._emit(leaf, owner, place, context, entry)
         self.shown += len(points)
 
-    def _emit(self, leaf: Leaf, owner: Any, matrix: Matrix, context: Context, entry: Entry) -> None:
-        hidden = 0 if _is_self(entry, owner) else self._seen(owner)[0]
+    def _emit(
+        self,
+        leaf: Leaf,
+        owner: Any,
+        matrix: Matrix,
+        context: Context,
+        entry: Entry,
+        hidden: int = 0,
+    ) -> None:
+        hidden |= 0 if _is_self(entry, owner) else self._seen(owner)[0]
         if not entry.emitted:
             entry.emitted = []
         entry.emitted.append((leaf, self._relative(context, matrix), hidden))
@@ -344,7 +370,10 @@ class Instances:
                     self._tick()
                     look = self._look(context, entry, entry.object)
                     entry.leaf = self._leaves.leaf(entry.key, entry.object, entry.object, look)
-                    self.shown += entry.leaf is not None
+                    if entry.leaf is not None:
+                        self.shown += 1
+                        world = context.frame @ entry.object.matrix_world
+                        entry.hidden |= self._glows(entry.leaf, world, entry, entry.object)
 
 
 def offset(collection: Any) -> Matrix:

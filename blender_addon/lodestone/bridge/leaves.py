@@ -9,6 +9,7 @@ from ..core import identity
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, Problems
 from . import ids, mesh, mesh_uvs, strands
+from .glow import Glow, glow_of
 from .ids import name_of
 from .materials import Materials
 
@@ -42,6 +43,7 @@ class Leaf:
     size: int  # triangles of a mesh, strands of hair, 1 of a point
     deforms: bool = False  # see Look
     settled: bool = True  # it is the same whoever shows it, and wherever
+    glow: Glow | None = None
 
 
 class Look(NamedTuple):
@@ -105,8 +107,13 @@ class Leaves:
         if key not in self._found:
             self._place = place
             leaf = add(shown, owner, slots, color, look)
-            if leaf is not None and not (color is None and frames is None):
-                leaf = replace(leaf, settled=False)
+            if leaf is not None:
+                settled, glow = color is None and frames is None, None
+                if not look.holdout:
+                    looks = [self._materials.look(material, color) for material in slots]
+                    glow = glow_of(shown, slots, looks, add == self._add_data)
+                if glow is not None or not settled:
+                    leaf = replace(leaf, settled=settled, glow=glow)
             self._found[key] = leaf
         return self._found[key]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Looks: materials in the backend's terms, before their pictures are added to a model."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.expression import Color
@@ -85,6 +85,8 @@ class Look:
     other: "Look | None" = None
     mix: Value = gray(0.0)
     coordinates: Coordinates | None = None  # of all its textures; None: it has none
+    # What it emits in the mean, all its surfaces together: of the bridge alone
+    radiance: Color = field(default=(0.0, 0.0, 0.0), compare=False)
 
 
 DEFAULT = Look(roughness=gray(0.4))  # Blender's own for an empty slot

@@ -123,8 +123,6 @@ class _Translator:
         surfaces = self._surfaces(self._shader())
         first = [value for surface, _ in surfaces for value in _in_order(surface)]
         shares = [share for _, share in surfaces]
-        if any(max(mean_of(surface.emission, self.pictures)) > 1.0 for surface, _ in surfaces):
-            self.note(WARNING, "glow", "it glows, but its light falls on nothing else")
         main = main_coordinates([*first, *shares])
         textures = Textures(self.pictures, self.note, main)
         look = None
@@ -135,7 +133,21 @@ class _Translator:
             look = made
         if len(set(_vertex_colors(look))) > 1:
             self.note(WARNING, "vertex_colors", "of its several vertex colors one is drawn")
-        return replace(look, coordinates=main if _has_texture(look) else None)
+        coordinates = main if _has_texture(look) else None
+        return replace(look, coordinates=coordinates, radiance=self._radiance(surfaces))
+
+    def _radiance(self, surfaces: list[tuple[Surface, Expression]]) -> tuple[float, float, float]:
+        """Of all of them together, in the mean."""
+        found, left = [0.0, 0.0, 0.0], 1.0
+        for surface, share in surfaces:
+            rest = min(1.0, max(0.0, mean_of(share, self.pictures)[0]))
+            seen = (
+                left * (1.0 - rest) * min(1.0, max(0.0, mean_of(surface.alpha, self.pictures)[0]))
+            )
+            for i, value in enumerate(mean_of(surface.emission, self.pictures)[:3]):
+                found[i] += seen * (value if 0.0 < value < float("inf") else 0.0)
+            left *= rest
+        return tuple(found)
 
     # ---- From the output node to surfaces ----
 

@@ -74,7 +74,7 @@ def _extract(
         model.set_root(root)
         for name in tree.unplaced:
             report_outside(problems, name)
-        surroundings(model, scene, walk.found.lights, problems)
+        surroundings(model, scene, walk.found, problems)
         _add_cameras(model, scene)
         problems.keep(walk.users.concerns)
     except BaseException:
@@ -134,11 +134,14 @@ def walked(
 
 
 def surroundings(
-    model: Any, scene: Any, found: Iterable[tuple], problems: Problems, images: Any | None = None
+    model: Any, scene: Any, found: Instances, problems: Problems, images: Any | None = None
 ) -> None:
-    """Adds the lights that were found, (light, matrix, name) each, and the world."""
-    for light, matrix, name in found:
+    """Adds the lights that were found, what glows among them, and the world."""
+    for light, matrix, name in found.lights:
         lights.add(model, light, matrix, name, problems)
+    eye = None if scene.camera is None else scene.camera.matrix_world.translation
+    for light in found.glows.lights(eye, problems):
+        model.add_light(light)
     around = world.extract(model, scene.world, problems, images or ImageMeans())
     model.set_world(
         around.color,

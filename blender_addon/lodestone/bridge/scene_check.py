@@ -8,12 +8,14 @@ depsgraph of the viewport, less what renders hide; what only renders show is add
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
 from ..core.last_check import Check
 from ..core.problems import ERROR, Problems
 from . import camera, requirements, scene, strands
+from .glow import Glow, glow_of
 from .ids import name_of
 from .images import ImageHeads
 from .leaves import material_slots, override_of
@@ -36,7 +38,7 @@ def check(
     override = override_of(depsgraph)
     glances = Glances(Materials(None, problems, frame=original.frame_current), override)
     walk = scene.walked(depsgraph, glances, problems, tick, None, shown)
-    scene.surroundings(recorder, evaluated, walk.found.lights, problems, heads)
+    scene.surroundings(recorder, evaluated, walk.found, problems, heads)
     if walk.found.shown == 0:
         problems.add("", ERROR, "nothing_to_render", requirements.NOTHING)
     eye = requirements.camera(evaluated, problems)
@@ -63,9 +65,11 @@ class Recorder:
         return self._given
 
 
+@dataclass(frozen=True, eq=False)
 class Glance:
     """What takes a leaf's place."""
 
+    glow: Glow | None
     deforms = False
     settled = True
 
@@ -96,19 +100,20 @@ class Glances:
     def point(self, shown: Any, owner: Any, *how: Any) -> Any:
         return self._of_materials(shown)
 
-    def _of_materials(self, shown: Any) -> Any:
-        for material in material_slots(shown, self.override):
+    def _of_materials(self, shown: Any, slots: list[Any] | None = None) -> Any:
+        faces = slots is not None
+        slots = material_slots(shown, self.override) if slots is None else slots
+        for material in slots:
             self._materials.index(material)
-        return Glance()
+        looks = map(self._materials.look, slots)
+        return Glance(glow_of(shown, slots, looks, faces))
 
     def _look(self, shown: Any, slots: list[Any]) -> Any | None:
         if shown.type == "MESH" and not _has_faces(shown):
             return None
         if shown.type == "CURVES" and not len(shown.data.curves):
             return None
-        for material in slots:
-            self._materials.index(material)
-        return Glance()
+        return self._of_materials(shown, slots)
 
 
 def _has_faces(shown: Any) -> bool:

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces that glow, as lights: POV-Ray lets only lights shine on other things.
+
+Flat faces become area lights just above themselves, on both sides as in Cycles (on the outside of
+closed bodies); small round bodies become points of the same power in their middles. Both give what
+Cycles gives of a surface of radiance L: areas have 4 A L watts in Blender's units, a convex body of
+surface A sends as much in the mean over all directions as a point of pi A L watts. Anything else
+glows without shining, which is named.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
+
+from mathutils import Matrix, Vector
+
+from ..core.native import lodestone_native as native
+from ..core.problems import WARNING, Problems, Subject
+from . import compat, ids
+
+MOST_FACES = 4096  # of a mesh that is looked at
+MOST_FLAT = 6  # sides of a body
+MOST_LIGHTS = 24  # of a scene, the strongest: each costs rays at every point of the picture
+LEAST = 0.01  # radiance that lights something
+NAMED = 1.0  # what glows brighter, and shines on nothing, is named
+_SAME_PLANE = 0.9994  # cosine of 2 degrees
+_FULL = 0.8  # a rectangle is 1, a disk 1.05, a triangle .87 of the rectangle of its inertia
+_ROUND = 0.4  # 36 pi V^2 / A^3: a ball is 1, a cube .52
+_ABOVE = 2e-3  # of a light's size, from the faces that it stands for
+Triangle = tuple[Vector, Vector, Vector]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Connected faces of one material, in the object's own frame."""
+
+    material: Subject
+    radiance: tuple[float, float, float]
+    sides: tuple[tuple[Triangle, ...], ...]  # by plane; () when they are too many to be lights
+    closed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Glow:
+    """What of an object glows."""
+
+    parts: tuple[Part, ...]
+    others: tuple[Subject, ...] = ()  # materials that glow on what is never a light
+
+
+def glow_of(shown: Any, slots: list[Any], looks: Iterable[Any], faces: bool = True) -> Glow | None:
+    """Of what an evaluated object shows; `looks` by slot. None: nothing glows. Without `faces` it
+    shows hairs or points."""
+    radiances = [look.radiance for look in looks] or [(0.0, 0.0, 0.0)]
+    if max(map(max, radiances)) < LEAST:
+        return None
+    keys = [ids.key_of("material", m) if m else ("material", "", "") for m in slots]
+    bright = tuple(key for key, radiance in zip(keys, radiances) if max(radiance) > NAMED)
+    mesh = shown.data
+    if not faces or shown.type != "MESH" or shown.mode == "EDIT":
+        return Glow((), bright)
+    if len(mesh.polygons) > MOST_FACES:
+        return Glow((), bright)
+    return Glow(tuple(_parts(mesh, keys, radiances)))
+
+
+def _parts(mesh: Any, keys: list[Subject], radiances: list[Any]) -> Iterable[Part]:
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    corners, slots = compat.buffer("i", 3 * count), compat.buffer("i", count)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    mesh.loop_triangles.foreach_get("material_index", slots)
+    by_slot: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
+    for number, slot in enumerate(slots):
+        slot = min(max(slot, 0), len(radiances) - 1)
+        if max(radiances[slot]) >= LEAST:
+            by_slot[slot].append(tuple(corners[3 * number : 3 * number + 3]))
+    for slot, found in by_slot.items():
+        for part in _connected(found, lambda a, b: True):
+            points = {i: mesh.vertices[i].co.copy() for triangle in part for i in triangle}
+            edges = _edges(part)
+            closed = all(len(sharing) == 2 for sharing in edges.values())
+            normals = {t: _normal(tuple(points[i] for i in t)) for t in part}
+
+            def flat(a: Any, b: Any, normals: Any = normals) -> bool:
+                return abs(normals[a].dot(normals[b])) > _SAME_PLANE
+
+            sides = _connected(part, flat)
+            if len(sides) > MOST_FLAT:
+                sides = [part]
+            solid = tuple(
+                tuple(tuple(points[i] for i in triangle) for triangle in side) for side in sides
+            )
+            yield Part(keys[slot] if keys else ("material", "", ""), radiances[slot], solid, closed)
+
+
+def _edges(triangles: Iterable[tuple]) -> dict[tuple[int, int], list[tuple]]:
+    found: dict[tuple[int, int], list[tuple]] = defaultdict(list)
+    for triangle in triangles:
+        for edge in combinations(sorted(triangle), 2):
+            found[edge].append(triangle)
+    return found
+
+
+def _connected(triangles: list[tuple], joined: Any) -> list[list[tuple]]:
+    """Sets of triangles that share edges, where joined(a, b)."""
+    neighbors: dict[tuple, list[tuple]] = defaultdict(list)
+    for sharing in _edges(triangles).values():
+        for a, b in combinations(sharing[:4], 2):
+            if joined(a, b):
+                neighbors[a].append(b)
+                neighbors[b].append(a)
+    left, found = dict.fromkeys(triangles), []
+    while left:
+        waiting = [next(iter(left))]
+        del left[waiting[0]]
+        group = []
+        while waiting:
+            triangle = waiting.pop()
+            group.append(triangle)
+            for other in neighbors[triangle]:
+                if other in left:
+                    del left[other]
+                    waiting.append(other)
+        found.append(group)
+    return found
+
+
+def _normal(triangle: Triangle) -> Vector:
+    a, b, c = triangle
+    return (b - a).cross(c - a).normalized()
+
+
+class Glows:
+    """Those of one scene."""
+
+    def __init__(self) -> None:
+        self._lights: list[tuple[Part, native.Light]] = []
+        self._lit: dict[Subject, None] = {}
+        self._dark: dict[Subject, None] = {}
+
+    def add(self, glow: Glow, world: Matrix, name: str) -> int:
+        """As it is placed there. The ray classes that must not see it: what shines by a light
+        must not do so once more (nor be part of a group's stand-in, which would hide the light),
+        and a ball must not keep in the light in its middle."""
+        hidden = 0
+        self._dark.update(dict.fromkeys(glow.others))
+        for part in glow.parts:
+            sides = [[tuple(world @ p for p in t) for t in side] for side in part.sides]
+            made = _areas(sides, part.closed) or _point(sides, part.closed)
+            for light in made or ():
+                most = max(part.radiance)
+                color = tuple(value / most for value in part.radiance)
+                light = replace(light, name=name, color=color, power=light.power * most)
+                self._lights.append((part, light))
+                hidden |= native.RayClass.RADIOSITY
+                if light.kind == native.LightKind.POINT:
+                    hidden |= native.RayClass.SHADOW
+            if made:
+                self._lit[part.material] = None
+            elif max(part.radiance) > NAMED:
+                self._dark[part.material] = None
+        return hidden
+
+    def lights(self, eye: Vector | None, problems: Problems) -> list[native.Light]:
+        """The strongest, and those that are small as the camera sees them."""
+        kept = []
+        self._lights.sort(key=lambda pair: -pair[1].power)
+        for part, light in self._lights:
+            far = eye is None or (eye - Vector(light.position)).length > 2.0 * light.radius
+            if far and len(kept) < MOST_LIGHTS:
+                kept.append(light)
+            elif max(part.radiance) > NAMED:
+                self._dark[part.material] = None
+        for subject in self._dark:
+            _, library, name = subject
+            text = "it glows, but its light falls on nothing else"
+            if subject in self._lit:
+                text = "it glows, but the light of some of it falls on nothing else"
+            text = f'Material "{name}": {text}'
+            problems.add(name, WARNING, "glow", text, "material", library)
+        return kept
+
+
+def _areas(sides: list[list[Triangle]], closed: bool) -> list[native.Light] | None:
+    """Lights of radiance 1 above both sides of faces, or outside those of a body; None: they are
+    bent, or no shape that a light can have."""
+    made: list[native.Light] = []
+    middle = _center(t for side in sides for t in side)
+    for side in sides:
+        found = _fitted(side)
+        if found is None:
+            return None
+        center, normal, u, v, is_round = found
+        area = u.length * v.length * (math.pi / 4.0 if is_round else 1.0)
+        away = _ABOVE * math.sqrt(area)
+        ways = (normal, -normal)
+        if closed:
+            ways = (normal if normal.dot(center - middle) > 0.0 else -normal,)
+        for way in ways:
+            made.append(
+                native.Light(
+                    "",
+                    native.LightKind.AREA,
+                    power=4.0 * area,
+                    position=tuple(center + away * way),
+                    direction=tuple(way),
+                    edge_u=tuple(u),
+                    edge_v=tuple(v),
+                    round=is_round,
+                )
+            )
+    return made
+
+
+def _fitted(side: list[Triangle]) -> tuple[Vector, Vector, Vector, Vector, bool] | None:
+    """(center, normal, edge u, edge v, round) of a rectangle or an ellipse with the area and the
+    inertia of flat faces."""
+    areas = [((b - a).cross(c - a)).length / 2.0 for a, b, c in side]
+    area = sum(areas)
+    if not area > 0.0 or not math.isfinite(area):
+        return None
+    normal = _normal(side[max(range(len(side)), key=areas.__getitem__)])
+    center = _center(side)
+    limit = 0.01 * math.sqrt(area)
+    if any(abs(normal.dot(p - center)) > limit for t in side for p in t):
+        return None
+    x = normal.orthogonal().normalized()
+    y = normal.cross(x)
+    xx = yy = xy = 0.0
+    for (a, b, c), weight in zip(side, areas):
+        points = [(x.dot(p - center), y.dot(p - center)) for p in (a, b, c)]
+        middle = [sum(p[i] for p in points) for i in (0, 1)]
+        for p in (*points, middle):  # exact for squares of linear functions
+            xx += weight * p[0] * p[0] / 12.0
+            yy += weight * p[1] * p[1] / 12.0
+            xy += weight * p[0] * p[1] / 12.0
+    turn = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    mean, half = (xx + yy) / 2.0, math.hypot((xx - yy) / 2.0, xy)
+    large, small = math.sqrt((mean + half) / area), math.sqrt(max(mean - half, 0.0) / area)
+    if not small > 0.0:
+        return None
+    full = area / (12.0 * large * small)
+    if full < _FULL:  # with holes, of separate pieces, or with arms
+        return None
+    is_round = full > 1.02
+    edges = area * (4.0 / math.pi if is_round else 1.0)  # their product
+    times = math.sqrt(edges / (large * small))
+    u = x * math.cos(turn) + y * math.sin(turn)
+    return center, normal, u * large * times, normal.cross(u) * small * times, is_round
+
+
+def _point(sides: list[list[Triangle]], closed: bool) -> list[native.Light] | None:
+    """The light of radiance 1 in the middle of a small body."""
+    triangles = [t for side in sides for t in side]
+    if not closed:
+        return None
+    area = sum(((b - a).cross(c - a)).length / 2.0 for a, b, c in triangles)
+    center = _center(triangles)
+    volume = sum((a - center).dot((b - center).cross(c - center)) / 6.0 for a, b, c in triangles)
+    if not area > 0.0 or 36.0 * math.pi * volume * volume < _ROUND * area**3:
+        return None
+    return [
+        native.Light(
+            "",
+            native.LightKind.POINT,
+            power=math.pi * area,
+            position=tuple(center),
+            radius=math.sqrt(area / (4.0 * math.pi)),
+        )
+    ]
+
+
+def _center(triangles: Iterable[Triangle]) -> Vector:
+    total, sum_ = 0.0, Vector((0.0, 0.0, 0.0))
+    for a, b, c in triangles:
+        area = ((b - a).cross(c - a)).length
+        total += area
+        sum_ += (area / 3.0) * (a + b + c)
+    return sum_ / total if total > 0.0 else sum_
