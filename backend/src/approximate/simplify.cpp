@@ -20,6 +20,8 @@ void check_arguments(const Mesh& mesh, std::span<const size_t> targets,
         if (!(value >= 0 && value <= 1e6))
             fail(Status::InvalidArgument, name, " is ", value, ", not in 0...1e6");
     };
+    if (options.mode != SimplifyMode::Fast && options.mode != SimplifyMode::Best)
+        fail(Status::InvalidArgument, "mode is ", static_cast<int>(options.mode), ", not 0 or 1");
     weight("boundary_weight", options.boundary_weight);
     weight("seam_weight", options.seam_weight);
     weight("part_weight", options.part_weight);

@@ -11,8 +11,13 @@
 
 namespace lodestone::approximate {
 
+/// What a triangle may cost to choose. Fast: some four times the time of reading the mesh. Best:
+/// less error for about three times that time.
+enum class SimplifyMode : uint8_t { Fast, Best };
+
 /// The defaults are tuned on scans, CAD parts and terrain; most callers need none of these.
 struct SimplifyOptions {
+    SimplifyMode mode = SimplifyMode::Fast;
     /// How much dearer it is to move an open border, or the border between two material slots,
     /// than the surface. Larger keeps outlines and paint lines longer and spends the triangles
     /// there; 0 lets them shrink.
