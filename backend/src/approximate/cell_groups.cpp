@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/cell_groups.h"
+
+#include "approximate/cell_merge.h"
+#include "approximate/cell_tree.h"
+
+#include <algorithm>
+#include <span>
+
+namespace lodestone::approximate {
+namespace {
+
+// Merging across grid lines is dearer than the tree but better. What it may take, in nanoseconds a
+// triangle of the input, and what it does take for a cell it begins with and for each it merges.
+constexpr double kMergeBudget = 6;
+constexpr double kBeginCost = 135;
+constexpr double kMergeCost = 600;
+constexpr double kMostMerged = 4;  // of the cells that are left
+// How near below the target is near enough.
+constexpr double kNear = 0.985;
+constexpr int kTries = 12;
+
+bool differ(const Triangle& t) {
+    return (t.x != t.y) & (t.y != t.z) & (t.z != t.x);
+}
+
+size_t count_of(std::span<const Triangle> triangles, std::span<const uint32_t> now) {
+    size_t count = 0;
+    for (const Triangle& t : triangles)
+        count += differ({now[t.x], now[t.y], now[t.z]}) ? 1 : 0;
+    return count;
+}
+
+/// Triangles that are not there yet, however they are turned.
+class Once {
+public:
+    explicit Once(size_t most) {
+        while (size_ < 2 * most)
+            size_ *= 2;
+        table_.assign(size_, Triangle(kNoCell));
+    }
+    bool add(const Triangle& t) {
+        const uint32_t low = std::min({t.x, t.y, t.z});
+        const uint32_t high = std::max({t.x, t.y, t.z});
+        const Triangle sorted(low, t.x ^ t.y ^ t.z ^ low ^ high, high);
+        uint32_t key = sorted.x * 0x9e3779b1u ^ sorted.y * 0x85ebca6bu ^ sorted.z * 0xc2b2ae35u;
+        key ^= key >> 15u;
+        for (size_t at = key & (size_ - 1);; at = (at + 1) & (size_ - 1)) {
+            if (table_[at] == sorted)
+                return false;
+            if (table_[at].x == kNoCell) {
+                table_[at] = sorted;
+                return true;
+            }
+        }
+    }
+
+private:
+    size_t size_ = 64;
+    std::vector<Triangle> table_;
+};
+
+Grouped grouped(const Cells& cells, std::vector<uint32_t> group, size_t count) {
+    Grouped out;
+    out.group = std::move(group);
+    out.triangles.reserve(count);
+    out.sources.reserve(count);
+    Once once(count);
+    for (size_t i = 0; i < cells.triangles.size(); ++i) {
+        const Triangle& t = cells.triangles[i];
+        const Triangle of(out.group[t.x], out.group[t.y], out.group[t.z]);
+        if (!differ(of) || !once.add(of))
+            continue;
+        out.triangles.push_back(of);
+        out.sources.push_back(cells.sources[i]);
+    }
+    return out;
+}
+
+/// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when none
+/// is, one above.
+std::vector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
+                             size_t& count) {
+    size_t few = 1;  // cells that give too few triangles, and how many
+    size_t few_triangles = 0;
+    size_t many = cells.count();
+    size_t many_triangles = cells.triangles.size();
+    std::vector<uint32_t> best;
+    bool best_within = false;
+    count = 0;
+    const auto take = [&](size_t cells_left) {
+        const std::span<const uint32_t> now = tree.joined(cells_left);
+        const size_t found = count_of(cells.triangles, now);
+        const bool within = static_cast<double>(found) <= wanted;
+        const bool better =
+            within ? !best_within || found > count : !best_within && (count == 0 || found < count);
+        if (found > 0 && better) {
+            best.assign(now.begin(), now.end());
+            best_within = within;
+            count = found;
+        }
+        return found;
+    };
+    if (static_cast<double>(many_triangles) <= wanted) {
+        take(many);
+        return best;
+    }
+    for (int i = 0; i < kTries && many - few > 1; ++i) {
+        // The triangles are nearly as the cells; halving makes sure of an end.
+        double part = (0.5 + 0.5 * near) * wanted - static_cast<double>(few_triangles);
+        part /= static_cast<double>(std::max<size_t>(many_triangles - few_triangles, 1));
+        if (i >= 6)
+            part = 0.5;
+        const auto step = static_cast<size_t>(part * static_cast<double>(many - few));
+        const size_t left = std::clamp(few + step, few + 1, many - 1);
+        const size_t found = take(left);
+        if (static_cast<double>(found) > wanted) {
+            many = left;
+            many_triangles = found;
+            continue;
+        }
+        if (static_cast<double>(found) >= near * wanted)
+            break;
+        few = left;
+        few_triangles = found;
+    }
+    if (best.empty())  // fewer cells give none at all
+        take(many);
+    return best;
+}
+
+/// Merges groups until at most `wanted` triangles are left.
+Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wanted,
+               const Job& job) {
+    // Numbers without gaps for what triangles use; the last one is for all other cells.
+    std::vector<uint32_t> number(nodes, kNoCell);
+    uint32_t count = 0;
+    std::vector<Triangle> triangles = start.triangles;
+    for (Triangle& t : triangles) {
+        for (int i = 0; i < 3; ++i) {
+            if (number[t[i]] == kNoCell)
+                number[t[i]] = count++;
+            t[i] = number[t[i]];
+        }
+    }
+    std::vector<CellQuadric> quadrics(count);
+    for (size_t i = 0; i < cells.count(); ++i) {
+        uint32_t& of = number[start.group[i]];
+        if (of == kNoCell)
+            of = count;
+        else if (of != count)
+            quadrics[of].gather(cells.quadrics[i]);
+    }
+    CellMerge merge(quadrics, triangles);
+    for (size_t left = triangles.size(); left > wanted;) {
+        // A merged cell takes two triangles along, more where thin parts become one sheet: most of
+        // the way each time comes near without going too far.
+        const size_t above = left - wanted;
+        const double cells_each =
+            std::min(0.5, static_cast<double>(merge.count()) / static_cast<double>(left));
+        const size_t steps =
+            above <= wanted / 32
+                ? (above + 1) / 2
+                : static_cast<size_t>(0.7 * cells_each * static_cast<double>(above)) + 1;
+        const size_t before = merge.count();
+        merge.merge_to(before - std::min(before - 1, steps), job);
+        Once once(left);
+        size_t kept = 0;
+        for (const Triangle& t : triangles) {
+            const Triangle of(merge.whole(t.x), merge.whole(t.y), merge.whole(t.z));
+            if (differ(of) && once.add(of))
+                triangles[kept++] = of;
+        }
+        if (kept == 0)
+            return start;  // it would vanish
+        triangles.resize(kept);
+        left = kept;
+        if (merge.count() == before)
+            break;
+    }
+    std::vector<uint32_t> group(cells.count());
+    for (size_t i = 0; i < group.size(); ++i) {
+        const uint32_t of = number[start.group[i]];
+        group[i] = of == count ? count : merge.whole(of);
+    }
+    return grouped(cells, std::move(group), triangles.size());
+}
+
+}  // namespace
+
+GroupingPlan::GroupingPlan(size_t triangles, size_t target) {
+    const double wanted = 0.5 * static_cast<double>(target);  // cells of a closed surface
+    const double removed =
+        std::min((kMergeBudget * static_cast<double>(triangles) - kBeginCost * wanted) /
+                     (kBeginCost + kMergeCost),
+                 (kMostMerged - 1) * wanted);
+    merges = removed > 0.2 * wanted;
+    if (merges)
+        begin += removed / wanted;
+}
+
+Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target, const Job& job) {
+    CellTree tree(cells);
+    job.check();
+    const auto wanted = static_cast<double>(target);
+    Grouped best;
+    if (plan.merges) {
+        size_t count = 0;
+        std::vector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count);
+        best = grouped(cells, std::move(group), count);
+        return best.triangles.size() > target ? merged(cells, best, tree.nodes(), target, job)
+                                              : best;
+    }
+    double goal = wanted;
+    for (int i = 0; i < 3; ++i) {
+        size_t count = 0;
+        std::vector<uint32_t> group = joined(cells, tree, goal, kNear, count);
+        Grouped found = grouped(cells, std::move(group), count);
+        const size_t kept = found.triangles.size();
+        if (best.triangles.empty() || (kept <= target && kept > best.triangles.size()))
+            best = std::move(found);
+        // What was there twice has made room for others.
+        if (kept == 0 || kept > target || static_cast<double>(kept) >= 0.96 * wanted ||
+            count >= cells.triangles.size())
+            break;
+        goal *= 0.99 * wanted / static_cast<double>(kept);
+    }
+    return best;
+}
+
+}  // namespace lodestone::approximate

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells: the vertices of a mesh in the cells of a fine grid, each cell with its quadric.
+#pragma once
+
+#include "approximate/cell_quadric.h"
+#include "base/job.h"
+#include "model/mesh.h"
+
+#include <vector>
+
+namespace lodestone::approximate {
+
+constexpr uint32_t kNoCell = ~uint32_t{0};
+
+/// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in a
+/// frame whose unit is the mesh's largest extent.
+struct Cells {
+    glm::dvec3 low{0.0};          // origin of the frame, metres
+    double unit = 0;              // metres; 0: the mesh has no extent, and there are no cells
+    std::vector<uint32_t> twins;  // of each vertex the first at its position; empty: all differ
+    std::vector<uint32_t> cell;   // of each vertex
+    std::vector<CellQuadric> quadrics;  // of each cell
+    std::vector<uint8_t> split;       // the highest bit in which its code and the next one's differ
+    std::vector<Triangle> triangles;  // of cells, where the three differ
+    std::vector<uint32_t> sources;    // the mesh's triangle each of them was
+
+    size_t count() const { return quadrics.size(); }
+    glm::vec3 metres(const glm::vec3& p) const { return glm::vec3(glm::dvec3(p) * unit + low); }
+};
+
+/// At least `least` cells, if there are as many vertices and the grid can tell them apart: it has
+/// 2^10 steps a side, 2^20 for more than a million vertices. All vertices must be finite.
+Cells divide(const Mesh& mesh, size_t least, const Job& job);
+
+}  // namespace lodestone::approximate

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/cluster.h"
+
+#include "approximate/cell_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace lodestone::approximate {
+namespace {
+
+// Cells of the fine grid for each one that the tree leaves: enough to choose from.
+constexpr double kCellsPerLeft = 2;
+
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// The triangles with finite corners; nothing when these are all.
+std::optional<Mesh> finite_part(const Mesh& mesh) {
+    if (std::all_of(mesh.positions.begin(), mesh.positions.end(), finite))
+        return {};
+    std::vector<uint8_t> keep(mesh.triangles.size());
+    for (size_t i = 0; i < keep.size(); ++i) {
+        const Triangle& t = mesh.triangles[i];
+        keep[i] = finite(mesh.positions[t.x]) && finite(mesh.positions[t.y]) &&
+                  finite(mesh.positions[t.z]);
+    }
+    return subset(mesh, keep);
+}
+
+/// The `count` largest triangles; of equal ones the first.
+Mesh largest(const Mesh& mesh, size_t count) {
+    std::vector<double> areas(mesh.triangles.size());
+    for (size_t i = 0; i < areas.size(); ++i)
+        areas[i] = glm::length(area_vector(mesh, i));
+    std::vector<uint32_t> order(areas.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto larger = [&](uint32_t a, uint32_t b) {
+        return areas[a] != areas[b] ? areas[a] > areas[b] : a < b;
+    };
+    std::vector<uint8_t> keep(areas.size(), 0);
+    count = std::min(count, order.size());
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                     larger);
+    for (size_t i = 0; i < count; ++i)
+        keep[order[i]] = 1;
+    return subset(mesh, keep);
+}
+
+/// Parts of the surface that went into one group, connected within it: what shares normals and
+/// texture coordinates.
+std::vector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping) {
+    std::vector<uint32_t> patch(mesh.positions.size());
+    std::iota(patch.begin(), patch.end(), 0u);
+    const auto root = [&](uint32_t v) {
+        while (patch[v] != v) {
+            patch[v] = patch[patch[v]];
+            v = patch[v];
+        }
+        return v;
+    };
+    for (const Triangle& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const uint32_t a = t[i];
+            const uint32_t b = t[(i + 1) % 3];
+            if (grouping.group[cells.cell[a]] != grouping.group[cells.cell[b]])
+                continue;
+            const uint32_t one = root(a);
+            const uint32_t other = root(b);
+            patch[std::max(one, other)] = std::min(one, other);
+        }
+    }
+    for (uint32_t v = 0; v < patch.size(); ++v)
+        patch[v] = root(v);
+    return patch;
+}
+
+/// One vertex for each group that a triangle uses.
+struct Places {
+    std::vector<uint32_t> of;  // a group's place; kNoCell where nothing uses it
+    std::vector<CellQuadric> quadrics;
+    std::vector<glm::vec3> points;  // metres
+};
+
+Places places_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping, size_t nodes) {
+    Places places;
+    places.of.assign(nodes, kNoCell);
+    uint32_t count = 0;
+    for (const Triangle& t : grouping.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            if (places.of[t[i]] == kNoCell)
+                places.of[t[i]] = count++;
+        }
+    }
+    places.quadrics.resize(count);
+    for (size_t i = 0; i < cells.count(); ++i) {
+        const uint32_t place = places.of[grouping.group[i]];
+        if (place != kNoCell)
+            places.quadrics[place].gather(cells.quadrics[i]);
+    }
+    constexpr float kFar = std::numeric_limits<float>::max();
+    std::vector<std::pair<glm::vec3, glm::vec3>> boxes(count, {glm::vec3(kFar), glm::vec3(-kFar)});
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        const uint32_t place = places.of[grouping.group[cells.cell[v]]];
+        if (place == kNoCell)
+            continue;
+        auto& [low, high] = boxes[place];
+        low = glm::min(low, mesh.positions[v]);
+        high = glm::max(high, mesh.positions[v]);
+    }
+    places.points.reserve(count);
+    for (size_t i = 0; i < count; ++i) {
+        // Planes that hardly differ meet anywhere: not far from what they are planes of.
+        const auto& [low, high] = boxes[i];
+        const glm::vec3 size = 0.25f * (high - low);
+        const glm::vec3 room(std::max({size.x, size.y, size.z}));
+        const glm::vec3 point = cells.metres(places.quadrics[i].lowest());
+        places.points.push_back(glm::clamp(point, low - room, high + room));
+    }
+    return places;
+}
+
+/// Vertices of the result, made from the surface around them.
+class Assembly {
+public:
+    Assembly(const Mesh& mesh, const Cells& cells, const Grouped& grouping, const Places& places)
+        : mesh_(mesh), places_(places) {
+        const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
+        std::vector<uint32_t> patch;
+        if (attributes)
+            patch = patches_of(mesh, cells, grouping);
+        std::vector<uint32_t> vertex_of(attributes ? patch.size() : places.points.size(), kNoCell);
+        out_.triangles.reserve(grouping.triangles.size());
+        for (size_t i = 0; i < grouping.triangles.size(); ++i) {
+            const Triangle& groups = grouping.triangles[i];
+            const Triangle& source = mesh.triangles[grouping.sources[i]];
+            const glm::dvec3 a(places.points[places.of[groups.x]]);
+            const glm::dvec3 b(places.points[places.of[groups.y]]);
+            const glm::dvec3 c(places.points[places.of[groups.z]]);
+            if (glm::cross(b - a, c - a) == glm::dvec3(0))
+                continue;  // draws nothing
+            Triangle t;
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t place = places.of[groups[k]];
+                uint32_t& vertex = vertex_of[attributes ? patch[source[k]] : place];
+                if (vertex == kNoCell) {
+                    vertex = static_cast<uint32_t>(out_.positions.size());
+                    out_.positions.push_back(places.points[place]);
+                    place_.push_back(place);
+                }
+                t[k] = vertex;
+            }
+            out_.triangles.push_back(t);
+            if (!mesh.slots.empty())
+                out_.slots.push_back(mesh.slots[grouping.sources[i]]);
+        }
+        if (attributes)
+            take_attributes(patch, vertex_of);
+        if (!mesh.normals.empty())
+            mend_normals();
+    }
+
+    Clustered result(double unit, bool with_quadrics) {
+        Clustered out;
+        if (with_quadrics) {
+            out.quadrics.reserve(place_.size());
+            const double scale = unit * unit;
+            for (const uint32_t place : place_) {
+                const PlaneSum& a = places_.quadrics[place].a;
+                out.quadrics.push_back({scale * a.xx, scale * a.xy, scale * a.xz, scale * a.yy,
+                                        scale * a.yz, scale * a.zz});
+            }
+        }
+        out.mesh = std::move(out_);
+        return out;
+    }
+
+private:
+    /// Normals and colors are the patch's mean, texture coordinates those of its vertex nearest to
+    /// the new one: a mean of them would lie outside of a bent island.
+    void take_attributes(const std::vector<uint32_t>& patch,
+                         const std::vector<uint32_t>& vertex_of) {
+        const size_t count = out_.positions.size();
+        std::vector<uint32_t> members(count, 0);
+        std::vector<float> nearest(count, std::numeric_limits<float>::infinity());
+        if (!mesh_.normals.empty())
+            out_.normals.assign(count, glm::vec3(0));
+        if (!mesh_.uvs.empty())
+            out_.uvs.assign(count, glm::vec2(0));
+        if (!mesh_.colors.empty())
+            out_.colors.assign(count, glm::vec4(0));
+        for (size_t v = 0; v < patch.size(); ++v) {
+            const uint32_t to = vertex_of[patch[v]];
+            if (to == kNoCell)
+                continue;
+            ++members[to];
+            if (!mesh_.normals.empty())
+                out_.normals[to] += mesh_.normals[v];
+            if (!mesh_.colors.empty())
+                out_.colors[to] += mesh_.colors[v];
+            if (mesh_.uvs.empty())
+                continue;
+            const glm::vec3 away = mesh_.positions[v] - out_.positions[to];
+            const float square = glm::dot(away, away);
+            if (square < nearest[to] || members[to] == 1) {
+                nearest[to] = square;
+                out_.uvs[to] = mesh_.uvs[v];
+            }
+        }
+        for (size_t i = 0; i < out_.colors.size(); ++i)
+            out_.colors[i] /= static_cast<float>(members[i]);
+        for (glm::vec3& normal : out_.normals) {
+            const float length = glm::length(normal);
+            normal = length > 1e-6f ? normal / length : glm::vec3(0);
+        }
+    }
+
+    /// Where a normal points away from its triangle, or nowhere, the triangle's own is used.
+    void mend_normals() {
+        for (size_t i = 0; i < out_.triangles.size(); ++i) {
+            const glm::dvec3 area = area_vector(out_, i);
+            const double length = glm::length(area);
+            const glm::vec3 face(length > 0 ? area / length : glm::dvec3(0, 0, 1));
+            for (int k = 0; k < 3; ++k) {
+                uint32_t& vertex = out_.triangles[i][k];
+                const glm::vec3 normal = out_.normals[vertex];
+                const bool lost = glm::dot(normal, normal) < 0.5f;
+                if (!lost && glm::dot(normal, face) > 0.1f)
+                    continue;
+                const uint32_t from = vertex;
+                vertex = static_cast<uint32_t>(out_.positions.size());
+                const glm::vec3 point = out_.positions[from];
+                out_.positions.push_back(point);
+                out_.normals.push_back(face);
+                if (!out_.uvs.empty())
+                    out_.uvs.push_back(glm::vec2(out_.uvs[from]));
+                if (!out_.colors.empty())
+                    out_.colors.push_back(glm::vec4(out_.colors[from]));
+                place_.push_back(place_[from]);
+            }
+        }
+    }
+
+    const Mesh& mesh_;
+    const Places& places_;
+    Mesh out_;
+    std::vector<uint32_t> place_;  // of each of its vertices
+};
+
+Clustered clustered(const Mesh& mesh, size_t target, bool with_quadrics, const Job& job) {
+    check(mesh);
+    if (target == 0)
+        fail(Status::InvalidArgument, "the target is 0 triangles");
+    Clustered out;
+    if (mesh.triangles.size() <= target) {
+        out.mesh = mesh;
+        return out;
+    }
+    if (const std::optional<Mesh> part = finite_part(mesh))
+        return clustered(*part, target, with_quadrics, job);
+    const GroupingPlan plan(mesh.triangles.size(), target);
+    const double least = kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target);
+    const Cells cells = divide(mesh, static_cast<size_t>(least) + 16, job);
+    Grouped grouping;
+    if (cells.count() > 0)
+        grouping = group_cells(cells, plan, target, job);
+    job.progress(0.8);
+    if (grouping.triangles.empty()) {  // no extent, or all of it in specks
+        out.mesh = largest(mesh, target);
+        return out;
+    }
+    const Places places = places_of(mesh, cells, grouping, 2 * cells.count());
+    out = Assembly(mesh, cells, grouping, places).result(cells.unit, with_quadrics);
+    if (out.mesh.empty())
+        out.mesh = largest(mesh, target);
+    if (out.mesh.triangles.size() > target)
+        out = {largest(out.mesh, target), {}};
+    job.progress(1);
+    return out;
+}
+
+}  // namespace
+
+Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job) {
+    return clustered(mesh, triangles, false, job).mesh;
+}
+
+Clustered cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job) {
+    return clustered(mesh, triangles, true, job);
+}
+
+}  // namespace lodestone::approximate
