@@ -6,6 +6,8 @@
 #include "verbs.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace lodestone::tools {
@@ -13,6 +15,44 @@ namespace {
 
 int32_t threads_of(const Arguments& arguments) {
     return static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
+}
+
+constexpr std::array<const char*, 3> kModes{"fast", "best", "cluster"};  // as lds_simplify_mode
+
+int32_t mode_of(const Arguments& arguments) {
+    const std::string name = arguments.text("mode").value_or(kModes[LDS_SIMPLIFY_FAST]);
+    for (size_t i = 0; i < kModes.size(); ++i) {
+        if (name == kModes[i])
+            return static_cast<int32_t>(i);
+    }
+    throw UsageError("--mode is '" + name + "'; best, fast or cluster expected");
+}
+
+/// Fills ratio, triangles, error or pixels. Throws UsageError unless exactly one way is given.
+void set_target(const Arguments& arguments, lds_simplify_options& options) {
+    constexpr double kPi = 3.14159265358979323846;
+    options.ratio = arguments.number("ratio", 0, 0, 1);
+    options.triangles = arguments.count("triangles", 0);
+    options.error = arguments.number("error", 0, 0, 1e12);
+    const double pixels = arguments.number("pixels", 1, 1e-6, 1e9);
+    const double height = arguments.number("height", 360, 1e-6, 1e9);
+    const double distance = arguments.number("distance", 0, 0, 1e12);
+    const double angle_deg = arguments.number("angle-deg", 29.4, 0.01, 175);
+    const bool seen =
+        arguments.has("pixels") || arguments.has("distance") || arguments.has("height");
+    if ((options.ratio > 0) + (options.triangles > 0) + (options.error > 0) + (seen ? 1 : 0) != 1)
+        throw UsageError(
+            "give one of --ratio R, --triangles N, --error METRES and --pixels P, more than 0");
+    if (!seen)
+        return;
+    if (distance > 0) {
+        options.error = pixels * distance * 2 * std::tan(angle_deg * kPi / 360) / height;
+    } else if (arguments.has("height") && !arguments.has("distance")) {
+        options.pixels = pixels;
+        options.height_px = height;
+    } else {
+        throw UsageError("--pixels needs --distance METRES or --height PIXELS, more than 0");
+    }
 }
 
 const char* kind_name(int32_t kind) {
@@ -113,14 +153,11 @@ int run_simplify(const Arguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const std::string& output = arguments.positional()[1];
     lds_simplify_options options = lds_simplify_options_default();
-    options.ratio = arguments.number("ratio", 0, 0, 1);
-    options.triangles = arguments.count("triangles", 0);
-    options.error = arguments.number("error", 0, 0, 1e12);
+    set_target(arguments, options);
+    options.mode = mode_of(arguments);
     options.measure = arguments.has("measure") ? 1 : 0;
     options.seed = arguments.count("seed", options.seed);
     options.threads = threads_of(arguments);
-    if ((options.ratio > 0) + (options.triangles > 0) + (options.error > 0) != 1)
-        throw UsageError("give one of --ratio R, --triangles N and --error METRES, more than 0");
     const ModelHandle model = read_model(input);
     lds_simplify_report done{};
     done.struct_size = sizeof done;
@@ -138,9 +175,12 @@ int run_simplify(const Arguments& arguments) {
     Fields report = report_of("simplify", input);
     report.push_back({"picture", {}});
     report.push_back({"output", output});
-    Fields simplified{{"cpu_s", done.cpu_s},
+    Fields simplified{{"mode", kModes[static_cast<size_t>(options.mode)]},
+                      {"cpu_s", done.cpu_s},
                       {"triangles_before", done.triangles_before},
                       {"triangles", done.triangles}};
+    if (options.error > 0)
+        simplified.push_back({"wanted_error", options.error});
     if (done.error >= 0) {
         simplified.push_back({"error", done.error});
         simplified.push_back({"max_error", done.max_error});

@@ -379,9 +379,37 @@ static void test_simplifying_a_flat_grid_costs_no_shape(void) {
     EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
     EXPECT(report.triangles >= 2 && report.triangles <= 8);
     EXPECT(report.error >= 0 && report.error < 1e-6 && report.max_error < 1e-6);
+    options.triangles = 0;
+    options.pixels = 1;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    options.height_px = 100;
+    options.mode = 3;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    for (options.mode = LDS_SIMPLIFY_CLUSTER; options.mode >= LDS_SIMPLIFY_FAST; --options.mode) {
+        EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+        EXPECT(report.triangles > 0 && report.error >= 0 && report.error <= 0.01);
+    }
     lds_totals totals = {sizeof totals, 0, 0, 0, 0, 0};
     EXPECT(lds_model_totals(model, &totals) == LDS_OK);
     EXPECT(totals.triangles_placed == report.triangles);
+    lds_model_destroy(model);
+}
+
+static void test_simplify_options_of_version_1_go_on_working(void) {
+    lds_object grid;
+    lds_model* model = flat_grid(&grid);
+    lds_simplify_options options = lds_simplify_options_default();
+    lds_simplify_report report;
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    options.ratio = 0.25;
+    options.pixels = 3; /* behind the end of the older struct */
+    options.mode = 99;
+    options.struct_size = offsetof(lds_simplify_options, pixels);
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.triangles > 0 && report.triangles <= CELLS * CELLS / 2);
+    options.struct_size -= 8;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
 }
 
@@ -423,5 +451,6 @@ int main(void) {
         test_a_cube_is_seen_all_around();
         test_simplifying_a_flat_grid_costs_no_shape();
     }
+    test_simplify_options_of_version_1_go_on_working();
     return finish();
 }

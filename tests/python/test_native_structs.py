@@ -101,6 +101,7 @@ class Functions(unittest.TestCase):
             (enums.Role, "LDS_ROLE_"),
             (enums.RayClass, "LDS_RAY_"),
             (enums.Kind, "LDS_KIND_"),
+            (enums.SimplifyMode, "LDS_SIMPLIFY_"),
             (enums.Channel, "LDS_CHANNEL_"),
             (enums.Extension, "LDS_EXTENSION_"),
             (enums.AlphaMode, "LDS_ALPHA_MODE_"),

@@ -576,14 +576,24 @@ LDS_API lds_status lds_model_measure(lds_model* model, lds_object object,
 
 /* ---- Simplifying ---------------------------------------------------------------------------- */
 
+typedef enum lds_simplify_mode {
+    LDS_SIMPLIFY_FAST = 0,   /* collapses edges */
+    LDS_SIMPLIFY_BEST = 1,   /* ... with more care, for more time */
+    LDS_SIMPLIFY_CLUSTER = 2 /* joins what lies together: fastest; parts may grow together */
+} lds_simplify_mode;
+
 typedef struct lds_simplify_options {
     uint32_t struct_size;
     double ratio;       /* of the triangles, 0...1; 0: not used */
     uint64_t triangles; /* in the whole model; 0: not used */
     double error;       /* metres: the fewest triangles within it; 0: not used */
-    int32_t measure;    /* 1: measure the error of the result */
+    int32_t measure;    /* 1: measure the error of the result; error and pixels always do */
     uint64_t seed;
     int32_t threads;
+    double pixels;    /* the same as error, in pixels where the model is height_px of them high (its
+                         largest side); 0: not used */
+    double height_px; /* with pixels: more than 0 */
+    int32_t mode;     /* lds_simplify_mode */
 } lds_simplify_options;
 LDS_API lds_simplify_options lds_simplify_options_default(void);
 
@@ -591,11 +601,11 @@ typedef struct lds_simplify_report {
     uint32_t struct_size;
     uint64_t triangles_before;
     uint64_t triangles;
-    double cpu_s;     /* of the collapse alone */
-    double error;     /* metres; negative when it was not measured */
+    double cpu_s;     /* of the simplification alone, all threads */
+    double error;     /* metres in the model's frame; negative when it was not measured */
     double max_error; /* likewise */
 } lds_simplify_report;
-/* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error is given. */
+/* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error, pixels is given. */
 LDS_API lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* options,
                                       lds_job* job, lds_simplify_report* out_report);
 

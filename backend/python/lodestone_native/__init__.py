@@ -20,6 +20,7 @@ from .enums import (
     RayClass,
     Role,
     Severity,
+    SimplifyMode,
     Stage,
     Status,
 )
@@ -80,6 +81,7 @@ __all__ = [
     "RayClass",
     "Role",
     "Severity",
+    "SimplifyMode",
     "SimplifyOptions",
     "Stage",
     "Status",

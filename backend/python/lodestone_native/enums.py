@@ -54,6 +54,14 @@ class Kind(IntEnum):
     ASSEMBLY = 8
 
 
+class SimplifyMode(IntEnum):
+    """How triangles are saved."""
+
+    FAST = 0
+    BEST = 1
+    CLUSTER = 2
+
+
 class Channel(IntEnum):
     """Which of a texel's numbers counts."""
 

@@ -334,6 +334,9 @@ class SimplifyOptions(Sized):
         ("measure", c_int32),
         ("seed", c_uint64),
         ("threads", c_int32),
+        ("pixels", c_double),
+        ("height_px", c_double),
+        ("mode", c_int32),
     ]
 
 

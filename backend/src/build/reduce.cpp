@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/reduce.h"
 
+#include "approximate/cluster.h"
 #include "approximate/simplify.h"
 #include "base/clock.h"
 #include "measure/deviation.h"
@@ -38,19 +39,44 @@ measure::DeviationReference reference_of(const Mesh& mesh, const ray::SkinPtr& s
     return {mesh, {8192, 8192, wanted.seed}, {{}, nullptr, skin}, job};
 }
 
+/// The CPU seconds of this process while it lives, added up.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& sum) : sum_(sum), start_(cpu_seconds()) {}
+    ~Stopwatch() { sum_ += cpu_seconds() - start_; }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& sum_;
+    double start_;
+};
+
+approximate::SimplifyOptions options_of(ReductionMode mode) {
+    approximate::SimplifyOptions options;
+    options.mode = mode == ReductionMode::Best ? approximate::SimplifyMode::Best
+                                               : approximate::SimplifyMode::Fast;
+    return options;
+}
+
 Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const Reduction& wanted,
                  double& cpu_s, const Job& job) {
-    const double start = cpu_seconds();
-    Reduced out{std::make_shared<Mesh>(approximate::simplify(mesh, count, {}, job)), {}};
-    cpu_s += cpu_seconds() - start;
+    Reduced out;
+    {
+        const Stopwatch watch(cpu_s);
+        out.mesh = std::make_shared<Mesh>(
+            wanted.mode == ReductionMode::Cluster
+                ? approximate::cluster(mesh, count, job)
+                : approximate::simplify(mesh, count, options_of(wanted.mode), job));
+    }
     if (wanted.measure)
         out.deviation = deviation_of(reference_of(mesh, skin, wanted, job), *out.mesh, skin, job);
     return out;
 }
 
 /// The coarsest level of a fine chain whose measured error is within the wanted one.
-Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, const Reduction& wanted, double& cpu_s,
-                 const Job& job) {
+Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const Reduction& wanted,
+                 double& cpu_s, const Job& job) {
     std::vector<size_t> targets;
     double target = kStep * static_cast<double>(mesh.triangles.size());
     while (target >= 1) {
@@ -59,39 +85,88 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, const Reduction& wa
             targets.push_back(count);
         target *= kStep;
     }
-    const double start = cpu_seconds();
     std::vector<Mesh> levels;
-    if (!targets.empty())
-        levels = approximate::simplify_chain(mesh, targets, {}, job);
-    cpu_s += cpu_seconds() - start;
+    if (!targets.empty() && wanted.mode != ReductionMode::Cluster) {
+        const Stopwatch watch(cpu_s);
+        levels = approximate::simplify_chain(mesh, targets, options_of(wanted.mode), job);
+    }
     const measure::DeviationReference reference = reference_of(mesh, skin, wanted, job);
     Reduced best{std::make_shared<Mesh>(mesh), measure::Deviation{0, 0}};
-    for (Mesh& level : levels) {
+    for (size_t i = 0; i < targets.size(); ++i) {
         job.check();
+        Mesh level;
+        if (wanted.mode == ReductionMode::Cluster) {
+            const Stopwatch watch(cpu_s);
+            level = approximate::cluster(mesh, targets[i], job);
+        } else if (i < levels.size()) {
+            level = std::move(levels[i]);
+        } else {
+            break;
+        }
         const measure::Deviation deviation = deviation_of(reference, level, skin, job);
-        if (deviation.error > wanted.error)
+        if (deviation.error > error)
             break;
         best = {std::make_shared<Mesh>(std::move(level)), deviation};
     }
     return best;
 }
 
-}  // namespace
+/// For every object by how much its occurrences enlarge an error at most.
+std::vector<double> stretches_of(const Model& model, const std::vector<ObjectIndex>& order) {
+    std::vector<double> stretches(model.objects.size(), 0);
+    if (!order.empty())
+        stretches[order.back()] = 1;  // the root
+    for (size_t i = order.size(); i-- > 0;) {
+        const Object& object = model.objects[order[i]];
+        if (!object.group())
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            stretches[placement.object] = std::max(
+                stretches[placement.object], stretches[order[i]] * stretch(placement.transform));
+    }
+    return stretches;
+}
 
-ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
-    const int given =
-        (wanted.ratio != 0 ? 1 : 0) + (wanted.triangles != 0 ? 1 : 0) + (wanted.error != 0 ? 1 : 0);
+double largest_side(const Model& model) {
+    if (model.root == kNoObject || model.objects[model.root].representations.empty())
+        return 0;
+    const glm::dvec3 size = model.objects[model.root].bound().box.size();
+    return std::max({size.x, size.y, size.z});
+}
+
+void check_targets(const Reduction& wanted) {
+    const int given = (wanted.ratio != 0 ? 1 : 0) + (wanted.triangles != 0 ? 1 : 0) +
+                      (wanted.error != 0 ? 1 : 0) + (wanted.pixels != 0 ? 1 : 0);
     if (given != 1)
-        fail(Status::InvalidArgument, "give one of ratio, triangles and error");
+        fail(Status::InvalidArgument, "give one of ratio, triangles, error and pixels");
     if (wanted.ratio != 0 && !(wanted.ratio > 0 && wanted.ratio <= 1))
         fail(Status::InvalidArgument, "the ratio is ", wanted.ratio, "; 0 to 1 expected");
     if (wanted.error != 0 && !(wanted.error > 0))
         fail(Status::InvalidArgument, "the error is ", wanted.error, " m; more than 0 expected");
+    if (wanted.pixels != 0 && !(wanted.pixels > 0))
+        fail(Status::InvalidArgument, "the error is ", wanted.pixels,
+             " pixels; more than 0 expected");
+    if (wanted.pixels != 0 && !(wanted.height_px > 0))
+        fail(Status::InvalidArgument, "the model is ", wanted.height_px,
+             " pixels high; more than 0 expected");
+    if (wanted.mode != ReductionMode::Fast && wanted.mode != ReductionMode::Best &&
+        wanted.mode != ReductionMode::Cluster)
+        fail(Status::InvalidArgument, "mode is ", static_cast<int>(wanted.mode), ", not 0, 1 or 2");
+}
 
+}  // namespace
+
+ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
+    check_targets(wanted);
     job.stage(Stage::Simplify);
     ReductionReport report;
     std::vector<ObjectIndex> leaves;
-    for (const ObjectIndex index : bottom_up(model)) {
+    const std::vector<ObjectIndex> order = bottom_up(model);
+    const std::vector<double> stretches = stretches_of(model, order);
+    const bool by_error = wanted.error != 0 || wanted.pixels != 0;
+    const double error =
+        wanted.pixels != 0 ? wanted.pixels * largest_side(model) / wanted.height_px : wanted.error;
+    for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.representations.empty() || object.representations[0].summary.kind != Kind::Mesh)
             continue;
@@ -109,20 +184,22 @@ ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
         const Representation& finest = model.objects[leaves[i]].representations[0];
         const Mesh& mesh = finest.mesh();
         ray::SkinPtr skin;  // only what measures needs one
-        if (wanted.error != 0 || wanted.measure)
+        if (by_error || wanted.measure)
             skin = std::make_shared<const ray::Skin>(materials_of(model, finest), texels);
         const auto count = static_cast<size_t>(
             std::max(1.0, std::round(share * static_cast<double>(mesh.triangles.size()))));
-        made.push_back(wanted.error != 0 ? to_error(mesh, skin, wanted, report.cpu_s, job)
-                                         : to_count(mesh, skin, count, wanted, report.cpu_s, job));
+        const double within = error / std::max(stretches[leaves[i]], 1e-300);
+        made.push_back(by_error ? to_error(mesh, skin, within, wanted, report.cpu_s, job)
+                                : to_count(mesh, skin, count, wanted, report.cpu_s, job));
         job.progress(static_cast<double>(i + 1) / static_cast<double>(leaves.size()));
     }
     for (size_t i = 0; i < leaves.size(); ++i) {  // nothing fails from here on
         Representation& finest = model.objects[leaves[i]].representations[0];
         report.triangles += made[i].mesh->triangles.size();
         if (made[i].deviation) {
-            report.error = std::max(report.error, made[i].deviation->error);
-            report.max_error = std::max(report.max_error, made[i].deviation->max);
+            const double scale = stretches[leaves[i]];
+            report.error = std::max(report.error, scale * made[i].deviation->error);
+            report.max_error = std::max(report.max_error, scale * made[i].deviation->max);
         }
         finest.payload = made[i].mesh;
         summarize(finest, model);

@@ -13,6 +13,8 @@ using namespace lodestone::capi;
 
 namespace {
 
+constexpr size_t kSimplifyBefore = offsetof(lds_simplify_options, pixels);
+
 void copy_tensor(const glm::dmat3& tensor, double out[6]) {
     const double values[6] = {tensor[0][0], tensor[1][1], tensor[2][2],
                               tensor[1][0], tensor[2][1], tensor[0][2]};
@@ -109,15 +111,19 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
     return guard([&] {
         require(model, "model");
         checked(out_report, "out_report");
-        const lds_simplify_options& given = checked(options, "options");
+        const lds_simplify_options given = grown(options, kSimplifyBefore, "options");
         const ThreadLimit limit(given.threads);
         model->load_finest();
+        model->summarize();  // its bound
         build::Reduction wanted;
         wanted.ratio = given.ratio;
         wanted.triangles = given.triangles;
         wanted.error = given.error;
+        wanted.pixels = given.pixels;
+        wanted.height_px = given.height_px;
         wanted.measure = given.measure != 0;
         wanted.seed = given.seed;
+        wanted.mode = static_cast<build::ReductionMode>(given.mode);
         const build::ReductionReport done = build::reduce(model->model, wanted, job_of(job));
         model->summarized = false;
         lds_simplify_report out{};
