@@ -14,8 +14,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegrees = 180 / kPi;
 // POV-Ray's fading is 2 / (1 + (d/e)^2): with a tiny e it is an exact 1/d^2 times 2 e^2.
 constexpr double kNear = 1e-3;
-// Suns up to this half angle light as from their middle; the horizon cuts wider ones in parts.
-constexpr double kSmallSun = 0.09;
+constexpr double kWideSun = 0.2;      // half angle above which the fewest first rays miss shadows
 constexpr double kNarrowSun = 0.009;  // half angle of a sun whose penumbra is a few pixels
 
 bool finite(const glm::dvec3& value) {
@@ -47,22 +46,23 @@ public:
         // Cycles spreads the power over the disk tan(angle / 2) at distance 1.
         const double half = std::clamp(light_.angle / 2, 0.0, 1.5);
         const double r = std::tan(half);
-        const bool in_parts = soft_ && half > kSmallSun;
-        // The mean cosine between the middle and the disk: what a facing surface receives less.
-        const double mean = r > 1e-4 && !in_parts ? 2 * (std::sqrt(1 + r * r) - 1) / (r * r) : 1;
+        // The mean cosine between the middle and the disk: what a surface receives less, as long as
+        // no part of the disk is below its horizon. Its own light for each part (area_illumination)
+        // shows only where some is, and shades every point 81 times.
+        const double mean = r > 1e-4 ? 2 * (std::sqrt(1 + r * r) - 1) / (r * r) : 1;
         open(bound.center - way * reach, color * mean / kPi);
         out_ += " parallel point_at ";
         append_vector(out_, bound.center, 15);
         if (soft_ && half > 1e-4) {
             Grid grid{17, 17, start_};
-            if (in_parts)
-                grid = {9, 9, start_ + 1};
+            if (half > kWideSun)
+                ++grid.start;
             else if (half < kNarrowSun)
                 grid.u = grid.v = 5;
             const glm::dvec3 u = perpendicular(way);
             const double width = 2 * r * reach;
             append_grid(u * width, glm::cross(way, u) * width, grid);
-            out_ += in_parts ? " circular area_illumination on" : " circular";
+            out_ += " circular";
         }
         close();
     }

@@ -56,11 +56,20 @@ TEST(PovrayLight, ASunStartsOutsideOfEverything) {
     EXPECT_EQ(written(sun).text, "light_source{<1,2,24> rgb <1,1,1> parallel point_at <1,2,3>}\n");
 }
 
+TEST(PovrayLight, HoweverWideASunPointsAreShadedOnceForAllOfIt) {
+    for (const double angle : {0.01, 0.2, 0.39, 0.9, 3.0}) {
+        Light sun = light_of(LightKind::Sun);
+        sun.angle = angle;
+        EXPECT_FALSE(written(sun).has("area_illumination")) << angle;
+        EXPECT_TRUE(written(sun).has(angle > 0.4 ? " adaptive 1" : " adaptive 0")) << angle;
+    }
+}
+
 TEST(PovrayLight, OnlySoftLightsCastManyRaysAndDraftsNone) {
     for (const LightKind kind : kKinds) {
         const Light light = light_of(kind);
         EXPECT_TRUE(written(light).has(" area_light ")) << written(light).text;
-        const bool in_parts = kind == LightKind::Sun || kind >= LightKind::Spot;
+        const bool in_parts = kind >= LightKind::Spot;
         EXPECT_TRUE(written(light).has(in_parts ? " adaptive 1" : " adaptive 0"));
         const Written finest = written(light, Antialiasing::Reference);
         EXPECT_TRUE(finest.has(in_parts ? " adaptive 2" : " adaptive 1"));
