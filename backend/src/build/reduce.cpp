@@ -2,6 +2,7 @@
 #include "build/reduce.h"
 
 #include "approximate/cluster.h"
+#include "approximate/grid.h"
 #include "approximate/simplify.h"
 #include "base/clock.h"
 #include "measure/deviation.h"
@@ -59,6 +60,19 @@ approximate::SimplifyOptions options_of(ReductionMode mode) {
     return options;
 }
 
+// Below this part of its triangles a grid's even samples are more than a sixth worse than clusters.
+constexpr double kLeastOfGrid = 0.08;
+
+/// The fastest way to a count: a regular grid is sub-sampled, everything else is clustered.
+Mesh clustered(const Mesh& mesh, size_t count, const Job& job) {
+    const auto triangles = static_cast<double>(mesh.triangles.size());
+    if (count >= 2 && static_cast<double>(count) >= kLeastOfGrid * triangles) {
+        if (const auto grid = approximate::find_grid(mesh))
+            return approximate::subsample(mesh, *grid, count, job);
+    }
+    return approximate::cluster(mesh, count, job);
+}
+
 Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const Reduction& wanted,
                  double& cpu_s, const Job& job) {
     Reduced out;
@@ -66,7 +80,7 @@ Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const
         const Stopwatch watch(cpu_s);
         out.mesh = std::make_shared<Mesh>(
             wanted.mode == ReductionMode::Cluster
-                ? approximate::cluster(mesh, count, job)
+                ? clustered(mesh, count, job)
                 : approximate::simplify(mesh, count, options_of(wanted.mode), job));
     }
     if (wanted.measure)
@@ -97,7 +111,7 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const
         Mesh level;
         if (wanted.mode == ReductionMode::Cluster) {
             const Stopwatch watch(cpu_s);
-            level = approximate::cluster(mesh, targets[i], job);
+            level = clustered(mesh, targets[i], job);
         } else if (i < levels.size()) {
             level = std::move(levels[i]);
         } else {
