@@ -19,6 +19,7 @@ constexpr double kMostMerged = 4;  // of the cells that are left
 // How near below the target is near enough.
 constexpr double kNear = 0.985;
 constexpr int kTries = 12;
+constexpr int kGoals = 4;
 
 bool differ(const Triangle& t) {
     return (t.x != t.y) & (t.y != t.z) & (t.z != t.x);
@@ -212,18 +213,23 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
                                               : best;
     }
     double goal = wanted;
-    for (int i = 0; i < 3; ++i) {
+    double too_few = 0;   // goals that left too few triangles, and too many
+    double too_many = 0;  // 0: none yet
+    for (int i = 0; i < kGoals; ++i) {
         size_t count = 0;
         std::vector<uint32_t> group = joined(cells, tree, goal, kNear, count);
         Grouped found = grouped(cells, std::move(group), count);
         const size_t kept = found.triangles.size();
-        if (best.triangles.empty() || (kept <= target && kept > best.triangles.size()))
+        const bool within = kept <= target;
+        if (best.triangles.empty() || (within && kept > best.triangles.size()))
             best = std::move(found);
-        // What was there twice has made room for others.
-        if (kept == 0 || kept > target || static_cast<double>(kept) >= 0.96 * wanted ||
-            count >= cells.triangles.size())
+        if (kept == 0 || (within && static_cast<double>(kept) >= 0.96 * wanted) ||
+            (within && count >= cells.triangles.size()) || (!within && too_few == 0))
             break;
-        goal *= 0.99 * wanted / static_cast<double>(kept);
+        // What was there twice has made room for others.
+        (within ? too_few : too_many) = goal;
+        goal = too_many > 0 ? 0.5 * (too_few + too_many)
+                            : 0.99 * goal * wanted / static_cast<double>(kept);
     }
     return best;
 }
