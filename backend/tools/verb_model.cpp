@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstdio>
+#include <malloc.h>
 
 namespace lodestone::tools {
 namespace {
@@ -150,6 +152,9 @@ int run_measure(const Arguments& arguments) {
 }
 
 int run_simplify(const Arguments& arguments) {
+    // Memory that reading the model frees is used again, instead of new pages asked of the system.
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
     const std::string& input = arguments.positional()[0];
     const std::string& output = arguments.positional()[1];
     lds_simplify_options options = lds_simplify_options_default();

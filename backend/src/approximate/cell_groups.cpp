@@ -12,10 +12,10 @@ namespace {
 
 // Merging across grid lines is dearer than the tree but better. What it may take, in nanoseconds a
 // triangle of the input, and what it does take for a cell it begins with and for each it merges.
-constexpr double kMergeBudget = 6;
+constexpr double kMergeBudget = 5;
 constexpr double kBeginCost = 135;
 constexpr double kMergeCost = 600;
-constexpr double kMostMerged = 4;  // of the cells that are left
+constexpr double kMostMerged = 3;  // of the cells that are left
 // How near below the target is near enough.
 constexpr double kNear = 0.985;
 constexpr int kTries = 12;

@@ -213,6 +213,7 @@ void fill(Cells& cells, const Mesh& mesh, const std::vector<Four>& points, size_
     cells.twins = find_twins(points, keys);
     const std::vector<Sums> sums = sums_of(mesh, points, cells.twins, job);
     const int spare = spare_bits(keys, least);
+    cells.step = std::ldexp(1.0f, (spare + 2) / 3 - kSteps<Code>);
     cells.cell.resize(points.size());
     cells.quadrics.reserve(std::min(keys.size(), 2 * least));
     cells.split.reserve(std::min(keys.size(), 2 * least));

@@ -17,6 +17,7 @@ constexpr uint32_t kNoCell = ~uint32_t{0};
 struct Cells {
     glm::dvec3 low{0.0};          // origin of the frame, metres
     double unit = 0;              // metres; 0: the mesh has no extent, and there are no cells
+    float step = 0;               // the longest side of a cell's box, in the frame
     std::vector<uint32_t> twins;  // of each vertex the first at its position; empty: all differ
     std::vector<uint32_t> cell;   // of each vertex
     std::vector<CellQuadric> quadrics;  // of each cell

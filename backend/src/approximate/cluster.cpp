@@ -13,7 +13,7 @@ namespace lodestone::approximate {
 namespace {
 
 // Cells of the fine grid for each one that the tree leaves: enough to choose from.
-constexpr double kCellsPerLeft = 2;
+constexpr double kCellsPerLeft = 1.6;
 
 bool finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -86,7 +86,7 @@ struct Places {
     std::vector<glm::vec3> points;  // metres
 };
 
-Places places_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping, size_t nodes) {
+Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
     Places places;
     places.of.assign(nodes, kNoCell);
     uint32_t count = 0;
@@ -97,29 +97,24 @@ Places places_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping, 
         }
     }
     places.quadrics.resize(count);
+    std::vector<glm::vec3> lows(count, glm::vec3(2));  // of the cells' origins, in the frame
+    std::vector<glm::vec3> highs(count, glm::vec3(-1));
     for (size_t i = 0; i < cells.count(); ++i) {
         const uint32_t place = places.of[grouping.group[i]];
-        if (place != kNoCell)
-            places.quadrics[place].gather(cells.quadrics[i]);
-    }
-    constexpr float kFar = std::numeric_limits<float>::max();
-    std::vector<std::pair<glm::vec3, glm::vec3>> boxes(count, {glm::vec3(kFar), glm::vec3(-kFar)});
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-        const uint32_t place = places.of[grouping.group[cells.cell[v]]];
         if (place == kNoCell)
             continue;
-        auto& [low, high] = boxes[place];
-        low = glm::min(low, mesh.positions[v]);
-        high = glm::max(high, mesh.positions[v]);
+        const CellQuadric& quadric = cells.quadrics[i];
+        places.quadrics[place].gather(quadric);
+        lows[place] = glm::min(lows[place], quadric.origin);
+        highs[place] = glm::max(highs[place], quadric.origin);
     }
     places.points.reserve(count);
     for (size_t i = 0; i < count; ++i) {
         // Planes that hardly differ meet anywhere: not far from what they are planes of.
-        const auto& [low, high] = boxes[i];
-        const glm::vec3 size = 0.25f * (high - low);
-        const glm::vec3 room(std::max({size.x, size.y, size.z}));
-        const glm::vec3 point = cells.metres(places.quadrics[i].lowest());
-        places.points.push_back(glm::clamp(point, low - room, high + room));
+        const glm::vec3 size = highs[i] - lows[i];
+        const glm::vec3 room(0.25f * std::max({size.x, size.y, size.z}) + cells.step);
+        const glm::vec3 point = places.quadrics[i].lowest();
+        places.points.push_back(cells.metres(glm::clamp(point, lows[i] - room, highs[i] + room)));
     }
     return places;
 }
@@ -273,7 +268,7 @@ Clustered clustered(const Mesh& mesh, size_t target, bool with_quadrics, const J
         out.mesh = largest(mesh, target);
         return out;
     }
-    const Places places = places_of(mesh, cells, grouping, 2 * cells.count());
+    const Places places = places_of(cells, grouping, 2 * cells.count());
     out = Assembly(mesh, cells, grouping, places).result(cells.unit, with_quadrics);
     if (out.mesh.empty())
         out.mesh = largest(mesh, target);
