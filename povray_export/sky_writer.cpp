@@ -5,10 +5,16 @@
 #include "measure/environment_lights.h"
 #include "povray_export/number.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace lodestone::povray {
 namespace {
+
+// Part of the brightest that a light of the sky has at least: fainter ones cast rays at every point
+// for what no display shows, and are what is left of rounding.
+constexpr double kFaintest = 2e-3;
 
 bool finite(const glm::dvec3& value) {
     return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
@@ -61,6 +67,10 @@ std::string statement_of(const World& world, const std::string& file) {
     return out + "}\n\n";
 }
 
+double largest_of(const glm::dvec3& color) {
+    return std::max({color.x, color.y, color.z});
+}
+
 }  // namespace
 
 Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesystem::path& folder,
@@ -79,7 +89,14 @@ Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesyst
         return sky;
     }
     sky.ambient = found.ambient;
+    double largest = largest_of(sky.ambient);
+    for (const measure::EnvironmentLight& each : found.lights)
+        largest = std::max(largest, largest_of(each.irradiance));
     for (const measure::EnvironmentLight& each : found.lights) {
+        if (largest_of(each.irradiance) < kFaintest * largest) {
+            sky.ambient += each.irradiance / (4 * std::numbers::pi);  // in the mean of all normals
+            continue;
+        }
         Light& sun = sky.lights.emplace_back();
         sun.direction = each.direction;
         sun.color = each.irradiance;
