@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/agreement.h"
+
+#include "base/parallel.h"
+#include "measure/convex_bound.h"
+#include "measure/sobol.h"
+#include "measure/visible_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::measure {
+namespace {
+
+// Samples along a side of the pixels that are tried, where they divide that of the picture.
+constexpr std::array<int, 11> kPixelSides{2, 3, 5, 6, 9, 10, 15, 18, 30, 45, 90};
+constexpr double kSky = 0.5;  // of the light on a surface that faces the sun
+// Bounds of the finest and of larger stand-ins: pictures show this much around.
+constexpr double kMargin = 1.1;
+
+/// The 26 directions from the middle of a cube to its faces, edges and corners.
+std::vector<glm::dvec3> directions() {
+    std::vector<glm::dvec3> out;
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                if (x != 0 || y != 0 || z != 0)
+                    out.push_back(glm::normalize(glm::dvec3(x, y, z)));
+            }
+        }
+    }
+    return out;
+}
+
+/// Where a picture is taken from. Columns of the frame: right, up, towards the viewer.
+struct View {
+    glm::dmat3 frame{1.0};
+    glm::dvec3 sun{0.0};
+
+    View(const glm::dvec3& towards, size_t number) {
+        const glm::dvec3 other =
+            std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+        const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
+        const glm::dvec3 up = glm::cross(towards, right);
+        frame = glm::dmat3(right, up, towards);
+        // Around the views by the golden angle: each has its own.
+        const double turn = 2.399963229728653 * static_cast<double>(number);
+        sun = glm::normalize(towards + std::cos(turn) * right + std::sin(turn) * up);
+    }
+};
+
+/// Of a hit, towards the viewer.
+glm::dvec3 normal_at(const Mesh& mesh, const ray::Hit& hit, const glm::dvec3& viewer) {
+    const Triangle& t = mesh.triangles[hit.triangle];
+    glm::dvec3 flat = area_vector(mesh, hit.triangle);
+    if (glm::dot(flat, viewer) < 0)
+        flat = -flat;
+    glm::dvec3 normal = flat;
+    if (!mesh.normals.empty()) {
+        normal = (1 - hit.u - hit.v) * glm::dvec3(mesh.normals[t.x]) +
+                 hit.u * glm::dvec3(mesh.normals[t.y]) + hit.v * glm::dvec3(mesh.normals[t.z]);
+        if (glm::dot(normal, flat) < 0)
+            normal = -normal;
+    }
+    const double length = glm::length(normal);
+    return length > 0 && std::isfinite(length) ? normal / length : viewer;
+}
+
+/// Differences between pixels of one size, with the noise of their samples and without.
+struct Difference {
+    double sum = 0;       // of magnitudes
+    double squares = 0;   // likewise
+    double products = 0;  // of the differences of both halves of the samples
+
+    void add(double first, double second) {
+        const double both = 0.5 * (first + second);
+        sum += std::abs(both);
+        squares += both * both;
+        products += first * second;
+    }
+    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent between
+    /// the halves, so their products know what it added to the squares.
+    double mean(double count) const {
+        const double real = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0;
+        return sum / count * std::sqrt(real);
+    }
+};
+
+/// What pixels of one size tell.
+struct Misses {
+    size_t covered = 0;  // pixels that either picture covers
+    Difference coverage;
+    Difference light;         // of three colors
+    double finest_light = 0;  // sum
+
+    /// Over what may be missed.
+    double worst() const {
+        if (covered == 0)
+            return 0;
+        const auto count = static_cast<double>(covered);
+        const double bright = finest_light / (3 * count);
+        return std::max(coverage.mean(count) / kMostCoverageOff,
+                        bright > 0 ? light.mean(3 * count) / bright / kMostLightOff : 0);
+    }
+};
+
+/// A pixel: means over every other sample, and over those between.
+struct Pixel {
+    std::array<glm::dvec4, 2> halves{glm::dvec4(0.0), glm::dvec4(0.0)};
+
+    Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
+        std::array<double, 2> counts{};
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const size_t half = ((x + y) % 2 != 0) != odd ? 1 : 0;
+                halves[half] += glm::dvec4(corner[static_cast<ptrdiff_t>(y) * stride + x]);
+                ++counts[half];
+            }
+        }
+        for (size_t half = 0; half < 2; ++half)
+            halves[half] /= counts[half];
+    }
+};
+
+Misses compare(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, size_t views,
+               int side, int pixel) {
+    constexpr double kCovered = 1.0 / 255;
+    Misses out;
+    for (size_t view = 0; view < views; ++view) {
+        for (int row = 0; row < side; row += pixel) {
+            for (int column = 0; column < side; column += pixel) {
+                const size_t at = (view * static_cast<size_t>(side) + static_cast<size_t>(row)) *
+                                      static_cast<size_t>(side) +
+                                  static_cast<size_t>(column);
+                const bool odd = (row / pixel + column / pixel) % 2 != 0;
+                const Pixel first(&a[at], side, pixel, odd);
+                const Pixel second(&b[at], side, pixel, odd);
+                if (std::max(first.halves[0].w + first.halves[1].w,
+                             second.halves[0].w + second.halves[1].w) <= 2 * kCovered)
+                    continue;
+                ++out.covered;
+                const std::array<glm::dvec4, 2> off{first.halves[0] - second.halves[0],
+                                                    first.halves[1] - second.halves[1]};
+                out.coverage.add(off[0].w, off[1].w);
+                for (int i = 0; i < 3; ++i)
+                    out.light.add(off[0][i], off[1][i]);
+                for (const glm::dvec4& half : first.halves)
+                    out.finest_light += 0.5 * (half.x + half.y + half.z);
+            }
+        }
+    }
+    return out;
+}
+
+glm::dvec4 total(const std::vector<glm::vec4>& samples) {
+    glm::dvec4 out(0.0);
+    for (const glm::vec4& sample : samples)
+        out += glm::dvec4(sample);
+    return out;
+}
+
+}  // namespace
+
+AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
+                                       int side, const Job& job)
+    : seed_(seed), side_(side) {
+    Box3 box;
+    for (const Triangle& t : finest.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 point(finest.positions[t[corner]]);
+            if (std::isfinite(point.x + point.y + point.z))
+                box.add(point);
+        }
+    }
+    if (!box.empty()) {
+        center_ = box.center();
+        radius_ = kMargin * 0.5 * glm::length(box.size());
+    }
+    finest_ = taken(finest, skin, job);
+}
+
+AgreementReference::Pictures AgreementReference::taken(const Mesh& mesh, const ray::SkinPtr& skin,
+                                                       const Job& job) const {
+    Pictures out;
+    const auto row = static_cast<size_t>(side_);
+    out.samples.assign(kViews * row * row, glm::vec4(0.0f));
+    const ray::Scene scene(mesh, skin);
+    if (mesh.empty() || !(radius_ > 0))
+        return out;
+    const std::vector<glm::dvec3> views = directions();
+    const Sobol numbers(scramble(seed_) + 7);
+    const double lift = ray_lift(radius_);
+    parallel_for(kViews * row, [&](size_t line) {
+        job.check();
+        const View view(views[line / row], line / row);
+        for (size_t column = 0; column < row; ++column) {
+            const size_t number = line * row + column;
+            const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(number));
+            const double x = 2 * (static_cast<double>(column) + u[0]) / side_ - 1;
+            const double y = 2 * (static_cast<double>(line % row) + u[1]) / side_ - 1;
+            if (x * x + y * y > 1)
+                continue;
+            const glm::dvec3 viewer = view.frame[2];
+            const ray::Hit hit =
+                scene.first_hit(center_ + radius_ * (view.frame * glm::dvec3(x, y, 2)), -viewer);
+            if (!hit.hit)
+                continue;
+            const glm::dvec3 normal = normal_at(mesh, hit, viewer);
+            glm::dvec3 flat = area_vector(mesh, hit.triangle);
+            const double area = glm::length(flat);
+            flat = area > 0 ? flat / area : viewer;
+            const glm::dvec3 from = hit.point + lift * (glm::dot(flat, viewer) < 0 ? -flat : flat);
+            double light = 0;
+            if (!scene.occluded(from, cosine_direction(normal, u[2], u[3])))
+                light += kSky;
+            const double facing = glm::dot(normal, view.sun);
+            if (facing > 0 && !scene.occluded(from, view.sun))
+                light += (1 - kSky) * facing;
+            const ray::Shown shown =
+                skin ? skin->at(mesh, hit.triangle, hit.u, hit.v) : ray::Shown{};
+            out.samples[number] = glm::vec4(glm::dvec4(light * shown.color + shown.emission, 1));
+        }
+    });
+    return out;
+}
+
+Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
+                                 const Job& job) const {
+    const Pictures other = taken(stand_in, skin, job);
+    Agreement out;
+    const glm::dvec4 ours = total(finest_.samples);
+    const glm::dvec4 theirs = total(other.samples);
+    out.coverage = ours.w > 0 ? theirs.w / ours.w : 1;
+    for (int i = 0; i < 3; ++i)
+        out.light[i] = theirs[i] > 0 ? ours[i] / theirs[i] : 1;
+    const double sample = 2 * radius_ / side_;
+    // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
+    // power of the size, nearly.
+    double last_misses = 0;
+    int last = 0;
+    out.error = 2 * radius_;
+    for (size_t i = kPixelSides.size(); i-- > 0;) {
+        const int pixel = kPixelSides[i];
+        if (side_ % pixel != 0)
+            continue;
+        const double misses = compare(finest_.samples, other.samples, kViews, side_, pixel).worst();
+        if (misses > 1) {
+            if (last > 0) {
+                const double part =
+                    last_misses > 0 ? std::log(misses) / std::log(misses / last_misses) : 0.0;
+                const double ratio = static_cast<double>(last) / pixel;
+                out.error = pixel * sample * std::pow(ratio, std::clamp(part, 0.0, 1.0));
+            }
+            return out;
+        }
+        last_misses = misses;
+        last = pixel;
+        out.error = pixel * sample;
+    }
+    return out;
+}
+
+}  // namespace lodestone::measure

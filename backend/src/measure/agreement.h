@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Agreement: from which pixel size on pictures of a stand-in and of the finest look the same.
+#pragma once
+
+#include "base/job.h"
+#include "ray/scene.h"
+
+#include <array>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// Pictures agree when, over the covered pixels of all of them, the mean difference of coverage
+/// (0...1) is at most this, ...
+inline constexpr double kMostCoverageOff = 0.10;
+/// ... and that of light, over the mean light of the finest's, at most this.
+inline constexpr double kMostLightOff = 0.20;
+
+struct Agreement {
+    double error = 0;       // the smallest pixel size at which pictures agree, metres
+    double coverage = 0;    // all covered area of the stand-in over that of the finest
+    glm::dvec3 light{0.0};  // the finest's mean light where covered over the stand-in's, by color
+};
+
+/// The error of what is not solid (foliage, fences, crowds, things one can see through): where single
+/// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
+/// how bright it is does. Orthographic pictures along 13 axes, both ways, of a diffuse surface under
+/// a uniform sky (half of the light) and a sun that stands obliquely beside the viewer, with shadows;
+/// both meshes are sampled by the same rays. Larger pixels are means of smaller ones; differences
+/// are those of pictures without sampling noise.
+class AgreementReference {
+public:
+    /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
+    static constexpr int kSide = 90;
+    /// Enough for what is coarse anyway, four times faster.
+    static constexpr int kCoarseSide = 45;
+
+    /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+    AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
+                       int side = kSide, const Job& job = {});
+
+    /// Same bits on any number of threads. Two meshes that show nothing agree at every size; where
+    /// they never agree the error is the side of the whole picture.
+    Agreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
+
+private:
+    static constexpr size_t kViews = 26;
+
+    /// Coverage and light (premultiplied) of each sample of each view.
+    struct Pictures {
+        std::vector<glm::vec4> samples;
+    };
+    Pictures taken(const Mesh& mesh, const ray::SkinPtr& skin, const Job& job) const;
+
+    glm::dvec3 center_{0.0};
+    double radius_ = 0;
+    uint64_t seed_;
+    int side_;
+    Pictures finest_;
+};
+
+}  // namespace lodestone::measure
