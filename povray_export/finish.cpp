@@ -234,6 +234,8 @@ glm::dvec3 color_of(Kind kind, uint32_t lod) {
             return from_srgb({.93, .45, .13});
         case Kind::Ellipsoid:
             return from_srgb({.82, .20, .58});
+        case Kind::Composite:
+            return from_srgb({.55, .34, .76});
         case Kind::Mesh:
         case Kind::Assembly:
             break;

@@ -12,18 +12,17 @@ namespace {
 // Raised whenever the text for the same input changes: files are found again by their name alone.
 constexpr uint32_t kWriterVersion = 2;
 
-std::string primitive_text(const Model& model, const Representation& representation,
-                           const std::string& identifier, const RepresentationOptions& options,
-                           PictureWriter& pictures) {
-    const Primitive& primitive = representation.primitive();
+/// One solid; nothing for one without size.
+std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,
+                       const RepresentationOptions& options, PictureWriter& pictures) {
+    const Primitive& primitive = solid.primitive;
     if (!(primitive.half_size.x > 0 && primitive.half_size.y > 0 && primitive.half_size.z > 0))
         return "";
-    std::string out = "#declare " + identifier + " = ";
-    out += representation.summary.kind == Kind::Box ? "box{<-1,-1,-1>,<1,1,1>" : "sphere{<0,0,0>,1";
+    std::string out = solid.box ? "box{<-1,-1,-1>,<1,1,1>" : "sphere{<0,0,0>,1";
     if (options.textures) {
         Material material;
-        if (!representation.materials.empty()) {
-            const uint32_t index = representation.materials[0];
+        if (solid.slot < representation.materials.size()) {
+            const uint32_t index = representation.materials[solid.slot];
             if (index >= model.materials.size())
                 fail(Status::InvalidArgument, "a representation uses material ", index, " of ",
                      model.materials.size());
@@ -41,6 +40,28 @@ std::string primitive_text(const Model& model, const Representation& representat
     append_matrix(out, frame_of(primitive));
     out += "}\n";
     return out;
+}
+
+std::string solids_text(const Model& model, const Representation& representation,
+                        const std::string& identifier, const RepresentationOptions& options,
+                        PictureWriter& pictures) {
+    const std::string declare = "#declare " + identifier + " = ";
+    if (representation.summary.kind != Kind::Composite) {
+        const Solid solid{representation.summary.kind == Kind::Box, representation.primitive(), 0};
+        const std::string text = solid_text(model, representation, solid, options, pictures);
+        return text.empty() ? text : declare + text;
+    }
+    std::string out;
+    size_t count = 0;
+    for (const Solid& solid : representation.composite().solids) {
+        const std::string text = solid_text(model, representation, solid, options, pictures);
+        count += text.empty() ? 0 : 1;
+        out += text;
+    }
+    if (count == 0)
+        return "";
+    // A union of one is an error to POV-Ray.
+    return count == 1 ? declare + out : declare + "union{\n" + out + "}\n";
 }
 
 }  // namespace
@@ -62,7 +83,7 @@ std::string representation_text(const Model& model, const Representation& repres
                                 const std::string& identifier, const RepresentationOptions& options,
                                 PictureWriter& pictures, const Job& job) {
     if (representation.summary.kind != Kind::Mesh)
-        return primitive_text(model, representation, identifier, options, pictures);
+        return solids_text(model, representation, identifier, options, pictures);
     const Mesh& mesh = representation.mesh();
     check(mesh);
     std::optional<MeshTextures> textures;

@@ -46,15 +46,16 @@ Fields report_of(const char* verb, const std::string& input) {
 }
 
 Fields fields_of(const lds_cut_summary& summary) {
-    return {
-        {"kinds",
-         Fields{{"mesh", summary.mesh}, {"box", summary.box}, {"ellipsoid", summary.ellipsoid}}},
-        {"occurrences", summary.occurrences},
-        {"originals", summary.originals},
-        {"triangles", summary.triangles},
-        {"bytes", summary.bytes},
-        {"largest_error_px", summary.largest_error_px},
-        {"largest_error_name", summary.largest_error_name}};
+    return {{"kinds", Fields{{"mesh", summary.mesh},
+                             {"box", summary.box},
+                             {"ellipsoid", summary.ellipsoid},
+                             {"composite", summary.composite}}},
+            {"occurrences", summary.occurrences},
+            {"originals", summary.originals},
+            {"triangles", summary.triangles},
+            {"bytes", summary.bytes},
+            {"largest_error_px", summary.largest_error_px},
+            {"largest_error_name", summary.largest_error_name}};
 }
 
 List problems_of(const lds_model* model) {

@@ -65,6 +65,8 @@ const char* kind_name(int32_t kind) {
             return "box";
         case LDS_KIND_ELLIPSOID:
             return "ellipsoid";
+        case LDS_KIND_COMPOSITE:
+            return "composite";
         case LDS_KIND_ASSEMBLY:
             return "assembly";
         default:

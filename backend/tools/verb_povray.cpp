@@ -128,7 +128,8 @@ int run_povray(const Arguments& arguments) {
     if (lds_model_light_count(model.get()) == 0)
         light_up(model.get());
     lds_view view = view_of(arguments, model.get(), true);
-    view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID;
+    view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID |
+                 1u << LDS_KIND_COMPOSITE;
     const SceneFolder folder(arguments.text("scene"));
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;

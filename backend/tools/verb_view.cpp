@@ -22,12 +22,14 @@ int run_cut(const Arguments& arguments) {
     summary.struct_size = sizeof summary;
     check(lds_cut_get_summary(cut.get(), &summary));
     std::printf(
-        "%llu occurrences (%llu originals): %llu meshes, %llu boxes, %llu ellipsoids; "
+        "%llu occurrences (%llu originals): %llu meshes, %llu boxes, %llu ellipsoids, "
+        "%llu composites; "
         "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px (%s)\n",
         static_cast<unsigned long long>(summary.occurrences),
         static_cast<unsigned long long>(summary.originals),
         static_cast<unsigned long long>(summary.mesh), static_cast<unsigned long long>(summary.box),
         static_cast<unsigned long long>(summary.ellipsoid),
+        static_cast<unsigned long long>(summary.composite),
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
         shown(summary.largest_error_name).c_str());

@@ -29,15 +29,16 @@ def _total(row: dict) -> float:
 
 def _table(rows: list[dict]) -> list[str]:
     lines = [
-        "| picture | occurrences (mesh / box / ellipsoid) | triangles | scene MB | export s "
-        "| parse s | trace s | memory MB | mean | 99.9 % | max | SSIM |",
+        "| picture | occurrences (mesh / box / ellipsoid / composite) | triangles | scene MB "
+        "| export s | parse s | trace s | memory MB | mean | 99.9 % | max | SSIM |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
         kinds = row["kinds"]
         lines.append(
             f"| {row['picture']} | {row['occurrences']:,} ({kinds['mesh']:,} / {kinds['box']:,} / "
-            f"{kinds['ellipsoid']:,}) | {row['triangles']:,} | {row['scene_bytes'] / 1e6:.1f} "
+            f"{kinds['ellipsoid']:,} / {kinds['composite']:,}) | {row['triangles']:,} "
+            f"| {row['scene_bytes'] / 1e6:.1f} "
             f"| {row['export_cpu_s']:.2f} | {row['parse_cpu_s']:.2f} | {row['trace_cpu_s']:.2f} "
             f"| {row['memory_bytes'] / 1e6:.1f} | {row['mean']:.4f} | {row['p999']:.3f} "
             f"| {row['max']:.3f} | {row['ssim']:.3f} |"

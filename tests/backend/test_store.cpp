@@ -48,6 +48,9 @@ Model rich_model() {
     add(Kind::Mesh, 0.01, std::make_shared<const Mesh>(slotted));
     add(Kind::Ellipsoid, 0.1, Primitive{{1, 2, 3}, glm::dmat3(1.0), {0.5, 0.25, 0.125}});
     add(Kind::Box, 0.7, Primitive{{1, 2, 3}, glm::dmat3(1.0), {1.0 / 3, 0.25, 0.125}});
+    const Primitive third{{1, 2, 3}, glm::dmat3(1.0), {1.0 / 3, 0.25, 0.125}};
+    add(Kind::Composite, 0.8,
+        std::make_shared<const Composite>(Composite{{{true, third, 0}, {false, third, 0}}}));
     model.objects[0].build_hash = 0x0123456789abcdef;
     Camera camera;
     camera.name = "far";
@@ -127,6 +130,16 @@ void expect_same(const Model& a, const Model& b) {
                     EXPECT_EQ(r.assembly().placements[p].name, s.assembly().placements[p].name);
                     EXPECT_EQ(r.assembly().placements[p].transform.offset,
                               s.assembly().placements[p].transform.offset);
+                }
+            } else if (r.summary.kind == Kind::Composite) {
+                ASSERT_EQ(r.composite().solids.size(), s.composite().solids.size());
+                for (size_t j = 0; j < r.composite().solids.size(); ++j) {
+                    const Solid& one = r.composite().solids[j];
+                    const Solid& other = s.composite().solids[j];
+                    EXPECT_EQ(one.box, other.box);
+                    EXPECT_EQ(one.slot, other.slot);
+                    EXPECT_EQ(one.primitive.half_size, other.primitive.half_size);
+                    EXPECT_EQ(one.primitive.center, other.primitive.center);
                 }
             } else {
                 EXPECT_EQ(r.primitive().half_size, s.primitive().half_size);
@@ -269,7 +282,7 @@ TEST(Store, UnusedFilesGoAfterTheNextButOneWrite) {
     Model model = rich_model();
     store.write(model, {});
     const fs::path gone =
-        store.folder() / segment::file_of(model.objects[0].representations[3].summary.hash);
+        store.folder() / segment::file_of(model.objects[0].representations.back().summary.hash);
     model.objects[0].representations.pop_back();
     store.write(model, {});
     EXPECT_TRUE(fs::exists(gone));  // a reader of the previous tileset may still want it
@@ -298,7 +311,7 @@ TEST(Store, TilesHoldTheirChildrenAndErrorsFall) {
     EXPECT_EQ(tileset.at("asset").at("version"), "1.1");
     size_t tiles = 0;
     check_tile(tileset.at("root"), store.folder(), tiles);
-    EXPECT_EQ(tiles, 1u + 2u + 4u * 4u);
+    EXPECT_EQ(tiles, 1u + 2u + 4u * 5u);
     EXPECT_GE(tileset.at("geometricError").get<double>(),
               tileset.at("root").at("geometricError").get<double>());
 }

@@ -147,7 +147,8 @@ static void test_build_and_cut(const char* scratch) {
     summary.struct_size = sizeof summary;
     EXPECT(lds_cut_get_summary(cut, &summary) == LDS_OK);
     EXPECT(summary.occurrences >= 1 && summary.largest_error_px <= 1);
-    EXPECT(summary.mesh + summary.box + summary.ellipsoid == summary.occurrences);
+    EXPECT(summary.mesh + summary.box + summary.ellipsoid + summary.composite ==
+           summary.occurrences);
     lds_choice choices[8];
     EXPECT(lds_cut_choice_copy(cut, choices, 8) == LDS_OK);
     EXPECT(lds_cut_choice_count(cut) == summary.occurrences);

@@ -204,6 +204,29 @@ TEST(PovrayWriter, SameBytesFromOneThreadAndFromAll) {
     EXPECT_EQ(bytes[0], bytes[1]);
 }
 
+TEST(PovrayWriter, ACompositeIsOneUnionAndOneOfASingleSolidIsNone) {
+    Model model;
+    model.materials = {Material{}, Material{}};
+    model.materials[1].base_color = {1, 0, 0};
+    const auto text_of = [&](std::vector<Solid> solids) {
+        Representation level;
+        level.summary.kind = Kind::Composite;
+        level.materials = {0, 1};
+        level.payload = std::make_shared<const Composite>(Composite{std::move(solids)});
+        summarize(level, model);
+        PictureWriter pictures({});
+        return representation_text(model, level, "LDS_R_0", {}, pictures, {});
+    };
+    Solid flat{false, {}, 1};
+    flat.primitive.half_size.z = 0;
+    const std::string two = text_of({{true, {}, 0}, {false, {}, 1}, flat});
+    EXPECT_EQ(two.find("#declare LDS_R_0 = union{\nbox{"), 0u) << two;
+    EXPECT_NE(two.find("sphere{"), std::string::npos);
+    EXPECT_EQ(two.find("sphere{", two.find("sphere{") + 1), std::string::npos) << "one has no size";
+    EXPECT_EQ(text_of({{true, {}, 0}, flat}).find("#declare LDS_R_0 = box{"), 0u);
+    EXPECT_EQ(text_of({flat}), "");
+}
+
 TEST(PovrayWriter, NamesOfUsersNeverReachTheText) {
     const std::string evil = "a\"*/\n#error \"x\"\r}{<\xe5\x90\x8d>;'\\";
     Builder builder;

@@ -103,6 +103,7 @@ typedef enum lds_kind {
     LDS_KIND_MESH = 1,
     LDS_KIND_BOX = 3,
     LDS_KIND_ELLIPSOID = 4,
+    LDS_KIND_COMPOSITE = 7, /* several boxes and ellipsoids */
     LDS_KIND_ASSEMBLY = 8
 } lds_kind;
 
@@ -689,6 +690,7 @@ typedef struct lds_cut_summary {
     uint64_t bytes;     /* in POV-Ray's memory */
     double largest_error_px;
     const char* largest_error_name; /* path of placements */
+    uint64_t composite;             /* occurrences of that kind */
 } lds_cut_summary;
 LDS_API lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary);
 

@@ -51,6 +51,7 @@ class Kind(IntEnum):
     MESH = 1
     BOX = 3
     ELLIPSOID = 4
+    COMPOSITE = 7
     ASSEMBLY = 8
 
 

@@ -409,6 +409,7 @@ class CutSummary(Sized):
         ("bytes", c_uint64),
         ("largest_error_px", c_double),
         ("largest_error_name", c_char_p),
+        ("composite", c_uint64),
     ]
 
 

@@ -50,6 +50,7 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         out.bytes = cut->cut.bytes;
         out.largest_error_px = cut->cut.largest_error_px;
         out.largest_error_name = cut->largest_error_name.c_str();
+        out.composite = kind(Kind::Composite);
         hand_out(out_summary, out, "out_summary");
     });
 }

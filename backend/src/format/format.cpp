@@ -78,13 +78,7 @@ Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
     std::map<uint32_t, uint16_t> slot_of;
     for_each_occurrence(model, [&](const Occurrence& occurrence) {
         const Representation& finest = model.objects[occurrence.object].representations[0];
-        Mesh part;
-        if (finest.summary.kind == Kind::Box)
-            part = tessellate_box(finest.primitive());
-        else if (finest.summary.kind == Kind::Ellipsoid)
-            part = tessellate_ellipsoid(finest.primitive(), 3);
-        else
-            part = finest.mesh();
+        Mesh part = tessellated(finest, 3);
         std::vector<uint16_t> slots(part.triangles.size());
         for (size_t i = 0; i < slots.size(); ++i) {
             const uint16_t slot = part.slot(i);

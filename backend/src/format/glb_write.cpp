@@ -160,12 +160,10 @@ private:
         if (object.representations.empty())
             return known;
         const Representation& finest = object.representations[0];
-        Mesh tessellated;
-        if (finest.summary.kind == Kind::Box)
-            tessellated = tessellate_box(finest.primitive());
-        else if (finest.summary.kind == Kind::Ellipsoid)
-            tessellated = tessellate_ellipsoid(finest.primitive(), 3);
-        const Mesh& mesh = finest.summary.kind == Kind::Mesh ? finest.mesh() : tessellated;
+        Mesh triangles;
+        if (finest.summary.kind != Kind::Mesh)
+            triangles = tessellated(finest, 3);
+        const Mesh& mesh = finest.summary.kind == Kind::Mesh ? finest.mesh() : triangles;
         if (mesh.empty())
             return known;
         std::vector<SlotMaterial> materials;

@@ -107,6 +107,14 @@ void summarize(Representation& representation, const Model& model, std::optional
         summary.bound = bound_of(mesh.positions);
         summary.cost = {mesh.triangles.size(), mesh.triangles.size() * kBytesPerTriangle};
         hasher.value(mesh_hash ? *mesh_hash : hash_of(mesh));
+    } else if (summary.kind == Kind::Composite) {
+        const Composite& composite = representation.composite();
+        summary.bound = bound_of(composite);
+        summary.cost = {0, composite.solids.size() * kBytesPerPrimitive};
+        for (const Solid& solid : composite.solids)
+            hasher.value(solid.box)
+                .bytes(&solid.primitive, sizeof solid.primitive)
+                .value(solid.slot);
     } else {
         const Primitive& primitive = representation.primitive();
         summary.bound =

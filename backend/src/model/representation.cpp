@@ -19,6 +19,8 @@ const char* name_of(Kind kind) {
             return "box";
         case Kind::Ellipsoid:
             return "ellipsoid";
+        case Kind::Composite:
+            return "composite";
         case Kind::Assembly:
             return "assembly";
     }
@@ -26,7 +28,8 @@ const char* name_of(Kind kind) {
 }
 
 Kind kind_named(const std::string& word) {
-    for (const Kind kind : {Kind::Mesh, Kind::Box, Kind::Ellipsoid, Kind::Assembly}) {
+    for (const Kind kind :
+         {Kind::Mesh, Kind::Box, Kind::Ellipsoid, Kind::Composite, Kind::Assembly}) {
         if (word == name_of(kind))
             return kind;
     }
@@ -52,6 +55,28 @@ const Assembly& Representation::assembly() const {
     if (held == nullptr || *held == nullptr)
         wrong_payload(*this, "assembly");
     return **held;
+}
+
+const Composite& Representation::composite() const {
+    const auto* held = std::get_if<std::shared_ptr<const Composite>>(&payload);
+    if (held == nullptr || *held == nullptr)
+        wrong_payload(*this, "composite");
+    return **held;
+}
+
+Mesh tessellated(const Representation& representation, int subdivisions) {
+    switch (representation.summary.kind) {
+        case Kind::Box:
+            return tessellate_box(representation.primitive());
+        case Kind::Ellipsoid:
+            return tessellate_ellipsoid(representation.primitive(), subdivisions);
+        case Kind::Composite:
+            return tessellate(representation.composite(), subdivisions);
+        case Kind::Mesh:
+        case Kind::Assembly:
+            break;
+    }
+    return representation.mesh();
 }
 
 }  // namespace lodestone

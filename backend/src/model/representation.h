@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/hash.h"
+#include "model/composite.h"
 #include "model/placement.h"
-#include "model/primitive.h"
 
 #include <memory>
 #include <string>
@@ -18,6 +18,7 @@ enum class Kind : uint8_t {
     Mesh = 1,
     Box = 3,
     Ellipsoid = 4,
+    Composite = 7,
     Assembly = 8,
 };
 
@@ -33,7 +34,8 @@ constexpr KindMask mask_of(Kind kind) {
 inline constexpr KindMask kAllKinds = ~KindMask{0};
 
 /// What POV-Ray 3.7 keeps (measured): for a triangle of a mesh with or without normals, for a
-/// primitive, and for each occurrence, whatever it draws.
+/// primitive, and for each occurrence, whatever it draws. Meshes are shared between occurrences,
+/// the solids of a composite are copied for each.
 inline constexpr uint64_t kBytesPerTriangle = 245;
 inline constexpr uint64_t kBytesPerPrimitive = 1500;
 inline constexpr uint64_t kBytesPerOccurrence = 1500;
@@ -53,6 +55,12 @@ struct Summary {
     Hash hash = 0;  // of the payload and its materials: equal hashes draw the same
 };
 
+/// Bytes of a representation for each of `uses` occurrences, besides those of the occurrence itself.
+inline double bytes_each(Kind kind, uint64_t bytes, uint64_t uses) {
+    const double shares = kind == Kind::Composite || uses < 1 ? 1 : static_cast<double>(uses);
+    return static_cast<double>(bytes) / shares;
+}
+
 /// Children of a group. Shared by value: cheap to copy, never changed once in a representation.
 struct Assembly {
     std::vector<Placement> placements;
@@ -60,7 +68,7 @@ struct Assembly {
 
 /// monostate = not resident.
 using Payload = std::variant<std::monostate, std::shared_ptr<const Mesh>, Primitive,
-                             std::shared_ptr<const Assembly>>;
+                             std::shared_ptr<const Assembly>, std::shared_ptr<const Composite>>;
 
 struct Representation {
     Summary summary;
@@ -72,6 +80,11 @@ struct Representation {
     const Mesh& mesh() const;
     const Primitive& primitive() const;
     const Assembly& assembly() const;
+    const Composite& composite() const;
 };
+
+/// Its triangles, for consumers that know nothing else; ellipsoids as 20 * 4^subdivisions. Throws
+/// Error(Internal) for an assembly, and for what is not resident.
+Mesh tessellated(const Representation& representation, int subdivisions = 2);
 
 }  // namespace lodestone

@@ -81,7 +81,8 @@ Cut choose_below(const Model& model, ObjectIndex root_object, const View& view, 
         cut.chosen.push_back(index);
         cut.triangles += choice->summary.cost.triangles;
         cut.bytes += kBytesPerOccurrence;
-        if (distinct.insert(choice->summary.hash).second)
+        if (distinct.insert(choice->summary.hash).second ||
+            choice->summary.kind == Kind::Composite)  // copied for each
             cut.bytes += choice->summary.cost.bytes;
         ++cut.kinds[name_of(choice->summary.kind)];
         if (node.error_px > cut.largest_error_px) {

@@ -121,6 +121,10 @@ Json out(const Attributes& a) {
             {"rays", a.rays}};
 }
 
+Json out(const Primitive& p) {
+    return {{"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
+}
+
 Json out(const Representation& r) {
     const Summary& s = r.summary;
     Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
@@ -133,9 +137,15 @@ Json out(const Representation& r) {
         json["high"] = out(s.bound.box.high);
     }
     if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
-        const Primitive& p = r.primitive();
-        json["primitive"] = {
-            {"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
+        json["primitive"] = out(r.primitive());
+    } else if (s.kind == Kind::Composite) {
+        Json solids = Json::array();
+        for (const Solid& solid : r.composite().solids) {
+            solids.push_back(out(solid.primitive));
+            solids.back()["box"] = solid.box;
+            solids.back()["slot"] = solid.slot;
+        }
+        json["solids"] = std::move(solids);
     } else if (s.kind == Kind::Assembly) {
         Json placements = Json::array();
         for (const Placement& placement : r.assembly().placements) {

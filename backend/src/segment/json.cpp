@@ -182,6 +182,31 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
     return out;
 }
 
+Primitive primitive(const Json& json, Kind kind) {
+    const Primitive out{vector(json, "center"), matrix(json, "axes"), vector(json, "half_size")};
+    if (!(glm::min(out.half_size.x, glm::min(out.half_size.y, out.half_size.z)) > 0))
+        fail(Status::BadFile, "a ", name_of(kind), " has no size");
+    return out;
+}
+
+std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
+    constexpr size_t kMostSolids = 1024;  // more are no file of ours
+    if (!json.is_array() || json.empty() || json.size() > kMostSolids)
+        fail(Status::BadFile, "a composite has ", json.size(), " solids");
+    auto out = std::make_shared<Composite>();
+    for (const Json& one : json) {
+        Solid solid;
+        solid.box = one.at("box").get<bool>();
+        solid.primitive = primitive(one, solid.box ? Kind::Box : Kind::Ellipsoid);
+        const auto slot = one.at("slot").get<uint32_t>();
+        if (slot >= slots)
+            fail(Status::BadFile, "a solid shows slot ", slot, " of ", slots);
+        solid.slot = static_cast<uint16_t>(slot);
+        out->solids.push_back(solid);
+    }
+    return out;
+}
+
 Representation representation(const Json& json, size_t object_count, size_t material_count) {
     Representation r;
     Summary& s = r.summary;
@@ -206,12 +231,9 @@ Representation representation(const Json& json, size_t object_count, size_t mate
                  material_count);
     }
     if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
-        const Json& p = json.at("primitive");
-        const Primitive primitive{vector(p, "center"), matrix(p, "axes"), vector(p, "half_size")};
-        if (!(glm::min(primitive.half_size.x,
-                       glm::min(primitive.half_size.y, primitive.half_size.z)) > 0))
-            fail(Status::BadFile, "a ", name_of(s.kind), " has no size");
-        r.payload = primitive;
+        r.payload = primitive(json.at("primitive"), s.kind);
+    } else if (s.kind == Kind::Composite) {
+        r.payload = composite(json.at("solids"), r.materials.size());
     } else if (s.kind == Kind::Assembly) {
         r.payload = assembly(json, object_count);
     }

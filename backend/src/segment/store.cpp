@@ -18,14 +18,7 @@ constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
 
 /// What a stranger sees of a representation.
 Mesh drawable(const Representation& representation) {
-    switch (representation.summary.kind) {
-        case Kind::Box:
-            return tessellate_box(representation.primitive());
-        case Kind::Ellipsoid:
-            return tessellate_ellipsoid(representation.primitive());
-        default:
-            return representation.mesh();
-    }
+    return tessellated(representation);
 }
 
 void make_folder(const fs::path& folder) {

@@ -10,7 +10,15 @@ from . import identity, locked_folder, report
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
-POVRAY_KINDS = (1 << native.Kind.MESH) | (1 << native.Kind.BOX) | (1 << native.Kind.ELLIPSOID)
+POVRAY_KINDS = sum(
+    1 << kind
+    for kind in (
+        native.Kind.MESH,
+        native.Kind.BOX,
+        native.Kind.ELLIPSOID,
+        native.Kind.COMPOSITE,
+    )
+)
 
 
 @dataclass(frozen=True)

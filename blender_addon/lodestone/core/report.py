@@ -52,7 +52,12 @@ def build_part(report: Any) -> dict[str, Any]:
 
 def cut_part(summary: Any) -> dict[str, Any]:
     return {
-        "kinds": {"mesh": summary.mesh, "box": summary.box, "ellipsoid": summary.ellipsoid},
+        "kinds": {
+            "mesh": summary.mesh,
+            "box": summary.box,
+            "ellipsoid": summary.ellipsoid,
+            "composite": summary.composite,
+        },
         "occurrences": summary.occurrences,
         "originals": summary.originals,
         "triangles": summary.triangles,

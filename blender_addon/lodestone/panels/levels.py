@@ -13,6 +13,7 @@ _KINDS = {
     native.Kind.MESH: "Simplified",
     native.Kind.BOX: "Box",
     native.Kind.ELLIPSOID: "Ellipsoid",
+    native.Kind.COMPOSITE: "Composite",
     native.Kind.ASSEMBLY: "Group",
 }
 
@@ -58,9 +59,9 @@ class LODESTONE_RENDER_PT_levels_view(EnginePanel, Panel):
         before, after = progress.count(render.triangles_placed), progress.count(render.triangles)
         share = progress.percent(render.triangles, render.triangles_placed)
         values.label(text=f"{before} \N{RIGHTWARDS ARROW} {after}   {share}")
-        names.label(text="Meshes, Boxes, Ellipsoids")
-        kinds = render.kinds
-        values.label(text=f"{kinds['mesh']:,}, {kinds['box']:,}, {kinds['ellipsoid']:,}")
+        names.label(text="Meshes, Boxes, Ellipsoids, Composites")
+        words = ("mesh", "box", "ellipsoid", "composite")
+        values.label(text=", ".join(f"{render.kinds[word]:,}" for word in words))
         names.label(text="Largest Error")
         if render.largest_error_name:
             text = f"{render.largest_error_px:.2f} px   {render.largest_error_name}"
