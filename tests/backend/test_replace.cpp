@@ -271,6 +271,28 @@ TEST(Replace, WhatWasFittedToMeasuredThingsMeasuresTheSameAgain) {
     }
 }
 
+TEST(Replace, ManyRaysFindAreaCentroidAndTensorOfFinelyMeasuredThingsAgain) {
+    for (const Original& original : originals()) {
+        const std::string name = original.name;
+        if (name != "car" && name != "table" && name != "book")
+            continue;
+        SCOPED_TRACE(name);
+        const Attributes wanted = by_rays(original.mesh, 131072, 1);
+        const auto box = fit_box(wanted, bound_of(original.mesh.positions));
+        ASSERT_TRUE(box);
+        const Attributes got = by_rays(tessellate_box(*box), 131072, 2);
+        EXPECT_NEAR(got.visible_area / wanted.visible_area, 1, 0.005);
+        EXPECT_LT(glm::length(got.centroid - wanted.centroid), 0.001 * wanted.radius_of_gyration());
+        const glm::dmat3 a = got.moments;
+        const glm::dmat3 b = wanted.moments;
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 miss =
+                a[i] / (a[0][0] + a[1][1] + a[2][2]) - b[i] / (b[0][0] + b[1][1] + b[2][2]);
+            EXPECT_LT(worst(miss), 0.01);
+        }
+    }
+}
+
 TEST(Replace, FlatQuadGetsAThinBoxOfItsSize) {
     const Mesh quad = shapes::quad(2, 1);
     const Attributes wanted = attributes_of(quad, 2);
@@ -305,6 +327,48 @@ TEST(Replace, SparseGroupsAreRefused) {
     }
     EXPECT_FALSE(fit_box(attributes_of(flock, 1), bound_of(flock.positions)));
     EXPECT_FALSE(fit_ellipsoid(attributes_of(flock, 1), bound_of(flock.positions)));
+}
+
+TEST(Replace, SparseGroupsAreClearShellsOfTheirExtentAndOpaqueAsThereIsToSee) {
+    Mesh flock;
+    Random random(11);
+    for (int i = 0; i < 40; ++i) {
+        Affine shift;
+        shift.offset = {10 * random.uniform(), 10 * random.uniform(), 10 * random.uniform()};
+        append(flock, shapes::sphere(0.5, 2), shift);
+    }
+    const Attributes wanted = attributes_of(flock, 1);
+    for (const bool as_box : {true, false}) {
+        const auto clear = as_box ? fit_clear_box(wanted, bound_of(flock.positions))
+                                  : fit_clear_ellipsoid(wanted, bound_of(flock.positions));
+        ASSERT_TRUE(clear);
+        const Shell shell = as_box ? box_shell(clear->primitive.half_size)
+                                   : ellipsoid_shell(clear->primitive.half_size);
+        EXPECT_NEAR(clear->opacity * shell.area, wanted.visible_area, 1e-9 * wanted.visible_area);
+        const double alpha = surface_alpha(clear->opacity);
+        EXPECT_NEAR((1 - alpha) * (1 - alpha), 1 - clear->opacity, 1e-12);
+        // The whole tensor, not its shape alone (4.37).
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3& axis = clear->primitive.axes[i];
+            EXPECT_NEAR(shell.variances[i] * wanted.visible_area,
+                        glm::dot(axis, wanted.moments * axis), 1e-6 * wanted.moments[0][0]);
+        }
+    }
+    // What is dense, or hardly there, is none.
+    const Mesh cube = shapes::cube();
+    EXPECT_FALSE(fit_clear_box(attributes_of(cube, 1), bound_of(cube.positions)));
+    EXPECT_FALSE(fit_clear_box(Attributes{}, Bound{}));
+    Attributes faint = wanted;
+    faint.visible_area *= 0.01;
+    faint.moments *= 0.01;
+    EXPECT_FALSE(fit_clear_box(faint, bound_of(flock.positions)));
+}
+
+TEST(Replace, FourthMomentTellsBoxesFromBalls) {
+    EXPECT_TRUE(boxlike(by_rays(shapes::box({-1, -2, -3}, {1, 2, 3}), 2048, 1)));
+    EXPECT_TRUE(boxlike(by_rays(shapes::cube(), 2048, 1)));
+    EXPECT_FALSE(boxlike(by_rays(shapes::sphere(2, 3), 2048, 1)));
+    EXPECT_FALSE(boxlike(by_rays(shapes::ellipsoid({1, 2, 3}), 2048, 1)));
 }
 
 TEST(Replace, ExtremeAndBrokenAttributesNeverGiveNaN) {

@@ -24,6 +24,12 @@ constexpr double kSparseRow = 0.36;
 /// them: 1.44 (box) and 1.67 (ellipsoid) in the limit; a cube asks for an ellipsoid of 1.29.
 constexpr double kBoxReach = 1.2;
 constexpr double kEllipsoidReach = 1.4;
+/// What covers more than this of its shell is better shown as a solid of its area, and what covers
+/// less is hardly there.
+constexpr double kClear = 0.55;
+constexpr double kFaintest = 0.02;
+/// Half way from a sphere to a box.
+constexpr double kBoxMoment = 0.8;
 
 /// The frame the variances are matched in.
 glm::dmat3 axes_of(const Attributes& attributes) {
@@ -101,30 +107,51 @@ void keep_thickness(glm::dvec3& half) {
         half[order[i]] = std::max(half[order[i]], kThickness * half[order[i - 1]]);
 }
 
+/// The primitive whose variances are the object's, and how much of its area can be seen.
+struct Matched {
+    Primitive primitive;
+    double density = 0;
+};
+
+/// Nothing where the object has no extent to match, or is in two heaps.
+template <typename Match, typename Measure>
+std::optional<Matched> matched(const Attributes& attributes, const Bound& bound, Match match,
+                               Measure measure, double reach) {
+    if (!usable(attributes))
+        return std::nullopt;
+    Matched out;
+    Primitive& primitive = out.primitive;
+    primitive.center = attributes.centroid;
+    primitive.axes = axes_of(attributes);
+    primitive.half_size = match(variances_along(attributes, primitive.axes));
+    out.density = attributes.visible_area / measure(primitive.half_size).area;
+    const double longest =
+        std::max({primitive.half_size.x, primitive.half_size.y, primitive.half_size.z});
+    keep_thickness(primitive.half_size);
+    for (int i = 0; i < 3; ++i) {
+        const double half = primitive.half_size[i];
+        if (!std::isfinite(half) || !(half > 0))
+            return std::nullopt;
+        // What is flat along an axis has no extent there to compare with.
+        if (!bound.empty() && half > 2 * kThickness * longest &&
+            2 * half > reach * extent_along(bound, primitive.axes[i]))
+            return std::nullopt;
+    }
+    return out;
+}
+
 template <typename Match, typename Measure>
 std::optional<Primitive> fit(const Attributes& attributes, const Bound& bound, Match match,
                              Measure measure, double reach) {
-    if (!usable(attributes))
+    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+    if (!found)
         return std::nullopt;
-    Primitive out;
-    out.center = attributes.centroid;
-    out.axes = axes_of(attributes);
-    out.half_size = match(variances_along(attributes, out.axes));
-    const double density = attributes.visible_area / measure(out.half_size).area;
+    Primitive out = found->primitive;
     glm::dvec3 sorted = out.half_size;
     std::sort(&sorted[0], &sorted[0] + 3);
     const bool row = sorted[2] > kRow * sorted[1];
-    if (!(density >= (row ? kSparseRow : kSparse)))
+    if (!(found->density >= (row ? kSparseRow : kSparse)))
         return std::nullopt;
-    keep_thickness(out.half_size);
-    if (!bound.empty()) {
-        // What is flat along an axis has no extent there to compare with.
-        for (int i = 0; i < 3; ++i) {
-            if (out.half_size[i] > 2 * kThickness * sorted[2] &&
-                2 * out.half_size[i] > reach * extent_along(bound, out.axes[i]))
-                return std::nullopt;
-        }
-    }
     // 4.33: scaled so that the visible area is the same; the ratios of the variances stay.
     out.half_size *= std::sqrt(attributes.visible_area / measure(out.half_size).area);
     for (int i = 0; i < 3; ++i) {
@@ -132,6 +159,15 @@ std::optional<Primitive> fit(const Attributes& attributes, const Bound& bound, M
             return std::nullopt;
     }
     return out;
+}
+
+template <typename Match, typename Measure>
+std::optional<Clear> fit_clear(const Attributes& attributes, const Bound& bound, Match match,
+                               Measure measure, double reach) {
+    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+    if (!found || !(found->density >= kFaintest && found->density < kClear))
+        return std::nullopt;
+    return Clear{found->primitive, found->density};
 }
 
 /// 32 Gauss-Legendre nodes on 0...1.
@@ -224,6 +260,22 @@ std::optional<Primitive> fit_box(const Attributes& attributes, const Bound& boun
 
 std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound& bound) {
     return fit(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+}
+
+bool boxlike(const Attributes& attributes) {
+    return attributes.normal_moment >= kBoxMoment;
+}
+
+std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound) {
+    return fit_clear(attributes, bound, match_box, box_shell, kBoxReach);
+}
+
+std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound) {
+    return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+}
+
+double surface_alpha(double opacity) {
+    return 1 - std::sqrt(1 - std::clamp(opacity, 0.0, 1.0));
 }
 
 }  // namespace lodestone::approximate

@@ -23,6 +23,26 @@ std::optional<Primitive> fit_box(const Attributes& attributes, const Bound& boun
 /// up to 9 %.
 std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound& bound);
 
+/// Whether a box shows its outline better than an ellipsoid does: by the fourth moment of the normals
+/// (box 1, sphere .6).
+bool boxlike(const Attributes& attributes);
+
+/// A primitive that shows what is behind it.
+struct Clear {
+    Primitive primitive;
+    double opacity = 1;  // of the whole; its surface is crossed twice (surface_alpha)
+};
+
+/// For what is mostly air (less than .55 of the matched solid's area): the box with the object's
+/// centroid and variances, unscaled, as opaque as there is visible area. Nothing where a solid
+/// serves better or all but a fiftieth would be air.
+/// source: 4.3.3, 4.36, 4.37
+std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
+std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
+
+/// What each crossing of a shell must cover so that two of them cover `opacity`.
+double surface_alpha(double opacity);
+
 /// Surface area, and the mean square of the surface's points along each axis.
 struct Shell {
     double area = 0;

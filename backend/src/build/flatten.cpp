@@ -34,6 +34,10 @@ uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
             triangles += kTrianglesOfBox;
         else if (kind == Kind::Ellipsoid)
             triangles += kTrianglesOfEllipsoid;
+        else if (kind == Kind::Composite)  // mostly ellipsoids
+            triangles +=
+                model.objects[node.object].representations[node.lod].composite().solids.size() *
+                kTrianglesOfEllipsoid;
     }
     return triangles;
 }
@@ -70,17 +74,9 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         const Representation& representation = object.representations[node.lod];
         flat.child_error =
             std::max(flat.child_error, representation.summary.error * stretch(node.world));
-        Mesh part;
-        switch (representation.summary.kind) {
-            case Kind::Box:
-                part = tessellate_box(representation.primitive());
-                break;
-            case Kind::Ellipsoid:
-                part = tessellate_ellipsoid(representation.primitive(), kSubdivisions);
-                break;
-            default:
-                part = *source(representation);
-        }
+        Mesh part = representation.summary.kind == Kind::Mesh
+                        ? *source(representation)
+                        : tessellated(representation, kSubdivisions);
         part.slots.resize(part.triangles.size(), 0);
         std::vector<uint16_t> moved;
         for (const uint32_t material : representation.materials) {
@@ -92,6 +88,8 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         for (uint16_t& slot : part.slots)
             slot = slot < moved.size() ? moved[slot] : uint16_t{0};
         append(flat.mesh, part, node.world);
+        flat.occurrence.resize(flat.mesh.triangles.size(), static_cast<uint32_t>(flat.occurrences));
+        ++flat.occurrences;
     }
     if (flat.materials.empty())
         flat.materials.emplace_back();
@@ -134,8 +132,7 @@ double bytes_within(const Model& model, ObjectIndex group, double error,
         const quality::Node& node = cut.nodes[index];
         const Summary& summary = model.objects[node.object].representations[node.lod].summary;
         bytes += static_cast<double>(kBytesPerOccurrence) +
-                 static_cast<double>(summary.cost.bytes) /
-                     static_cast<double>(std::max<uint64_t>(1, uses[node.object]));
+                 bytes_each(summary.kind, summary.cost.bytes, uses[node.object]);
     }
     return bytes;
 }

@@ -7,8 +7,10 @@
 namespace lodestone::build {
 
 struct Flat {
-    Mesh mesh;                        // in the group's frame
-    std::vector<Material> materials;  // by slot
+    Mesh mesh;                         // in the group's frame
+    std::vector<Material> materials;   // by slot
+    std::vector<uint32_t> occurrence;  // a triangle: which of the drawn things it is of
+    size_t occurrences = 0;
     double child_error = 0;  // the largest error of a child drawn, after its stretch; metres
 };
 

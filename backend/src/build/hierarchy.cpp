@@ -98,6 +98,8 @@ void add(Object& object, std::vector<Candidate>&& made, Model& model, Palette& p
         representation.summary.max_error = candidate.max_error;
         if (candidate.kind == Kind::Mesh)
             representation.payload = std::move(candidate.mesh);
+        else if (candidate.kind == Kind::Composite)
+            representation.payload = std::move(candidate.composite);
         else
             representation.payload = candidate.primitive;
         for (const Material& material : candidate.materials)
@@ -380,10 +382,10 @@ private:
             const bool group = object.group();
             job_.stage(group ? Stage::Group : Stage::Simplify);
             try {
-                made[i] = group
-                              ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
-                                                   source, texels_, job_)
-                              : stand_ins_of_leaf(model_, object, settings_, source, texels_, job_);
+                made[i] = group ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
+                                                     source, texels_, job_)
+                                : stand_ins_of_leaf(model_, object, surroundings_.uses[objects[i]],
+                                                    settings_, source, texels_, job_);
             } catch (const Error& error) {
                 found[i].push_back(not_simplified(object, error));
             }

@@ -4,8 +4,11 @@
 #include "measure/opacity.h"
 #include "measure/visible.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lodestone::build {
 namespace {
@@ -23,6 +26,11 @@ constexpr double kLayerWidth = 16;
 constexpr double kLeastOpacity = 0.9;
 constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 
+Mesh tessellated(const Candidate& primitive) {
+    return primitive.kind == Kind::Box ? tessellate_box(primitive.primitive)
+                                       : tessellate_ellipsoid(primitive.primitive, kSubdivisions);
+}
+
 /// The ground is large, and what lies on it (roads, fields) a small share of it.
 uint32_t samples_of(bool environment, const Settings& settings) {
     return environment ? 8 * settings.samples : settings.samples;
@@ -37,7 +45,8 @@ double counted_error(double error, bool environment, double size) {
 Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
              const Settings& settings, bool environment, uint64_t seed, double child_error,
              const Job& job)
-    : size_(bound_of(finest.positions).radius),
+    : texels_(texels),
+      size_(bound_of(finest.positions).radius),
       child_error_(child_error),
       environment_(environment),
       seed_(seed),
@@ -79,11 +88,78 @@ void Judge::measure_mesh(Candidate& candidate, const Job& job) {
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {
-    const Mesh mesh = candidate.kind == Kind::Box
-                          ? tessellate_box(candidate.primitive)
-                          : tessellate_ellipsoid(candidate.primitive, kSubdivisions);
+    const Mesh mesh = tessellated(candidate);
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
     set_error(candidate, reference_.of(mesh, {looks, &looks_, nullptr}, job));
+}
+
+void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
+    using Pictures = measure::AgreementReference;
+    pictures_.emplace(finest, skin_, seed_, coarse ? Pictures::kCoarseSide : Pictures::kSide, job);
+}
+
+measure::Agreement Judge::agreement_of(const Candidate& candidate, const Job& job) const {
+    const auto skin = std::make_shared<const ray::Skin>(candidate.materials, texels_);
+    switch (candidate.kind) {
+        case Kind::Mesh:
+            return pictures_->of(*candidate.mesh, skin, job);
+        case Kind::Composite:
+            return pictures_->of(tessellate(*candidate.composite, 2), skin, job);
+        default:
+            return pictures_->of(tessellated(candidate), skin, job);
+    }
+}
+
+void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted,
+                             const Job& job) {
+    constexpr double kAlikeBright = 0.02;
+    // Of a mesh some of the light is that of other slots.
+    constexpr int kRounds = 2;
+    std::vector<uint16_t> slots(tinted.begin(), tinted.end());
+    if (candidate.kind != Kind::Mesh) {
+        slots.resize(candidate.materials.size());
+        std::iota(slots.begin(), slots.end(), uint16_t{0});
+    }
+    const bool mesh = candidate.kind == Kind::Mesh;
+    measure::Agreement agreement = agreement_of(candidate, job);
+    for (int round = 0; round < (mesh ? kRounds : 1); ++round) {
+        const glm::dvec3 off = glm::abs(agreement.light - 1.0);
+        bool changed = false;
+        if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
+            break;
+        for (const uint16_t slot : slots) {
+            if (slot >= candidate.materials.size())
+                continue;
+            // Light that is scattered once is in proportion to the color. What glows stays as it is.
+            Material& material = candidate.materials[slot];
+            if (material.base_color_texture || material.other)
+                continue;
+            material.base_color =
+                glm::clamp(material.base_color * agreement.light, glm::dvec3(0.0), glm::dvec3(1.0));
+            changed = true;
+        }
+        if (!changed)
+            break;
+        agreement = agreement_of(candidate, job);
+    }
+    set_error(candidate, {agreement.error, agreement.error});
+}
+
+std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
+                                          size_t tags, const Job& job) const {
+    measure::VisibleOptions options;
+    options.rays = rays_;
+    options.seed = seed_;
+    const measure::Visible visible =
+        measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, by_triangle, job);
+    uint64_t all = 0;
+    for (const uint64_t hits : visible.hits_by_tag)
+        all += hits;
+    std::vector<double> out(tags, 0);
+    for (size_t tag = 0; all > 0 && tag < std::min(tags, visible.hits_by_tag.size()); ++tag)
+        out[tag] = visible.attributes.visible_area * static_cast<double>(visible.hits_by_tag[tag]) /
+                   static_cast<double>(all);
+    return out;
 }
 
 void Judge::set_error(Candidate& candidate, const measure::Deviation& deviation) const {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "build/stand_ins.h"
+#include "measure/agreement.h"
 #include "measure/deviation.h"
 #include "measure/looks.h"
 
+#include <optional>
 #include <span>
 
 namespace lodestone::build {
@@ -14,7 +16,8 @@ namespace lodestone::build {
 /// never 0, which the finest alone has.
 double counted_error(double error, bool environment, double size);
 
-/// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings.
+/// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings, but one to
+/// the texels.
 class Judge {
 public:
     /// `child_error`: by how much the mesh itself is off, metres.
@@ -28,6 +31,8 @@ public:
     const Attributes& attributes() const { return attributes_; }
     /// Whether something solid may stand for it.
     bool solid() const;
+    /// Whether some of it bends light: nothing but its own surface shows that.
+    bool refracts() const { return skin_->transmits(); }
     /// Of the finest's materials, which levels share.
     const ray::SkinPtr& skin() const { return skin_; }
 
@@ -39,9 +44,23 @@ public:
     void measure_mesh(Candidate& candidate, const Job& job);
     void measure_primitive(Candidate& candidate, const Job& job);
 
+    /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
+    /// that will be far from the finest.
+    void take_pictures(const Mesh& finest, bool coarse, const Job& job);
+    /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures. It
+    /// is made as bright as the finest by its plain colors, of a mesh by those of the slots `tinted`;
+    /// what is textured keeps its color.
+    void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
+
+    /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
+    std::vector<double> visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
+                                       size_t tags, const Job& job) const;
+
 private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
+    measure::Agreement agreement_of(const Candidate& candidate, const Job& job) const;
 
+    image::TexelCache& texels_;
     measure::Looks looks_;
     double size_;
     double child_error_;
@@ -51,6 +70,7 @@ private:
     ray::SkinPtr skin_;
     std::vector<uint16_t> finest_looks_;
     measure::DeviationReference reference_;
+    std::optional<measure::AgreementReference> pictures_;
     double opacity_ = 0;
     Attributes attributes_;
 };

@@ -2,28 +2,46 @@
 #include "build/stand_ins.h"
 
 #include "approximate/bind.h"
+#include "approximate/composite.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
 #include "approximate/stand_in_material.h"
 #include "build/flatten.h"
 #include "build/judge.h"
+#include "build/prune.h"
 #include "measure/visible.h"
 #include "quality/cut.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 namespace lodestone::build {
 namespace {
 
 // Fewer triangles than this are left to primitives.
 constexpr size_t kFewestTriangles = 8;
+// So many things drawn in a group may be a crowd.
+constexpr size_t kManyChildren = 32;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 24;
 
 uint64_t bytes_of(const Candidate& candidate) {
-    return candidate.kind == Kind::Mesh ? candidate.mesh->triangles.size() * kBytesPerTriangle
-                                        : kBytesPerPrimitive;
+    switch (candidate.kind) {
+        case Kind::Mesh:
+            return candidate.mesh->triangles.size() * kBytesPerTriangle;
+        case Kind::Composite:
+            return candidate.composite->solids.size() * kBytesPerPrimitive;
+        default:
+            return kBytesPerPrimitive;
+    }
+}
+
+/// Of all its occurrences together.
+double bytes_of(const Candidate& candidate, uint64_t uses) {
+    const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
+    return count * bytes_each(candidate.kind, bytes_of(candidate), uses);
 }
 
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
@@ -72,28 +90,122 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
     }
 }
 
-void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, Judge& judge,
-                    const Job& job) {
+/// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
+void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
+                    Judge& judge, const Job& job) {
     const Material material = approximate::mean_material(judge.attributes());
-    const auto add = [&](Kind kind, const std::optional<Primitive>& primitive) {
-        if (!primitive)
-            return;
+    const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
         Candidate candidate;
         candidate.kind = kind;
-        candidate.primitive = *primitive;
+        candidate.primitive = primitive;
         candidate.materials = {material};
-        judge.measure_primitive(candidate, job);
+        if (opacity < 1) {
+            candidate.materials[0].alpha_mode = AlphaMode::Blend;
+            candidate.materials[0].alpha = approximate::surface_alpha(opacity);
+        }
+        if (by_pictures)
+            judge.compare_pictures(candidate, {}, job);
+        else
+            judge.measure_primitive(candidate, job);
         candidates.push_back(std::move(candidate));
     };
-    add(Kind::Box, approximate::fit_box(judge.attributes(), bound));
-    add(Kind::Ellipsoid, approximate::fit_ellipsoid(judge.attributes(), bound));
+    if (const auto box = approximate::fit_box(judge.attributes(), bound))
+        add(Kind::Box, *box, 1);
+    if (const auto ellipsoid = approximate::fit_ellipsoid(judge.attributes(), bound))
+        add(Kind::Ellipsoid, *ellipsoid, 1);
+    if (!by_pictures)
+        return;
+    if (const auto box = approximate::fit_clear_box(judge.attributes(), bound))
+        add(Kind::Box, box->primitive, box->opacity);
+    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(judge.attributes(), bound))
+        add(Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
 }
 
-/// What no ray from outside reaches is left out; everything stays when nothing would.
-Mesh without_hidden(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed, const Job& job) {
+void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, uint64_t seed,
+                    Judge& judge, const Job& job) {
+    for (const approximate::Clustered& level :
+         approximate::composites(mesh, judge.skin(), seed, job)) {
+        Candidate candidate;
+        candidate.kind = Kind::Composite;
+        candidate.composite = std::make_shared<const Composite>(level.composite);
+        for (const Attributes& attributes : level.attributes)
+            candidate.materials.push_back(approximate::mean_material(attributes));
+        judge.compare_pictures(candidate, {}, job);
+        candidates.push_back(std::move(candidate));
+    }
+}
+
+/// The cheapest candidate within an error; infinite when there is none.
+double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses) {
+    double out = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.error <= error)
+            out = std::min(out, bytes_of(candidate, uses));
+    }
+    return out;
+}
+
+/// Pruned levels, primitives and composites of what is no environment, where they promise more than
+/// the levels among the candidates. `bound` is the finest's; `many`: its parts are objects.
+void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
+                      const std::function<approximate::Crowd()>& crowd_in_mesh, bool many,
+                      uint64_t uses, const Bound& bound, const std::vector<Material>& materials,
+                      const Settings& settings, uint64_t seed, Judge& judge, const Job& job) {
+    // Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
+    constexpr double kCollapsed = 0.2;
+    constexpr double kNear = 1.0 / 8;  // over the radius
+    const double bytes = static_cast<double>(mesh.triangles.size()) * kBytesPerTriangle;
+    approximate::Crowd crowd;
+    if ((many || bytes_within(candidates, kNear * bound.radius, uses) > kCollapsed * bytes) &&
+        !judge.refracts())
+        crowd = crowd_in_mesh();
+    const bool by_pictures = (!crowd.empty() || !judge.solid()) && !judge.refracts();
+    if (by_pictures)
+        judge.take_pictures(mesh, crowd.empty(), job);
+    if (!crowd.empty())
+        add_pruned_levels(candidates, mesh, materials, crowd, settings.level_ratio, seed, judge,
+                          job);
+    if (by_pictures || judge.solid())
+        add_primitives(candidates, bound, by_pictures, judge, job);
+    // A composite of eight is off by a fifth of the radius, more or less.
+    constexpr double kOff = 0.2;
+    const double dearer =
+        16.0 * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, uses));
+    if (bytes > 2 * dearer && bytes_within(candidates, kOff * bound.radius, uses) > dearer &&
+        !judge.refracts()) {
+        if (!by_pictures)
+            judge.take_pictures(mesh, true, job);
+        add_composites(candidates, mesh, seed, judge, job);
+    }
+}
+
+/// What no ray from outside reaches is left out (of the occurrences too); everything stays when
+/// nothing would.
+Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const ray::SkinPtr& skin,
+                    uint64_t seed, const Job& job) {
     const ray::Scene scene(mesh, skin);
-    Mesh shell = subset(mesh, measure::seen_from_outside(mesh, scene, kRaysPerTriangle, seed, job));
-    return shell.empty() ? mesh : shell;
+    const std::vector<uint8_t> seen =
+        measure::seen_from_outside(mesh, scene, kRaysPerTriangle, seed, job);
+    Mesh shell = subset(mesh, seen);
+    if (shell.empty())
+        return mesh;
+    size_t kept = 0;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        if (seen[i] != 0)
+            occurrence[kept++] = occurrence[i];
+    }
+    occurrence.resize(kept);
+    return shell;
+}
+
+/// Of a group: leaves and the like where that is what its children are made of, else the children.
+approximate::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
+    constexpr size_t kPartsOfFoliage = 16;  // of an occurrence, in the mean
+    approximate::Crowd parts = approximate::crowd_of(mesh);
+    const std::set<uint32_t> drawn(occurrence.begin(), occurrence.end());
+    if (parts.parts.size() >= kPartsOfFoliage * drawn.size())
+        return parts;
+    return approximate::crowd_of(mesh, occurrence);
 }
 
 std::vector<Material> materials_of(const Model& model, const Representation& finest) {
@@ -149,7 +261,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 13;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 14;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -160,23 +272,31 @@ Hash hash_of(const Settings& settings) {
         .result();
 }
 
-void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes) {
-    std::stable_sort(
-        candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-            return bytes_of(a) != bytes_of(b) ? bytes_of(a) < bytes_of(b) : a.error < b.error;
-        });
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses) {
+    // A level that saves less than this over a better one is not worth its place on disk.
+    constexpr double kSameCost = 1.02;
+    const auto bytes = [&](const Candidate& candidate) { return bytes_of(candidate, uses); };
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const Candidate& a, const Candidate& b) {
+                         return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;
+                     });
     std::vector<Candidate> front;  // cheapest first, errors falling
     for (Candidate& candidate : candidates) {
-        if (bytes_of(candidate) < finest_bytes &&
-            (front.empty() || candidate.error < front.back().error))
+        if (bytes(candidate) >= static_cast<double>(finest_bytes) ||
+            (!front.empty() && candidate.error >= front.back().error))
+            continue;
+        if (!front.empty() && bytes(candidate) < kSameCost * bytes(front.back()))
+            front.back() = std::move(candidate);
+        else
             front.push_back(std::move(candidate));
     }
     std::reverse(front.begin(), front.end());
     candidates = std::move(front);
 }
 
-StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Settings& settings,
-                           const MeshSource& source, image::TexelCache& texels, const Job& job) {
+StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t uses,
+                           const Settings& settings, const MeshSource& source,
+                           image::TexelCache& texels, const Job& job) {
     StandIns out;
     const Representation& finest = object.representations.at(0);
     const std::shared_ptr<const Mesh> mesh = source(finest);
@@ -190,9 +310,11 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Setti
     if (out.attributes.empty())
         return out;
     add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), judge, job);
-    if (object.role != Role::Environment && judge.solid())
-        add_primitives(out.candidates, finest.summary.bound, judge, job);
-    keep_useful(out.candidates, finest.summary.cost.bytes);
+    if (object.role != Role::Environment)
+        add_replacements(
+            out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, false, uses,
+            finest.summary.bound, materials, settings, seed_of(object, settings), judge, job);
+    keep_useful(out.candidates, finest.summary.cost.bytes, uses);
     return out;
 }
 
@@ -220,24 +342,33 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     if (out.attributes.empty())
         return out;
 
-    Mesh shell = without_hidden(reference.mesh, judge.skin(), seed, job);
+    std::vector<uint32_t> occurrence = reference.occurrence;
+    Mesh shell = without_hidden(reference.mesh, occurrence, judge.skin(), seed, job);
     const size_t count = shell.triangles.size();
     add_levels(out.candidates, shell, reference.materials,
                targets_of(count + 1, count, settings.level_ratio), judge, job);
-    if (!environment && judge.solid())
-        add_primitives(out.candidates, finest.bound, judge, job);
+    if (!environment)
+        add_replacements(
+            out.candidates, shell, [&] { return crowd_in(shell, occurrence); },
+            reference.occurrences >= kManyChildren, uses[group], finest.bound, reference.materials,
+            settings, seed, judge, job);
 
-    // A stand-in that costs more than what the children would use at its error is none: parts that
-    // many groups share are cheap, one mesh for each of the groups is not.
-    std::vector<Candidate> useful;
-    for (const Candidate& candidate : out.candidates) {
-        const double own = static_cast<double>(bytes_of(candidate)) /
-                               static_cast<double>(std::max<uint64_t>(1, uses[group])) +
+    // A stand-in that costs more than what the children would use instead is none: parts that many
+    // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
+    // to the next one's; what children cost is asked for half way, on a scale of powers.
+    std::vector<Candidate> useful = out.candidates;
+    keep_useful(useful, finest.cost.bytes, uses[group]);
+    double next = 0;  // 0: nothing is coarser
+    for (size_t i = useful.size(); i-- > 0;) {
+        const double own = bytes_each(useful[i].kind, bytes_of(useful[i]), uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
-        if (own < bytes_within(model, group, candidate.error, uses, job))
-            useful.push_back(candidate);
+        const double error = useful[i].error;
+        const double used = next > 0 ? std::sqrt(error * next) : error;
+        if (own < bytes_within(model, group, used, uses, job))
+            next = error;
+        else
+            useful.erase(useful.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    keep_useful(useful, finest.cost.bytes);
     if (useful.empty()) {
         // Every group has a stand-in, even one that saves nothing but the occurrences.
         Candidate whole;

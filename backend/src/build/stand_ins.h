@@ -20,7 +20,8 @@ struct Candidate {
     double max_error = 0;
     std::shared_ptr<const Mesh> mesh;  // of a mesh
     Primitive primitive;               // of a box or ellipsoid
-    std::vector<Material> materials;   // by slot
+    std::shared_ptr<const Composite> composite;
+    std::vector<Material> materials;  // by slot
 };
 
 struct StandIns {
@@ -36,8 +37,9 @@ using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representatio
 /// Levels and primitives of an object whose finest representation is a mesh. Something see-through
 /// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
 /// all objects of a build.
-StandIns stand_ins_of_leaf(const Model& model, const Object& object, const Settings& settings,
-                           const MeshSource& source, image::TexelCache& texels, const Job& job);
+StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t uses,
+                           const Settings& settings, const MeshSource& source,
+                           image::TexelCache& texels, const Job& job);
 
 /// Of a group whose children have theirs: flattened at a quarter of its finest stand-in's error,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
@@ -59,7 +61,7 @@ std::vector<Candidate> followed_levels(const Model& model, const Object& object,
                                        const segment::BoundLevels& levels, const Job& job);
 
 /// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
-/// bytes and error), and those that cost no less than `finest_bytes`.
-void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes);
+/// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses = 1);
 
 }  // namespace lodestone::build

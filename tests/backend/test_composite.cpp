@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards composites: as much surface as the original, nested, matched cluster by cluster.
+#include "approximate/composite.h"
+#include "backend/foliage.h"
+#include "measure/visible.h"
+#include "ray/scene.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+using namespace lodestone;
+using approximate::Clustered;
+using approximate::composites;
+
+namespace {
+
+class Composites : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+    }
+};
+
+double visible_area(const Mesh& mesh, uint64_t seed) {
+    measure::VisibleOptions options;
+    options.rays = 16384;
+    options.seed = seed;
+    return measure::measure_visible(mesh, {}, options).attributes.visible_area;
+}
+
+Mesh balls(const std::vector<glm::dvec3>& centers, double radius) {
+    Mesh mesh;
+    for (const glm::dvec3& center : centers) {
+        Affine place;
+        place.offset = center;
+        append(mesh, shapes::sphere(radius, 3), place);
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TEST_F(Composites, NothingHasNone) {
+    EXPECT_TRUE(composites(Mesh{}, nullptr, 1).empty());
+    Mesh dot;
+    dot.positions.resize(3);
+    dot.triangles = {{0, 1, 2}};
+    EXPECT_TRUE(composites(dot, nullptr, 1).empty());
+}
+
+TEST_F(Composites, FourBallsComeBackAsFourBalls) {
+    const std::vector<glm::dvec3> centers{{0, 0, 0}, {9, 0, 0}, {0, 8, 0}, {9, 8, 1}};
+    const std::vector<Clustered> levels = composites(balls(centers, 1), nullptr, 1);
+    ASSERT_FALSE(levels.empty());
+    ASSERT_EQ(levels[0].composite.solids.size(), 4u);
+    for (const Solid& solid : levels[0].composite.solids) {
+        double nearest = 1e9;
+        for (const glm::dvec3& center : centers)
+            nearest = std::min(nearest, glm::length(solid.primitive.center - center));
+        EXPECT_LT(nearest, 0.05);
+        EXPECT_FALSE(solid.box);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(solid.primitive.half_size[i], 1, 0.06);
+    }
+}
+
+TEST_F(Composites, EveryLevelShowsAsMuchAsTheOriginalAndSharesClusters) {
+    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
+    for (const double x : {-0.9, 0.9}) {
+        for (const double y : {-0.4, 0.4})
+            append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
+    }
+    const double wanted = visible_area(table, 5);
+    const std::vector<Clustered> levels = composites(table, nullptr, 1);
+    ASSERT_EQ(levels.size(), 4u);
+    for (const Clustered& level : levels) {
+        EXPECT_NEAR(visible_area(tessellate(level.composite, 3), 6) / wanted, 1, 0.03)
+            << level.composite.solids.size();
+        double area = 0;
+        for (const Attributes& attributes : level.attributes)
+            area += attributes.visible_area;
+        EXPECT_NEAR(area / wanted, 1, 0.03);
+    }
+}
+
+TEST_F(Composites, LevelsShareWhatIsNotSplit) {
+    Mesh mesh = shapes::sphere(3, 3);
+    for (const double x : {30.0, 40.0, 50.0})
+        append(mesh, shapes::sphere(0.6, 3), {glm::dmat3(1.0), {x, 0, 0}});
+    const std::vector<Clustered> levels = composites(mesh, nullptr, 1);
+    ASSERT_EQ(levels.size(), 4u);
+    for (size_t i = 1; i < levels.size(); ++i) {
+        const std::set<uint32_t> coarser(levels[i - 1].clusters.begin(),
+                                         levels[i - 1].clusters.end());
+        size_t shared = 0;
+        for (const uint32_t cluster : levels[i].clusters)
+            shared += coarser.count(cluster);
+        EXPECT_GE(shared, 1u) << i;
+        EXPECT_EQ(std::set<uint32_t>(levels[i].clusters.begin(), levels[i].clusters.end()).size(),
+                  levels[i].composite.solids.size());
+    }
+}
+
+TEST_F(Composites, ColorsKeepApartWhatPlacesWouldJoin) {
+    Material red;
+    red.base_color = {0.9, 0.05, 0.05};
+    Material blue;
+    blue.base_color = {0.05, 0.05, 0.9};
+    Mesh both = shapes::sphere(1, 3);
+    both.slots.assign(both.triangles.size(), 0);
+    Mesh other = shapes::sphere(1, 3);
+    other.slots.assign(other.triangles.size(), 1);
+    append(both, other, {glm::dmat3(1.0), {2.1, 0, 0}});
+    image::TexelCache texels;
+    const std::vector<Material> materials{red, blue};
+    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
+    for (const Clustered& level : composites(both, skin, 1)) {
+        for (const Attributes& attributes : level.attributes) {
+            const double mixed = std::min(attributes.color.x, attributes.color.z);
+            EXPECT_LT(mixed, 0.2) << level.composite.solids.size();
+        }
+    }
+}
+
+TEST_F(Composites, BoundAndTrianglesAreThoseOfTheSolids) {
+    Composite composite;
+    composite.solids.push_back({true, {{5, 0, 0}, glm::dmat3(1.0), {1, 2, 3}}, 0});
+    composite.solids.push_back({false, {{-5, 0, 0}, glm::dmat3(1.0), {1, 1, 1}}, 1});
+    const Bound bound = bound_of(composite);
+    EXPECT_EQ(bound.box.low, glm::dvec3(-6, -2, -3));
+    EXPECT_EQ(bound.box.high, glm::dvec3(6, 2, 3));
+    const Mesh mesh = tessellate(composite, 0);
+    EXPECT_EQ(mesh.triangles.size(), 12u + 20u);
+    EXPECT_EQ(mesh.slot(0), 0);
+    EXPECT_EQ(mesh.slot(31), 1);
+    EXPECT_TRUE(bound_of(Composite{}).empty());
+}
