@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How alike the outlines of shapes and of their replacements are: replace_shapes FILE.ply...
+// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes.
+#include "approximate/composite.h"
+#include "approximate/replace.h"
+#include "approximate/simplify.h"
+#include "base/files.h"
+#include "format/ply.h"
+#include "measure/deviation.h"
+#include "measure/visible.h"
+#include "model/representation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numbers>
+
+using namespace lodestone;
+
+namespace {
+
+constexpr int kViews = 20;
+constexpr int kPixels = 96;
+
+/// Points spread over the sphere by the golden angle.
+glm::dvec3 direction(int number) {
+    const double z = 1 - 2 * (number + 0.5) / kViews;
+    const double turn = 2.399963229728653 * number;
+    const double radius = std::sqrt(1 - z * z);
+    return {radius * std::cos(turn), radius * std::sin(turn), z};
+}
+
+/// One bit a pixel of all views of a square around the bound.
+std::vector<bool> silhouettes(const Mesh& mesh, const Bound& bound) {
+    const ray::Scene scene(mesh);
+    std::vector<bool> out;
+    for (int view = 0; view < kViews; ++view) {
+        const glm::dvec3 back = direction(view);
+        const glm::dvec3 right = glm::normalize(
+            glm::cross(std::abs(back.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0), back));
+        const glm::dvec3 up = glm::cross(back, right);
+        for (int y = 0; y < kPixels; ++y) {
+            for (int x = 0; x < kPixels; ++x) {
+                const double across = 1.5 * bound.radius * (2 * (x + 0.5) / kPixels - 1);
+                const double along = 1.5 * bound.radius * (2 * (y + 0.5) / kPixels - 1);
+                out.push_back(scene.occluded(
+                    bound.center + across * right + along * up + 8 * bound.radius * back, -back));
+            }
+        }
+    }
+    return out;
+}
+
+/// Mean over the views.
+double overlap(const std::vector<bool>& a, const std::vector<bool>& b) {
+    double sum = 0;
+    constexpr size_t kView = static_cast<size_t>(kPixels) * kPixels;
+    for (size_t view = 0; view < kViews; ++view) {
+        double both = 0;
+        double either = 0;
+        for (size_t i = view * kView; i < (view + 1) * kView; ++i) {
+            both += a[i] && b[i] ? 1 : 0;
+            either += a[i] || b[i] ? 1 : 0;
+        }
+        sum += either > 0 ? both / either : 1;
+    }
+    return sum / kViews;
+}
+
+Primitive bounding(const Mesh& mesh, const glm::dmat3& axes) {
+    Box3 box;
+    for (const Triangle& t : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            box.add(glm::transpose(axes) * glm::dvec3(mesh.positions[t[corner]]));
+    }
+    return {axes * box.center(), axes, glm::max(0.5 * box.size(), glm::dvec3(1e-6))};
+}
+
+/// Bytes of the cheapest level of a mesh whose error is at most this.
+double mesh_bytes_within(const std::vector<Mesh>& levels, const std::vector<double>& errors,
+                         double error) {
+    double best = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < levels.size(); ++i) {
+        if (errors[i] <= error)
+            best =
+                std::min(best, static_cast<double>(levels[i].triangles.size() * kBytesPerTriangle));
+    }
+    return best;
+}
+
+void compare_shape(const std::filesystem::path& path, bool last) {
+    Problems problems;
+    const Mesh mesh = format::read_ply(read_file(path), path.filename().string(), problems);
+    const Bound bound = bound_of(mesh.positions);
+    measure::VisibleOptions options;
+    options.rays = 65536;
+    const Attributes attributes = measure::measure_visible(mesh, {}, options).attributes;
+    const auto ball = [&](double radius) {
+        return tessellate_ellipsoid({attributes.centroid, glm::dmat3(1.0), glm::dvec3(radius)}, 4);
+    };
+    std::map<std::string, Mesh> stand_ins;
+    stand_ins["sphere"] = ball(std::sqrt(attributes.visible_area / (4 * std::numbers::pi)));
+    stand_ins["bounding box"] = tessellate_box(bounding(mesh, glm::dmat3(1.0)));
+    stand_ins["oriented bound"] = tessellate_box(bounding(mesh, attributes.axes));
+    const auto box = approximate::fit_box(attributes, bound);
+    const auto ellipsoid = approximate::fit_ellipsoid(attributes, bound);
+    if (box)
+        stand_ins["box"] = tessellate_box(*box);
+    if (ellipsoid)
+        stand_ins["ellipsoid"] = tessellate_ellipsoid(*ellipsoid, 4);
+
+    const std::vector<bool> truth = silhouettes(mesh, bound);
+    std::map<std::string, double> found;
+    for (const auto& [name, stand_in] : stand_ins)
+        found[name] = overlap(truth, silhouettes(stand_in, bound));
+    const measure::DeviationReference reference(mesh, {4096, 4096, 1});
+    if (box && ellipsoid) {
+        const double off_box = reference.of(stand_ins["box"]).error;
+        const double off_ellipsoid = reference.of(stand_ins["ellipsoid"]).error;
+        found["ours, by error"] = found[off_box < off_ellipsoid ? "box" : "ellipsoid"];
+        found["ours, by moment"] = found[approximate::boxlike(attributes) ? "box" : "ellipsoid"];
+        found["oracle"] = std::max(found["box"], found["ellipsoid"]);
+    } else if (box || ellipsoid) {
+        const double only = found[box ? "box" : "ellipsoid"];
+        found["ours, by error"] = found["ours, by moment"] = found["oracle"] = only;
+    }
+    std::vector<size_t> targets;
+    for (double target = 0.8 * static_cast<double>(mesh.triangles.size()); target >= 4;
+         target *= 0.8) {
+        if (targets.empty() || static_cast<size_t>(target) < targets.back())
+            targets.push_back(static_cast<size_t>(target));
+    }
+    const std::vector<Mesh> levels =
+        targets.empty() ? std::vector<Mesh>{} : approximate::simplify_chain(mesh, targets);
+    std::vector<double> errors;
+    errors.reserve(levels.size());
+    for (const Mesh& level : levels)
+        errors.push_back(reference.of(level).error);
+    for (const approximate::Clustered& level : approximate::composites(mesh, nullptr, 1)) {
+        const size_t count = level.composite.solids.size();
+        const Mesh solid = tessellate(level.composite, 3);
+        const std::string name = "composite " + std::to_string(count);
+        found[name] = overlap(truth, silhouettes(solid, bound));
+        const double error = reference.of(solid).error;
+        const auto bytes = static_cast<double>(count * kBytesPerPrimitive);
+        found[name + " error"] = error / bound.radius;
+        const double other = mesh_bytes_within(levels, errors, error);
+        found[name + " bytes over a mesh's"] = std::isfinite(other) ? bytes / other : 0;
+    }
+    std::printf("%s\"%s\": {\"normal moment\": %.4f", "  ", path.stem().c_str(),
+                attributes.normal_moment);
+    for (const auto& [name, value] : found)
+        std::printf(", \"%s\": %.4f", name.c_str(), value);
+    std::printf("}%s\n", last ? "" : ",");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    try {
+        std::printf("{\n");
+        for (int i = 1; i < count; ++i)
+            compare_shape(arguments[i], i + 1 == count);
+        std::printf("}\n");
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "replace_shapes: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
