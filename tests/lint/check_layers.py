@@ -41,8 +41,8 @@ THIRD_PARTY = (
 )
 
 STANDARD_C = (
-    "assert ctype dlfcn errno fcntl float inttypes limits locale math poll pwd sched setjmp signal "
-    "spawn stdarg stdbool stddef stdint stdio stdlib string strings time unistd"
+    "assert ctype dlfcn errno fcntl float inttypes limits locale malloc math poll pwd sched setjmp "
+    "signal spawn stdarg stdbool stddef stdint stdio stdlib string strings time unistd"
 ).split()
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">]', re.MULTILINE)
