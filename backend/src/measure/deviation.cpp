@@ -112,7 +112,9 @@ double mixing_radius(const std::vector<Sample>& visible, const Sample& from,
     constexpr size_t kMostPoints = 512;
     const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
     std::vector<std::tuple<double, uint16_t, size_t>> near;
-    for (size_t i = 0; i < visible.size(); i += step) {
+    for (size_t run = 0; run < visible.size(); run += step) {
+        // Any one of each run: they were drawn evenly, and every so many of such are in one place.
+        const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
         const glm::dvec3 arm = visible[i].point - from.point;
         if (visible[i].look != kAnyLook && face_alike(visible[i].side, from.side))
             near.emplace_back(glm::dot(arm, arm), visible[i].look, i);
@@ -192,21 +194,16 @@ Deviation measure(const std::vector<Sample>& samples, const Against& against, co
     const ray::Scene& scene = against.other.whole();
     parallel_for((samples.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
-        double radius = std::numeric_limits<double>::infinity();
-        glm::dvec3 last(0.0);
+        uint32_t last = ray::kNoTriangle;
         for (size_t i = block * kBlock; i < std::min(samples.size(), (block + 1) * kBlock); ++i) {
             const glm::dvec3& point = samples[i].point;
-            // The last answer is a point of the surface, so the next one cannot be further.
-            if (std::isfinite(radius))
-                radius = glm::length(point - last) * (1 + 1e-9);
-            ray::Closest closest = scene.closest_point(point, radius);
-            if (!std::isfinite(closest.distance))
-                closest = scene.closest_point(point);
+            // Neighbors in the list are mostly neighbors in space.
+            const ray::Closest closest =
+                scene.closest_point(point, std::numeric_limits<double>::infinity(), last);
             // Nothing in reach at all: a scene of triangles that have no finite corners.
             places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
-            last = closest.point;
-            radius = closest.distance;
-            if (samples[i].look != kAnyLook && std::isfinite(radius))
+            last = closest.triangle;
+            if (samples[i].look != kAnyLook && std::isfinite(closest.distance))
                 moves[i] = move_of(samples[i], closest, against);
         }
     });
@@ -218,7 +215,7 @@ Deviation measure(const std::vector<Sample>& samples, const Against& against, co
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
                                        const Surface& surface, const Job& job)
     : options_(options),
-      scenes_(finest, surface.looks, surface.skin),
+      scenes_(finest, surface.looks, surface.skin, ray::Uses::Everything),
       palette_(surface.palette),
       diameter_(2 * radius_of(finest)) {
     const VisibleSampler sampler(finest, scenes_.whole(), options.seed);
@@ -232,7 +229,7 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
 
 Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
                                  const Job& job) const {
-    const LookScenes scenes(stand_in, surface.looks, surface.skin);
+    const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints);
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};

@@ -3,8 +3,9 @@
 
 namespace lodestone::measure {
 
-LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin)
-    : whole_(mesh, skin), looks_(looks.begin(), looks.end()) {
+LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
+                       ray::Uses uses)
+    : whole_(mesh, skin, uses), looks_(looks.begin(), looks.end()) {
     if (!looks_.empty() && looks_.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, looks_.size(), " looks for ", mesh.triangles.size(),
              " triangles");
@@ -13,9 +14,11 @@ LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const 
         keep.try_emplace(looks_[i], looks_.size(), uint8_t{0}).first->second[i] = 1;
     for (const auto& [look, triangles] : keep) {
         if (keep.size() > 1)
-            by_look_.emplace(look, ray::Scene(subset(mesh, triangles), skin));
+            by_look_.emplace(look,
+                             ray::Scene(subset(mesh, triangles), skin, ray::Uses::ClosestPoints));
         else
-            by_look_.emplace(look, ray::Scene(Mesh{}));  // the whole serves
+            by_look_.emplace(
+                look, ray::Scene(Mesh{}, nullptr, ray::Uses::ClosestPoints));  // the whole serves
     }
 }
 

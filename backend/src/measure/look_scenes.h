@@ -12,9 +12,10 @@ namespace lodestone::measure {
 
 class LookScenes {
 public:
-    /// `looks` is empty (all alike) or one a triangle; the skin may be null. Throws as ray::Scene
-    /// does.
-    LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin = {});
+    /// `looks` is empty (all alike) or one a triangle; the skin may be null; `uses` is what the
+    /// whole is asked for. Throws as ray::Scene does.
+    LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
+               ray::Uses uses);
 
     const ray::Scene& whole() const { return whole_; }
     /// Of a triangle of the whole.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <dlfcn.h>
 #include <new>
+#include <span>
 #include <thread>
 
 #if defined(__SSE2__)
@@ -18,30 +19,6 @@ namespace lodestone::ray {
 namespace {
 
 constexpr char kFileName[] = "libembree3.so.3";
-
-/// Embree wants denormals treated as zero; Blender and Python want their own setting back.
-class FlushDenormals {
-public:
-#if defined(__SSE2__)
-    FlushDenormals() : saved_(_mm_getcsr()) {
-        if ((saved_ & kFlags) != kFlags)
-            _mm_setcsr(saved_ | kFlags);
-    }
-    ~FlushDenormals() {
-        if ((saved_ & kFlags) != kFlags)
-            _mm_setcsr(saved_);
-    }
-
-private:
-    static constexpr unsigned kFlags = 0x8040;  // flush to zero, denormals are zero
-    unsigned saved_;
-#else
-    FlushDenormals() = default;
-#endif
-public:
-    FlushDenormals(const FlushDenormals&) = delete;
-    FlushDenormals& operator=(const FlushDenormals&) = delete;
-};
 
 /// Embree's functions, looked up in the one library that was opened. Linking to Embree instead
 /// would bind to whichever version the host program has loaded, with other signatures: no crash,
@@ -65,7 +42,6 @@ struct Embree {
     decltype(&rtcSetGeometryUserData) set_user_data = nullptr;
     decltype(&rtcIntersect1) intersect = nullptr;
     decltype(&rtcOccluded1) occluded = nullptr;
-    decltype(&rtcPointQuery) point_query = nullptr;
     RTCDevice device = nullptr;
     std::string reason;  // why it cannot be used; empty when it can
 
@@ -81,11 +57,13 @@ void look_up(void* library, const char* name, Function& function, std::string& m
         function = reinterpret_cast<Function>(symbol);
 }
 
-/// A ray context that remembers the best hit so far, for ties.
+/// A ray context that remembers the best hit so far, for ties; or lists all of them.
 struct TieContext {
     RTCIntersectContext embree;
     float t;
     unsigned triangle;
+    std::span<uint32_t> list;  // empty: the first hit is wanted
+    size_t listed;
 };
 
 /// Among hits at one distance the lowest triangle wins: else the answer would depend on the order
@@ -95,6 +73,12 @@ void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
         reinterpret_cast<TieContext*>(const_cast<RTCIntersectContext*>(arguments->context));
     const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (!best->list.empty()) {
+        if (best->listed < best->list.size())
+            best->list[best->listed++] = hit->primID;
+        arguments->valid[0] = 0;
+        return;
+    }
     if (ray->tfar == best->t && hit->primID > best->triangle) {
         arguments->valid[0] = 0;
         return;
@@ -119,17 +103,6 @@ void keep_lowest_that_stops(const RTCFilterFunctionNArguments* arguments) {
 void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
     if (!stops(arguments))
         arguments->valid[0] = 0;
-}
-
-bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
-    auto* search = static_cast<ClosestSearch*>(arguments->userPtr);
-    if (!search->visit(arguments->primID))
-        return false;
-    const float reach = search->reach(std::sqrt(search->square));
-    if (reach >= arguments->query->radius)
-        return false;
-    arguments->query->radius = reach;
-    return true;
 }
 
 RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
@@ -167,20 +140,8 @@ RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
          " triangles (error ", static_cast<int>(error), ")");
 }
 
-void run(const Embree& embree, RTCScene scene, ClosestSearch& search, double radius) {
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    RTCPointQuery query{};
-    query.x = static_cast<float>(search.point.x);
-    query.y = static_cast<float>(search.point.y);
-    query.z = static_cast<float>(search.point.z);
-    query.radius = search.reach(radius);
-    embree.point_query(scene, &query, &context, visit_triangle, &search);
-}
-
 RTCRayHit trace(const Embree& embree, RTCScene scene, const glm::dvec3& origin,
-                const glm::dvec3& direction, double far) {
-    TieContext context{};
+                const glm::dvec3& direction, double far, TieContext& context) {
     rtcInitIntersectContext(&context.embree);
     context.t = std::numeric_limits<float>::infinity();
     context.triangle = kNoTriangle;
@@ -200,24 +161,22 @@ RTCRayHit trace(const Embree& embree, RTCScene scene, const glm::dvec3& origin,
     return ray;
 }
 
-/// One hit, one miss and one closest point with known answers. Empty when all are right.
+/// One hit and one miss with known answers. Empty when both are right.
 std::string test(const Embree& embree) {
     const std::vector<glm::vec3> padded{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
     const std::vector<Triangle> triangles{{0, 1, 2}};
-    const FlushDenormals flush;
+    const Burst flush;
     RTCScene scene = new_scene(embree, padded, triangles, nullptr);
-    const RTCRayHit hit = trace(embree, scene, {0.25, 0.5, 2}, {0, 0, -1}, 4);
-    const RTCRayHit miss = trace(embree, scene, {0.75, 0.5, 2}, {0, 0, -1}, 4);
-    ClosestSearch search{padded, triangles, {0.25, 0.25, 0.5}};
-    run(embree, scene, search, std::numeric_limits<double>::infinity());
+    TieContext first{};
+    const RTCRayHit hit = trace(embree, scene, {0.25, 0.5, 2}, {0, 0, -1}, 4, first);
+    TieContext second{};
+    const RTCRayHit miss = trace(embree, scene, {0.75, 0.5, 2}, {0, 0, -1}, 4, second);
     embree.release_scene(scene);
     const auto near = [](double a, double b) { return std::abs(a - b) < 1e-5; };
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || hit.hit.primID != 0 ||
         !near(hit.hit.u, 0.25) || !near(hit.hit.v, 0.5) || !near(hit.ray.tfar, 2) ||
         miss.hit.geomID != RTC_INVALID_GEOMETRY_ID)
         return "a ray with a known hit came back with another answer";
-    if (search.triangle != 0 || !near(search.square, 0.25))
-        return "a closest point with a known answer came back with another one";
     return {};
 }
 
@@ -250,7 +209,6 @@ Embree open(const std::string& path) {
     look_up(library, "rtcSetGeometryUserData", embree.set_user_data, missing);
     look_up(library, "rtcIntersect1", embree.intersect, missing);
     look_up(library, "rtcOccluded1", embree.occluded, missing);
-    look_up(library, "rtcPointQuery", embree.point_query, missing);
     if (!missing.empty()) {
         embree.reason = text(path, " has no function ", missing);
         return embree;
@@ -323,6 +281,25 @@ const Embree& embree_or_throw() {
 
 }  // namespace
 
+#if defined(__SSE2__)
+namespace {
+constexpr unsigned kFlushDenormals = 0x8040;  // flush to zero, denormals are zero
+}  // namespace
+
+// Blender and Python want their own setting back.
+Burst::Burst() : saved_(_mm_getcsr()) {
+    if ((saved_ & kFlushDenormals) != kFlushDenormals)
+        _mm_setcsr(saved_ | kFlushDenormals);
+}
+Burst::~Burst() {
+    if ((saved_ & kFlushDenormals) != kFlushDenormals)
+        _mm_setcsr(saved_);
+}
+#else
+Burst::Burst() : saved_(0) {}
+Burst::~Burst() = default;
+#endif
+
 const std::string& why_no_embree() {
     return found().reason;
 }
@@ -341,8 +318,10 @@ EmbreeTree::~EmbreeTree() {
 
 EmbreeTree::Found EmbreeTree::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                                         double far) const {
-    const FlushDenormals flush;
-    const RTCRayHit ray = trace(found(), static_cast<RTCScene>(scene_), origin, direction, far);
+    const Burst flush;
+    TieContext context{};
+    const RTCRayHit ray =
+        trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
     Found out;
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return out;
@@ -353,8 +332,17 @@ EmbreeTree::Found EmbreeTree::first_hit(const glm::dvec3& origin, const glm::dve
     return out;
 }
 
+size_t EmbreeTree::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                           std::span<uint32_t> list) const {
+    const Burst flush;
+    TieContext context{};
+    context.list = list;
+    trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
+    return context.listed;
+}
+
 bool EmbreeTree::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
-    const FlushDenormals flush;
+    const Burst flush;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
@@ -368,11 +356,6 @@ bool EmbreeTree::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
     ray.mask = ~0u;
     found().occluded(static_cast<RTCScene>(scene_), &context, &ray);
     return ray.tfar < 0;
-}
-
-void EmbreeTree::search(ClosestSearch& search, double radius) const {
-    const FlushDenormals flush;
-    run(found(), static_cast<RTCScene>(scene_), search, radius);
 }
 
 }  // namespace lodestone::ray

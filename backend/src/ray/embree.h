@@ -2,8 +2,8 @@
 // Embree's tree over one mesh, in the tree's own frame: the only file pair that sees Embree.
 #pragma once
 
-#include "ray/closest_search.h"
 #include "ray/cover.h"
+#include "ray/scene.h"
 
 #include <string>
 
@@ -35,8 +35,9 @@ public:
     /// Directions have unit length.
     Found first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
-    /// Lets the search visit what may be within `radius`.
-    void search(ClosestSearch& search, double radius) const;
+    /// As Scene::crossed.
+    size_t crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                   std::span<uint32_t> list) const;
 
 private:
     void* scene_;

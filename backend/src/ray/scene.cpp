@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ray/scene.h"
 
+#include "ray/closest_tree.h"
 #include "ray/embree.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 namespace lodestone::ray {
@@ -30,8 +32,11 @@ struct Scene::Data {
     double scale = 1;
     std::vector<glm::vec3> positions;  // local, and one more for Embree's wide loads
     std::vector<Triangle> triangles;
-    std::unique_ptr<Cover> cover;    // null: opaque
+    std::unique_ptr<Cover> cover;  // null: opaque
+    Uses uses = Uses::Everything;
     std::optional<EmbreeTree> tree;  // none: nothing can be hit
+    std::once_flag once;
+    std::optional<ClosestTree> boxes;  // made when the first closest point is asked for
 
     glm::dvec3 corner(uint32_t triangle, int i) const {
         return glm::dvec3(positions[triangles[triangle][i]]);
@@ -48,6 +53,8 @@ struct Scene::Data {
 
     /// False when the ray cannot hit. Far origins are brought to the rim in double precision.
     bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far, Part& part) const {
+        if (uses == Uses::ClosestPoints)
+            fail(Status::Internal, "a scene for closest points was asked for a hit");
         const double length = glm::length(direction);
         if (!tree || !(length > 0) || !std::isfinite(length) || !(far >= 0))
             return false;
@@ -73,10 +80,11 @@ struct Scene::Data {
     }
 };
 
-Scene::Scene(const Mesh& mesh, SkinPtr skin) : data_(std::make_unique<Data>()) {
+Scene::Scene(const Mesh& mesh, SkinPtr skin, Uses uses) : data_(std::make_unique<Data>()) {
     require_embree();
     check(mesh);
     Data& data = *data_;
+    data.uses = uses;
     data.triangles = mesh.triangles;
     Box3 box;
     for (const Triangle& t : mesh.triangles) {
@@ -107,7 +115,8 @@ Scene::Scene(const Mesh& mesh, SkinPtr skin) : data_(std::make_unique<Data>()) {
     data.positions.emplace_back(0.0f);
     if (skin && skin->see_through(mesh))
         data.cover = std::make_unique<Cover>(mesh, std::move(skin));
-    data.tree.emplace(data.positions, data.triangles, data.cover.get());
+    if (uses == Uses::Everything)
+        data.tree.emplace(data.positions, data.triangles, data.cover.get());
 }
 
 Scene::~Scene() = default;
@@ -158,10 +167,19 @@ bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction, doub
            data.tree->occluded(part.origin, part.direction, part.far);
 }
 
-Closest Scene::closest_point(const glm::dvec3& point, double radius) const {
+size_t Scene::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                      std::span<uint32_t> list) const {
     const Data& data = *data_;
+    Data::Part part;
+    if (list.empty() || !data.clip(origin, direction, far, part))
+        return 0;
+    return data.tree->crossed(part.origin, part.direction, part.far, list);
+}
+
+Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps) const {
+    Data& data = *data_;
     Closest out;
-    if (!data.tree || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
+    if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
         return out;
     std::function<bool(uint32_t, double, double)> shown;
     if (data.cover)
@@ -172,10 +190,14 @@ Closest Scene::closest_point(const glm::dvec3& point, double radius) const {
                          data.cover ? &shown : nullptr};
     const double far =
         std::max({std::abs(search.point.x), std::abs(search.point.y), std::abs(search.point.z)});
-    // Squares of larger coordinates do not fit single precision; Embree would find nothing.
+    if (perhaps < data.triangles.size())
+        search.visit(perhaps);
+    // Squares of larger coordinates do not fit single precision.
     constexpr double kFarthest = 1e15;
     if (far < kFarthest) {
-        data.tree->search(search, radius * data.scale);
+        // On this thread alone: one that waits for others could be given work that comes back here.
+        std::call_once(data.once, [&] { data.boxes.emplace(data.positions, data.triangles); });
+        data.boxes->search(search, std::min(radius * data.scale, std::sqrt(search.square)));
     } else {
         for (uint32_t i = 0; i < data.triangles.size(); ++i)
             search.visit(i);

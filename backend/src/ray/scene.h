@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace lodestone::ray {
@@ -16,6 +17,19 @@ inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
 /// Whether rays can be cast here: Embree 3.13 was found and passed its test of known answers. It is
 /// looked for once, beside our own library and then where the system keeps libraries.
 bool available(std::string* reason = nullptr);
+
+/// While one of these lives, many rays of its thread cost less: the thread flushes denormal numbers
+/// to zero, as Embree wants it, and does so until then instead of ray by ray.
+class Burst {
+public:
+    Burst();
+    ~Burst();
+    Burst(const Burst&) = delete;
+    Burst& operator=(const Burst&) = delete;
+
+private:
+    unsigned saved_;
+};
 
 /// Where a ray meets the mesh first. The point is (1-u-v) a + u b + v c of the triangle's corners.
 struct Hit {
@@ -36,6 +50,9 @@ struct Closest {
     double v = 0;
 };
 
+/// What a scene is asked for.
+enum class Uses : uint8_t { Everything, ClosestPoints };
+
 /// A mesh made ready for rays. It keeps its own copy, moved to its bound's center and scaled by a
 /// power of two, so that Embree's single precision is spent on the mesh and not on where it is.
 /// Const methods may be called from any thread. Every method throws Error(RaysUnavailable) where
@@ -46,7 +63,8 @@ public:
     /// Error(InvalidArgument) when an index is out of range. With a skin rays pass through what it
     /// shows as transparent, as often as that covers nothing, and the nearest point is one where
     /// there is something; a mesh that is opaque costs nothing more for it.
-    explicit Scene(const Mesh& mesh, SkinPtr skin = nullptr);
+    /// One for closest points alone takes less time and memory; it may not be asked for hits.
+    explicit Scene(const Mesh& mesh, SkinPtr skin = nullptr, Uses uses = Uses::Everything);
     ~Scene();
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;
@@ -74,11 +92,18 @@ public:
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
 
-    /// The nearest point of any triangle within `radius`. A good guess of the radius is faster.
+    /// Lists the triangles that end rays where this one crosses them with 0 <= t <= far, in no
+    /// order, as many as there is room for. How many were listed.
+    size_t crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                   std::span<uint32_t> list) const;
+
+    /// The nearest point of any triangle within `radius`. A small radius is faster; so is a
+    /// triangle that may be near, which changes nothing else.
     /// Where something transparent is nearest, the edge of what is not is found to an eighth of its
     /// triangle's size.
     Closest closest_point(const glm::dvec3& point,
-                          double radius = std::numeric_limits<double>::infinity()) const;
+                          double radius = std::numeric_limits<double>::infinity(),
+                          uint32_t perhaps = kNoTriangle) const;
 
 private:
     struct Data;

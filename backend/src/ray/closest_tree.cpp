@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ray/closest_tree.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::ray {
+namespace {
+
+constexpr int kBins = 16;
+constexpr int kMostUneven = 40;  // splits, after which they are in the middle: the depth is bounded
+constexpr size_t kStack = 256;   // three a level, and fewer levels than kMostUneven / 2 + 16
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// A distance in single precision is off by less than this share of itself and of the longest edge,
+// but for needles, which are off by up to all of it.
+constexpr float kOff = 4e-4f;
+constexpr float kNeedle = 1e-3f;  // square of height over length
+
+template <typename Four>
+Four lower(Four a, Four b) {
+    return a < b ? a : b;
+}
+
+template <typename Four>
+Four higher(Four a, Four b) {
+    return a > b ? a : b;
+}
+
+/// A box around nothing yet.
+template <typename Four>
+struct Around {
+    Four low = Four{} + kInfinity;
+    Four high = Four{} - kInfinity;
+    size_t count = 0;
+
+    void add(Four other_low, Four other_high, size_t more) {
+        low = lower(low, other_low);
+        high = higher(high, other_high);
+        count += more;
+    }
+    float half_area() const {
+        const Four size = high - low;
+        return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+    }
+};
+
+}  // namespace
+
+ClosestTree::ClosestTree(const std::vector<glm::vec3>& positions,
+                         const std::vector<Triangle>& triangles) {
+    std::vector<Reference> references;
+    references.reserve(triangles.size());
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        const glm::vec3& a = positions[triangles[i].x];
+        const glm::vec3& b = positions[triangles[i].y];
+        const glm::vec3& c = positions[triangles[i].z];
+        if (!std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z + c.x + c.y + c.z))
+            continue;
+        const auto four = [](const glm::vec3& v) { return Four{v.x, v.y, v.z, 0}; };
+        references.push_back({lower(lower(four(a), four(b)), four(c)),
+                              higher(higher(four(a), four(b)), four(c)), i});
+    }
+    empty_ = references.empty();
+    if (empty_)
+        return;
+    leaves_.reserve(references.size() / 2 + 1);
+    nodes_.reserve(references.size() / 4 + 1);
+    root_ = add(positions, triangles, references, {0, references.size(), 0});
+}
+
+int32_t ClosestTree::add(const std::vector<glm::vec3>& positions,
+                         const std::vector<Triangle>& triangles, std::vector<Reference>& references,
+                         Range range) {
+    if (range.end - range.begin <= kWidth)
+        return add_leaf(positions, triangles, references, range);
+    std::array<Range, kWidth> parts{range};
+    int count = 1;
+    while (count < kWidth) {
+        const auto largest = std::max_element(
+            parts.begin(), parts.begin() + count,
+            [](const Range& a, const Range& b) { return a.end - a.begin < b.end - b.begin; });
+        if (largest->end - largest->begin <= kWidth)
+            break;
+        const size_t middle = split(references, *largest);
+        const int depth = largest->depth + 1;
+        parts[static_cast<size_t>(count)] = {middle, largest->end, depth};
+        *largest = {largest->begin, middle, depth};
+        ++count;
+    }
+    const auto index = static_cast<int32_t>(nodes_.size());
+    nodes_.emplace_back();
+    Node node;
+    for (int i = 0; i < kWidth; ++i) {
+        Around<Four> box;
+        int32_t child = 0;
+        if (i < count) {
+            const Range& part = parts[static_cast<size_t>(i)];
+            for (size_t k = part.begin; k < part.end; ++k)
+                box.add(references[k].low, references[k].high, 1);
+            child = add(positions, triangles, references, part);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            node.low[static_cast<size_t>(axis)][i] = box.low[axis];
+            node.high[static_cast<size_t>(axis)][i] = box.high[axis];
+        }
+        node.children[static_cast<size_t>(i)] = child;
+    }
+    nodes_[static_cast<size_t>(index)] = node;
+    return index;
+}
+
+int32_t ClosestTree::add_leaf(const std::vector<glm::vec3>& positions,
+                              const std::vector<Triangle>& triangles,
+                              const std::vector<Reference>& references, Range range) {
+    Leaf leaf;
+    for (int i = 0; i < kWidth; ++i) {
+        // A leaf with room shows its last triangle again.
+        const size_t at = std::min(range.begin + static_cast<size_t>(i), range.end - 1);
+        const uint32_t triangle = references[at].triangle;
+        const glm::vec3& a = positions[triangles[triangle].x];
+        const glm::vec3 ab = positions[triangles[triangle].y] - a;
+        const glm::vec3 ac = positions[triangles[triangle].z] - a;
+        const float square =
+            std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)});
+        const glm::vec3 normal = glm::cross(ab, ac);
+        const bool needle = !(glm::dot(normal, normal) > kNeedle * square * square);
+        for (int axis = 0; axis < 3; ++axis) {
+            leaf.a[static_cast<size_t>(axis)][i] = a[axis];
+            leaf.ab[static_cast<size_t>(axis)][i] = ab[axis];
+            leaf.ac[static_cast<size_t>(axis)][i] = ac[axis];
+        }
+        leaf.slack[i] = (needle ? 1.0f : kOff) * std::sqrt(square);
+        leaf.triangles[static_cast<size_t>(i)] = triangle;
+    }
+    leaves_.push_back(leaf);
+    return ~static_cast<int32_t>(leaves_.size() - 1);
+}
+
+size_t ClosestTree::split(std::vector<Reference>& references, Range range) {
+    const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
+    const auto end = references.begin() + static_cast<ptrdiff_t>(range.end);
+    const size_t half = range.begin + (range.end - range.begin) / 2;
+    Around<Four> middles;  // twice as far out
+    for (auto at = begin; at != end; ++at)
+        middles.add(at->low + at->high, at->low + at->high, 1);
+    const Four size = middles.high - middles.low;
+    int axis = size[0] > size[1] ? 0 : 1;
+    axis = size[2] > size[axis] ? 2 : axis;
+    if (!(size[axis] > 0))
+        return half;
+    if (range.depth >= kMostUneven) {
+        std::nth_element(begin, references.begin() + static_cast<ptrdiff_t>(half), end,
+                         [axis](const Reference& a, const Reference& b) {
+                             const float x = a.low[axis] + a.high[axis];
+                             const float y = b.low[axis] + b.high[axis];
+                             return x != y ? x < y : a.triangle < b.triangle;
+                         });
+        return half;
+    }
+    using Bin = Around<Four>;
+    std::array<Bin, kBins> bins;
+    const float low = middles.low[axis];
+    const float scale = kBins / size[axis];
+    const auto bin_of = [&](const Reference& reference) {
+        const float along = (reference.low[axis] + reference.high[axis] - low) * scale;
+        return std::min(static_cast<int>(along), kBins - 1);
+    };
+    for (auto at = begin; at != end; ++at) {
+        bins[static_cast<size_t>(bin_of(*at))].add(at->low, at->high, 1);
+    }
+    // The cost of a side: its surface times the leaves it needs.
+    const auto cost = [](const Bin& side) {
+        const size_t leaves = (side.count + kWidth - 1) / kWidth;
+        return side.half_area() * static_cast<float>(leaves);
+    };
+    std::array<float, kBins> above{};
+    Bin side;
+    for (int i = kBins - 1; i > 0; --i) {
+        const Bin& bin = bins[static_cast<size_t>(i)];
+        side.add(bin.low, bin.high, bin.count);
+        above[static_cast<size_t>(i)] = side.count > 0 ? cost(side) : kInfinity;
+    }
+    side = Bin{};
+    float best = kInfinity;
+    int border = 0;
+    for (int i = 1; i < kBins; ++i) {
+        const Bin& bin = bins[static_cast<size_t>(i - 1)];
+        side.add(bin.low, bin.high, bin.count);
+        const float both = side.count > 0 ? cost(side) + above[static_cast<size_t>(i)] : kInfinity;
+        if (both < best) {
+            best = both;
+            border = i;
+        }
+    }
+    if (border == 0)
+        return half;
+    const auto middle = std::partition(
+        begin, end, [&](const Reference& reference) { return bin_of(reference) < border; });
+    return range.begin + static_cast<size_t>(middle - begin);
+}
+
+ClosestTree::Four ClosestTree::square_distances(const Leaf& leaf, const glm::vec3& point) {
+    const Four zero{};
+    const Four one = zero + 1.0f;
+    const Four tiny = zero + 1e-37f;
+    const auto dot = [](const std::array<Four, 3>& a, const std::array<Four, 3>& b) {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    const auto clamped = [&](Four value) {
+        value = value > zero ? value : zero;
+        return value < one ? value : one;
+    };
+    std::array<Four, 3> ap;
+    std::array<Four, 3> bc;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        ap[axis] = point[static_cast<int>(axis)] - leaf.a[axis];
+        bc[axis] = leaf.ac[axis] - leaf.ab[axis];
+    }
+    const Four b_b = dot(leaf.ab, leaf.ab);
+    const Four b_c = dot(leaf.ab, leaf.ac);
+    const Four c_c = dot(leaf.ac, leaf.ac);
+    const Four b_p = dot(leaf.ab, ap);
+    const Four c_p = dot(leaf.ac, ap);
+    const auto square_at = [&](Four u, Four v) {
+        Four sum = zero;
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const Four arm = ap[axis] - u * leaf.ab[axis] - v * leaf.ac[axis];
+            sum += arm * arm;
+        }
+        return sum;
+    };
+    const auto least = [](Four a, Four b) { return a < b ? a : b; };
+    // On the three edges, and above the inside.
+    Four best = square_at(clamped(b_p / (b_b > tiny ? b_b : tiny)), zero);
+    best = least(best, square_at(zero, clamped(c_p / (c_c > tiny ? c_c : tiny))));
+    const Four e_e = b_b + c_c - 2.0f * b_c;
+    const Four t = clamped((c_p - b_p + b_b - b_c) / (e_e > tiny ? e_e : tiny));
+    best = least(best, square_at(one - t, t));
+    const Four area = b_b * c_c - b_c * b_c;
+    const Four u = (c_c * b_p - b_c * c_p) / (area > tiny ? area : tiny);
+    const Four v = (b_b * c_p - b_c * b_p) / (area > tiny ? area : tiny);
+    const Four inside = square_at(u, v);
+    const auto in = (u >= zero) & (v >= zero) & (u + v <= one) & (inside < best);
+    return in ? inside : best;
+}
+
+void ClosestTree::search(ClosestSearch& search, double radius) const {
+    if (empty_)
+        return;
+    struct Entry {
+        float square;
+        int32_t node;
+    };
+    std::array<Entry, kStack> stack;
+    size_t size = 0;
+    const glm::vec3 point(search.point);
+    const float rounding = search.reach(0);
+    // Within which distance anything matters, and its square, both rounded up.
+    float reach = search.reach(radius);
+    float square = reach * reach * (1 + 0x1p-20f);
+    const auto visit = [&](uint32_t triangle) {
+        if (!search.visit(triangle))
+            return;
+        const float nearer = search.reach(std::sqrt(search.square));
+        if (nearer < reach) {
+            reach = nearer;
+            square = reach * reach * (1 + 0x1p-20f);
+        }
+    };
+    stack[size++] = {0, root_};
+    while (size > 0) {
+        const Entry top = stack[--size];
+        if (top.square > square)
+            continue;
+        if (top.node < 0) {
+            const int32_t index = ~top.node;
+            const Leaf& leaf = leaves_[static_cast<size_t>(index)];
+            const Four distances = square_distances(leaf, point);
+            for (int i = 0; i < kWidth; ++i) {
+                const float far = (reach + rounding + leaf.slack[i]) * (1 + kOff);
+                if (distances[i] <= far * far)
+                    visit(leaf.triangles[static_cast<size_t>(i)]);
+            }
+            continue;
+        }
+        const Node& node = nodes_[static_cast<size_t>(top.node)];
+        Four squares{};
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const float at = point[static_cast<int>(axis)];
+            const Four below = node.low[axis] - at;
+            const Four above = at - node.high[axis];
+            Four out = below > above ? below : above;
+            out = out > 0.0f ? out : Four{};
+            squares += out * out;
+        }
+        // The nearest comes to lie on top.
+        const size_t first = size;
+        for (int i = 0; i < kWidth; ++i) {
+            if (!(squares[i] <= square) || !(squares[i] < kInfinity))
+                continue;
+            size_t at = size++;
+            for (; at > first && stack[at - 1].square < squares[i]; --at)
+                stack[at] = stack[at - 1];
+            stack[at] = {squares[i], node.children[static_cast<size_t>(i)]};
+        }
+    }
+}
+
+}  // namespace lodestone::ray

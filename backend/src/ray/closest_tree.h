@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ClosestTree: a tree of boxes over one mesh, four to a node, for closest points alone.
+#pragma once
+
+#include "ray/closest_search.h"
+
+#include <array>
+
+namespace lodestone::ray {
+
+/// Boxes and triangles in single precision only propose; the search decides in double, so that
+/// answers do not depend on the tree.
+class ClosestTree {
+public:
+    /// Positions lie in the unit sphere; triangles with a non-finite corner are left out. Keeps
+    /// nothing of either.
+    ClosestTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles);
+
+    /// Lets the search visit what may be within `radius` of its point, whose coordinates are below
+    /// 1e15. The search must be over the same mesh.
+    void search(ClosestSearch& search, double radius) const;
+
+private:
+    using Four = float __attribute__((vector_size(16)));
+    static constexpr int kWidth = 4;
+
+    struct Node {
+        std::array<Four, 3> low, high;         // of the children; nothing is in an empty box
+        std::array<int32_t, kWidth> children;  // a node, or ~ a leaf
+    };
+    struct Leaf {
+        std::array<Four, 3> a, ab, ac;
+        Four slack;  // how far its distance in single precision may be off
+        std::array<uint32_t, kWidth> triangles;
+    };
+    struct Reference {
+        Four low, high;  // the fourth lane is not used
+        uint32_t triangle;
+    };
+    struct Range {
+        size_t begin, end;
+        int depth;
+    };
+
+    int32_t add(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
+                std::vector<Reference>& references, Range range);
+    int32_t add_leaf(const std::vector<glm::vec3>& positions,
+                     const std::vector<Triangle>& triangles,
+                     const std::vector<Reference>& references, Range range);
+    static size_t split(std::vector<Reference>& references, Range range);
+    static Four square_distances(const Leaf& leaf, const glm::vec3& point);
+
+    std::vector<Node> nodes_;
+    std::vector<Leaf> leaves_;
+    int32_t root_ = 0;
+    bool empty_ = true;
+};
+
+}  // namespace lodestone::ray
