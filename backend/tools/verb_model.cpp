@@ -117,7 +117,8 @@ int run_measure(const Arguments& arguments) {
     const std::string& input = arguments.positional()[0];
     lds_measure_options options = lds_measure_options_default();
     options.rays = arguments.count("rays", options.rays);
-    options.relative_error = arguments.number("relative-error", 0, 0, 1);
+    const double usual = arguments.text("rays") ? 0 : 0.01;
+    options.relative_error = arguments.number("relative-error", usual, 0, 1);
     options.seed = arguments.count("seed", options.seed);
     options.threads = threads_of(arguments);
     const ModelHandle model = read_model(input);

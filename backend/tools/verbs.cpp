@@ -18,8 +18,8 @@ const std::vector<Verb>& verbs() {
          "FILE is a .obj, .ply, .glb or .gltf, or a store made by `lodestone build`.\n"
          "Rays are cast from all around; open sheets count both sides.",
          1,
-         {{"rays", "N", "rays an object (default 4096; more is surer and slower)"},
-          {"relative-error", "E", "cast until the area is this sure instead, e.g. 0.01"},
+         {{"relative-error", "E", "cast until the area is this sure (default 0.01)"},
+          {"rays", "N", "so many rays an object instead; more is surer and slower"},
           kJson,
           kThreads,
           kSeed},

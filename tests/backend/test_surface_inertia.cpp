@@ -331,3 +331,24 @@ TEST(SurfaceInertia, TrianglesWithNonFiniteVerticesCountNothing) {
     mesh.triangles.emplace_back(0, 1, static_cast<uint32_t>(mesh.positions.size() - 1));
     EXPECT_NEAR(measure::of_mesh(mesh).area, 6, 1e-14);
 }
+
+TEST(SurfaceInertia, AttributesFollowPlacementsThatKeepShapesAndRefuseOthers) {
+    Attributes box;
+    box.visible_area = box.surface_area = 22;
+    box.centroid = {1, 2, 3};
+    box.moments = measure::of_box(3, 2, 1).moments;
+    const double s = 2;
+    const Affine mirrored{glm::dmat3({-s, 0, 0}, {0, 0, s}, {0, s, 0}), {10, 0, 0}};
+    for (const Affine& placed :
+         {mirrored, Affine{glm::dmat3({0, s, 0}, {-s, 0, 0}, {0, 0, s}), {}}}) {
+        const Attributes out = measure::transformed(box, placed);
+        EXPECT_NEAR(out.visible_area, 88, 1e-9);
+        EXPECT_NEAR(out.surface_area, 88, 1e-9);
+        EXPECT_NEAR(glm::length(out.centroid - placed(box.centroid)), 0, 1e-12);
+        EXPECT_NEAR(glm::determinant(out.axes), 1, 1e-12);
+        // The longest axis is still the one with the largest variance, s^4 times as large.
+        EXPECT_NEAR(glm::dot(out.axes[0], out.moments * out.axes[0]), 16 * box.moments[0][0], 1e-9);
+    }
+    EXPECT_THROW(measure::transformed(box, {glm::dmat3({2, 0, 0}, {0, 1, 0}, {0, 0, 1}), {}}),
+                 Error);
+}

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "measure/principal_axes.h"
 #include "measure/sobol.h"
+#include "measure/strata.h"
 #include "measure/surface_inertia.h"
 #include "measure/visible.h"
 #include "measure/visible_sampler.h"
@@ -235,7 +236,9 @@ TEST(Visible, ErrorsAreAsLargeAsTheyAreSaidToBe) {
     EXPECT_GE(inside, 36);
     options.relative_error = 1e-9;
     options.most_rays = 1000;
-    EXPECT_EQ(measure_visible(mesh, {}, options).attributes.rays, 1000u);
+    const uint64_t rays = measure_visible(mesh, {}, options).attributes.rays;
+    EXPECT_LE(rays, 1000u);
+    EXPECT_GT(rays, 1000u - measure::Strata::kStep);
 }
 
 TEST(Visible, MovingTurningAndScalingMoveTurnAndScaleTheAttributes) {

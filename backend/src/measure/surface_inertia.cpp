@@ -216,7 +216,10 @@ SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b) {
     return out;
 }
 
-SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similarity) {
+namespace {
+
+/// The square of its scale. Throws as transformed() does.
+double square_scale(const Affine& similarity) {
     const glm::dmat3& linear = similarity.linear;
     const glm::dmat3 square = glm::transpose(linear) * linear;
     const double scale = trace(square) / 3;  // s^2
@@ -229,10 +232,32 @@ SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similari
         fail(Status::InvalidArgument,
              "surface inertia does not follow a transform that is not a rotation, a uniform scale "
              "and a translation");
+    return scale;
+}
+
+}  // namespace
+
+SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similarity) {
+    const double scale = square_scale(similarity);
+    const glm::dmat3& linear = similarity.linear;
     SurfaceInertia out;
     out.area = inertia.area * scale;
     out.center = similarity(inertia.center);
     out.moments = scale * (linear * inertia.moments * glm::transpose(linear));
+    return out;
+}
+
+Attributes transformed(const Attributes& attributes, const Affine& similarity) {
+    const double scale = square_scale(similarity);
+    const glm::dmat3& linear = similarity.linear;
+    Attributes out = attributes;
+    out.visible_area *= scale;
+    out.surface_area *= scale;
+    out.centroid = similarity(attributes.centroid);
+    out.moments = scale * (linear * attributes.moments * glm::transpose(linear));
+    out.axes = (1 / std::sqrt(scale)) * (linear * attributes.axes);
+    if (glm::determinant(out.axes) < 0)
+        out.axes[2] = -out.axes[2];
     return out;
 }
 

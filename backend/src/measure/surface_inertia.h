@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/maths.h"
+#include "model/attributes.h"
 #include "model/mesh.h"
 
 namespace lodestone::measure {
@@ -37,6 +38,8 @@ SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b);
 /// Under a rotation, mirroring, uniform scale s and translation: area s^2, moments s^4. Throws
 /// Error(InvalidArgument) for any other transform: areas do not follow a non-uniform scale.
 SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similarity);
+/// The same for all attributes; axes stay right-handed. What is stretched has to be measured again.
+Attributes transformed(const Attributes& attributes, const Affine& similarity);
 
 /// Variances along the principal axes (moments / area, m^2, descending) and the axes.
 Eigen principal_variances(const SurfaceInertia& inertia);

@@ -197,8 +197,8 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
     }
     if (points.empty())
         return;
-    const double visible = sampler.reference_area() * static_cast<double>(hits) /
-                           static_cast<double>(rays) / (sampler.sides().open ? 2 : 1);
+    const double visible =
+        sampler.reference_area() * static_cast<double>(hits) / static_cast<double>(rays);
     if (points.size() > count)
         points.resize(count);
     // Along the list of triangles, neighbors are near each other and so are their answers.
@@ -206,8 +206,11 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
         points.begin(), points.end(),
         [](const VisiblePoint& a, const VisiblePoint& b) { return a.triangle < b.triangle; });
     const double weight = visible / static_cast<double>(points.size());
+    // An open sheet is seen from two sides and there once.
+    const Sides& sides = sampler.sides();
     for (const VisiblePoint& point : points)
-        out.push_back(shown_at(mesh, surface, point, weight));
+        out.push_back(
+            shown_at(mesh, surface, point, (sides.both(point.triangle) ? 0.5 : 1) * weight));
 }
 
 void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
@@ -227,7 +230,7 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
             const bool coin = (random.next() & 1u) != 0;
             if (!(length > 0) || !shows_corner(mesh, scene, triangle, vertex))
                 continue;
-            const bool back = sides.open ? coin : sides.turned[triangle] != 0;
+            const bool back = sides.both(triangle) ? coin : sides.of[triangle] == Side::Back;
             const glm::dvec3 outward = (back ? -area : area) / length;
             // A hundredth towards the middle: a ray from the corner itself could slip between the
             // surfaces that meet there.

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "measure/principal_axes.h"
+#include "measure/strata.h"
 #include "measure/visible_sampler.h"
 
 #include <algorithm>
@@ -15,8 +16,12 @@ namespace {
 constexpr uint32_t kBlock = 256;                 // rays a thread casts at a time
 constexpr uint64_t kBatch = uint64_t{1} << 16u;  // rays between two serial sums
 constexpr double kConfidence = 1.96;             // 95 % of a normal distribution
+constexpr double kEarlyStop = 1.04;
 constexpr uint64_t kFirstBatch = 512;
-constexpr uint64_t kFewestHits = 64;  // before the estimated error is believed
+constexpr uint64_t kLeastBatch = 256;
+constexpr uint64_t kFewestHits = 64;        // before the estimated error is believed
+constexpr uint32_t kTextureSamples = 4096;  // where all is seen and only textures are not known
+constexpr uint64_t kHitsOfAll = uint64_t{1} << 20u;  // told of a surface that no ray was cast at
 constexpr uint32_t kMostTags = uint32_t{1} << 24u;
 constexpr double kMostRaysTimes = 64;
 
@@ -50,9 +55,9 @@ public:
     }
 
     bool slot(size_t index) const { return varies_[index] != 0; }
-    void add(const VisiblePoint& at, ShownSums& sums) const {
+    void add(const VisiblePoint& at, ShownSums& sums, double weight = 1) const {
         if (slot(mesh_.slot(at.triangle)))
-            sums.add(skin_->at(mesh_, at.triangle, at.u, at.v), 1);
+            sums.add(skin_->at(mesh_, at.triangle, at.u, at.v), weight);
     }
 
 private:
@@ -66,96 +71,152 @@ struct Tally {
     glm::dvec3 origin{0.0};
     uint64_t rays = 0;
     uint64_t hits = 0;    // rays with a point
-    uint64_t points = 0;  // all of equal weight
+    uint64_t differ = 0;  // pairs of rays of which one hit
+    double weight = 0;    // of all points
     glm::dvec3 first{0.0};
     glm::dmat3 second{0.0};
-    std::vector<uint32_t> by_triangle;
-    ShownSums varied;  // of the points in slots that vary
+    std::vector<double> by_triangle;  // weight
+    ShownSums varied;                 // of the points in slots that vary
 
     void add(const VisiblePoint& at) {
         const glm::dvec3 arm = at.point - origin;
-        ++points;
+        weight += 1;
         first += arm;
         second += glm::outerProduct(arm, arm);
-        ++by_triangle[at.triangle];
+        by_triangle[at.triangle] += 1;
     }
 
-    /// Of the estimated area, 95 %. Two hits and two misses are added (Agresti and Coull 1998), so
-    /// that nothing is certain only because no ray has missed.
-    double relative_error() const {
+    /// Of the estimated area, 95 %, for any rays. Two hits and two misses are added (Agresti and
+    /// Coull 1998), so that nothing is certain only because no ray has missed.
+    double binomial_error() const {
         const double n = static_cast<double>(rays) + 4;
         const double p = (static_cast<double>(hits) + 2) / n;
         return kConfidence * std::sqrt((1 - p) / (p * n));
     }
+
+    /// The same for pairs of rays that share a cell: what differs between cells is no error. Who
+    /// stops by it stops rather too early than too late.
+    double paired_error() const {
+        const double h = static_cast<double>(std::max<uint64_t>(hits, 1));
+        return kEarlyStop * kConfidence * std::sqrt(static_cast<double>(differ) + 2) / h;
+    }
 };
 
-/// Casts rays [first, first + count) on all threads and adds what they found in their order.
-void cast(const VisibleSampler& sampler, const Varied& varied, uint64_t first, uint64_t count,
-          Tally& tally, const Job& job) {
+/// Casts rays 0 ... count - 1 of a sequence on all threads and adds what they found in their order.
+template <typename Numbers>
+void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& numbers,
+          uint64_t count, bool with_points, Tally& tally, const Job& job) {
     struct Found {
         std::array<VisiblePoint, 2> points;
         int count = 0;
     };
-    std::vector<Found> found(count);
+    std::vector<Found> found(with_points ? count : 0);
+    std::vector<uint8_t> hit(count, 0);
     parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
+        const ray::Burst burst;
         const uint64_t end = std::min<uint64_t>(count, (block + 1) * kBlock);
-        for (uint64_t i = block * kBlock; i < end; ++i)
-            found[i].count = sampler.cast(static_cast<uint32_t>(first + i), found[i].points);
+        for (uint64_t i = block * kBlock; i < end; ++i) {
+            const std::array<double, 4> u = numbers(static_cast<uint32_t>(i));
+            if (with_points) {
+                found[i].count = sampler.cast(u, found[i].points);
+                hit[i] = found[i].count > 0 ? 1 : 0;
+            } else {
+                hit[i] = sampler.hits(u) ? 1 : 0;
+            }
+        }
     });
     for (const Found& ray : found) {
         for (int i = 0; i < ray.count; ++i) {
             tally.add(ray.points[static_cast<size_t>(i)]);
             varied.add(ray.points[static_cast<size_t>(i)], tally.varied);
         }
-        tally.hits += ray.count > 0 ? 1 : 0;
+    }
+    for (size_t i = 0; i < hit.size(); ++i) {
+        tally.hits += hit[i];
+        tally.differ += (i & 1u) != 0 && hit[i] != hit[i - 1] ? 1 : 0;
     }
     tally.rays += count;
 }
 
-Tally sample(const Mesh& mesh, const VisibleSampler& sampler, const Varied& varied,
-             const VisibleOptions& options, const Job& job) {
-    Tally tally;
-    tally.origin = glm::dvec3(mesh.positions[mesh.triangles[0].x]);
-    tally.by_triangle.resize(mesh.triangles.size(), 0);
-    const bool adaptive = options.relative_error > 0;
-    const uint64_t most = std::min<uint64_t>(adaptive ? options.most_rays : options.rays, ~0u);
-    // Growing by a half each time, the rays cast after the goal was reached are a third at most.
-    uint64_t next = adaptive ? kFirstBatch : most;
+/// A fixed number of rays, as even as can be.
+void sample_evenly(const VisibleSampler& sampler, const Varied& varied,
+                   const VisibleOptions& options, Tally& tally, const Job& job) {
+    const Sobol sobol(options.seed);
+    const uint64_t most = std::min<uint64_t>(options.rays, ~0u);
     while (tally.rays < most) {
-        next = std::min({next, kBatch, most - tally.rays});
-        cast(sampler, varied, tally.rays, next, tally, job);
+        const auto first = static_cast<uint32_t>(tally.rays);
+        const auto numbers = [&](uint32_t i) { return sobol.point(first + i); };
+        cast(sampler, varied, numbers, std::min(kBatch, most - first), true, tally, job);
         job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
-        if (adaptive && tally.hits >= kFewestHits &&
-            tally.relative_error() <= options.relative_error)
-            break;
-        next = adaptive ? tally.rays / 2 : most;
     }
-    return tally;
+}
+
+/// Rays until the area is known well enough.
+void sample_until_sure(const VisibleSampler& sampler, const Varied& varied,
+                       const VisibleOptions& options, Tally& tally, const Job& job) {
+    const uint64_t most =
+        std::min<uint64_t>(options.most_rays, ~0u) / Strata::kStep * Strata::kStep;
+    uint64_t next = kFirstBatch;
+    for (uint64_t batch = 0; tally.rays < most; ++batch) {
+        next = std::min({next, kBatch, most - tally.rays});
+        const Strata strata(scramble(options.seed) + batch, static_cast<uint32_t>(next));
+        const auto numbers = [&](uint32_t i) { return strata.point(i); };
+        const bool with_points = sampler.from_surface() || tally.rays < kMostLinesWithPoints;
+        cast(sampler, varied, numbers, next, with_points, tally, job);
+        job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
+        const double off = tally.paired_error() / options.relative_error;
+        if (tally.hits >= kFewestHits && off <= 1)
+            break;
+        // As many as the error asks for, but never more than there are: it may be wrong.
+        const double wanted = static_cast<double>(tally.rays) * (off * off - 1);
+        next = static_cast<uint64_t>(
+            std::clamp(wanted, static_cast<double>(kLeastBatch), static_cast<double>(tally.rays)));
+        next = (next + Strata::kStep - 1) / Strata::kStep * Strata::kStep;
+    }
+}
+
+/// All of the surface, by traversal.
+void traverse(const Mesh& mesh, const VisibleSampler& sampler, const Varied& varied,
+              const VisibleOptions& options, Tally& tally) {
+    const SurfaceInertia& inertia = sampler.inertia();
+    const glm::dvec3 arm = inertia.center - tally.origin;
+    tally.weight = inertia.area;
+    tally.first = inertia.area * arm;
+    tally.second = inertia.moments + inertia.area * glm::outerProduct(arm, arm);
+    bool varies = false;
+    for (size_t i = 0; i < tally.by_triangle.size(); ++i) {
+        const double area = 0.5 * glm::length(area_vector(mesh, i));
+        tally.by_triangle[i] = area > 0 && std::isfinite(area) ? area : 0;
+        varies = varies || varied.slot(mesh.slot(i));
+    }
+    const Sobol sobol(options.seed);
+    for (uint32_t i = 0; varies && i < kTextureSamples; ++i)
+        varied.add(sampler.on_surface(sobol.point(i)), tally.varied,
+                   inertia.area / kTextureSamples);
 }
 
 void add_surface(const Mesh& mesh, const ray::Skin* skin, const Varied& varied, const Tally& tally,
                  Attributes& out) {
-    std::vector<uint64_t> by_slot;
+    std::vector<double> by_slot;
     for (size_t i = 0; i < tally.by_triangle.size(); ++i) {
         const size_t slot = mesh.slot(i);
         if (by_slot.size() <= slot)
             by_slot.resize(slot + 1, 0);
         by_slot[slot] += tally.by_triangle[i];
     }
-    const auto points = static_cast<double>(tally.points);
     ShownSums sums;
     for (size_t slot = 0; slot < by_slot.size(); ++slot) {
         if (by_slot[slot] == 0 || varied.slot(slot))
             continue;
-        const double share = static_cast<double>(by_slot[slot]) / points;
+        const double share = by_slot[slot] / tally.weight;
         sums.add(skin != nullptr ? skin->mean(static_cast<uint16_t>(slot)) : ray::Shown{}, share);
     }
-    out.color = sums.color + tally.varied.color / points;
-    out.emission = sums.emission + tally.varied.emission / points;
-    out.roughness = sums.roughness + tally.varied.roughness / points;
-    out.metallic = sums.metallic + tally.varied.metallic / points;
-    out.specular = sums.specular + tally.varied.specular / points;
+    out.color = sums.color + tally.varied.color / tally.weight;
+    out.emission = sums.emission + tally.varied.emission / tally.weight;
+    out.roughness = sums.roughness + tally.varied.roughness / tally.weight;
+    out.metallic = sums.metallic + tally.varied.metallic / tally.weight;
+    out.specular = sums.specular + tally.varied.specular / tally.weight;
 }
 
 }  // namespace
@@ -181,24 +242,39 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
         if (tag >= out.hits_by_tag.size())
             out.hits_by_tag.resize(tag + 1, 0);
     }
-    const VisibleSampler sampler(mesh, scene, options.seed);
+    const VisibleSampler sampler(mesh, scene, options.seed, options.casting,
+                                 options.relative_error);
     Attributes& attributes = out.attributes;
     attributes.surface_area = sampler.possible_area();
     if (sampler.empty())
         return out;
     const Varied varied(mesh, skin.get());
-    const Tally tally = sample(mesh, sampler, varied, options, job);
+    const bool until_sure = options.relative_error > 0;
+    Tally tally;
+    tally.origin = glm::dvec3(mesh.positions[mesh.triangles[0].x]);
+    tally.by_triangle.resize(mesh.triangles.size(), 0);
+    job.check();
+    if (sampler.shows_all() && (until_sure || options.rays > 0))
+        traverse(mesh, sampler, varied, options, tally);
+    else if (until_sure)
+        sample_until_sure(sampler, varied, options, tally, job);
+    else
+        sample_evenly(sampler, varied, options, tally, job);
+    out.pilot_rays = sampler.pilot_rays();
     attributes.rays = tally.rays;
-    attributes.relative_error = tally.relative_error();
-    if (tally.points == 0)
+    if (sampler.shows_all())
+        attributes.visible_area = tally.weight > 0 ? sampler.possible_area() : 0;
+    else {
+        attributes.relative_error = until_sure ? tally.paired_error() : tally.binomial_error();
+        attributes.visible_area = sampler.reference_area() * static_cast<double>(tally.hits) /
+                                  static_cast<double>(std::max<uint64_t>(tally.rays, 1));
+    }
+    if (!(tally.weight > 0))
         return out;
-    const auto points = static_cast<double>(tally.points);
-    attributes.visible_area = sampler.reference_area() * static_cast<double>(tally.hits) /
-                              static_cast<double>(tally.rays);
-    const glm::dvec3 mean = tally.first / points;
+    const glm::dvec3 mean = tally.first / tally.weight;
     attributes.centroid = tally.origin + mean;
     attributes.moments =
-        attributes.visible_area * (tally.second / points - glm::outerProduct(mean, mean));
+        attributes.visible_area * (tally.second / tally.weight - glm::outerProduct(mean, mean));
     NormalMoments normals;
     for (size_t i = 0; i < tally.by_triangle.size(); ++i) {
         const glm::dvec3 area = area_vector(mesh, i);
@@ -209,8 +285,12 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
     attributes.axes = principal_axes(attributes.moments, normals);
     attributes.normal_moment = normals.in_frame(attributes.axes);
     add_surface(mesh, skin.get(), varied, tally, attributes);
+    out.share_by_tag.resize(out.hits_by_tag.size(), 0);
     for (size_t i = 0; i < tags.size(); ++i)
-        out.hits_by_tag[tags[i]] += tally.by_triangle[i];
+        out.share_by_tag[tags[i]] += tally.by_triangle[i] / tally.weight;
+    const double hits = sampler.shows_all() ? static_cast<double>(kHitsOfAll) : tally.weight;
+    for (size_t tag = 0; tag < out.hits_by_tag.size(); ++tag)
+        out.hits_by_tag[tag] = static_cast<uint64_t>(std::llround(out.share_by_tag[tag] * hits));
     return out;
 }
 
@@ -245,7 +325,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         Random random(scramble(seed) + index, index);
         const int rays = rays_of(length);
         for (int i = 0; i < rays; ++i) {
-            const bool back = sides.open ? (i & 1) != 0 : sides.turned[index] != 0;
+            const bool back = sides.both(index) ? (i & 1) != 0 : sides.of[index] == Side::Back;
             const glm::dvec3 outward = back ? -normal : normal;
             const double u[4] = {random.uniform(), random.uniform(), random.uniform(),
                                  random.uniform()};

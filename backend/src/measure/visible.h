@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/job.h"
+#include "measure/visible_sampler.h"
 #include "model/attributes.h"
 #include "model/material.h"
 #include "ray/scene.h"
@@ -16,18 +17,22 @@ struct VisibleOptions {
     double relative_error = 0;  // else: rays until visible_area is known this well, 95 % confidence
     uint64_t most_rays = uint64_t{1} << 20u;  // ... but never more than these; at most 2^32 - 1
     uint64_t seed = 1;
+    Casting casting = Casting::Best;
 };
 
 struct Visible {
     Attributes attributes;
     std::vector<uint64_t> hits_by_tag;  // visible points found on each tag; empty without tags
+    std::vector<double> share_by_tag;   // of the visible area; empty also where nothing is visible
+    uint64_t pilot_rays = 0;            // that were cast besides Attributes::rays
 };
 
 /// Attributes of the visible surface in the mesh's frame. `materials` by slot (a slot without one
 /// looks like Material{}), with their textures: what is transparent is not there, and surface
 /// properties are means over the visible area, each point showing its own texel. `tags` is empty or
 /// one a triangle, each < 2^24: for instance which child the triangle came from. A mesh without
-/// area, or of which no ray hit anything, gives empty attributes. Same bits on any number of
+/// area, or of which no ray hit anything, gives empty attributes. Where nothing hides anything (one
+/// convex body, one flat sheet) all is exact, by traversal, after a pilot has agreed. Same bits on any number of
 /// threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled, BadFile (a picture).
 Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
@@ -41,7 +46,7 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
 /// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
 /// dropped before simplifying. One larger than the mean has as many times more rays, to 64 times:
 /// whatever tears open above it would otherwise show what is behind. Rays leave random points in random directions (cosine), on both
-/// sides unless the mesh is closed and opaque. Triangles without area count as seen: nobody knows.
+/// sides of parts that are not closed and opaque. Triangles without area count as seen: nobody knows.
 /// Same bits on any number of threads.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});

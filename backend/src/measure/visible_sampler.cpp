@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/visible_sampler.h"
 
-#include "measure/surface_inertia.h"
+#include "measure/strata.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,20 +9,14 @@
 namespace lodestone::measure {
 namespace {
 
-constexpr uint32_t kPilotRays = 256;
-/// A line that hits gives two points, a ray from the surface one; and surfaces that touch or cross
-/// others are seen a little too well from themselves. So rays from the surface must be this much
-/// better.
-constexpr double kSurfaceMustBe = 0.5;
-
-/// The lowest element of the set that `i` is in.
-uint32_t root(std::vector<uint32_t>& parent, uint32_t i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
+constexpr uint32_t kPilotRays = 256;  // of each kind
+// What rays cost, over a line that is only asked whether it hits: one from the surface starts among
+// things to hit; and one that also looks for the nearest points from both ends.
+constexpr double kCostOfSurfaceRay = 2;
+constexpr double kCostOfLineWithPoints = 4;
+constexpr double kPointsOfLine = 1.5;  // in a fixed number of rays, all of which have points
+constexpr uint32_t kFewMisses = 2;
+constexpr size_t kMostInOnePlace = 16;
 
 /// Every point some triangle with finite corners uses, once.
 std::vector<glm::dvec3> used_points(const Mesh& mesh) {
@@ -51,94 +45,93 @@ double radius_around(std::span<const glm::dvec3> points) {
     return std::sqrt(square);
 }
 
-/// Variance of an estimate from m of n hits, relative to its square and per ray. Two hits and two
-/// misses are added: a pilot that saw only one kind knows nothing about the other.
-double relative_variance(double hits, double rays) {
-    const double p = (hits + 2) / (rays + 4);
-    return (1 - p) / p;
-}
-
 }  // namespace
-
-Sides sides_of(const Mesh& mesh, const ray::Scene& scene) {
-    Sides out;
-    out.open = scene.see_through() || !closed(mesh);
-    if (out.open)
-        return out;
-    const std::vector<uint32_t> welded = weld(mesh);
-    std::vector<uint32_t> parent(mesh.positions.size());
-    for (size_t i = 0; i < parent.size(); ++i)
-        parent[i] = static_cast<uint32_t>(i);
-    for (const Triangle& t : mesh.triangles) {
-        for (int corner = 1; corner < 3; ++corner) {
-            const uint32_t a = root(parent, welded[t[0]]);
-            const uint32_t b = root(parent, welded[t[corner]]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    }
-    // Six times the volume of each part, about one of its own points: digits far from the origin.
-    std::vector<double> volume(mesh.positions.size(), 0);
-    for (const Triangle& t : mesh.triangles) {
-        const uint32_t part = root(parent, welded[t.x]);
-        const glm::dvec3 origin(mesh.positions[part]);
-        const glm::dvec3 a = glm::dvec3(mesh.positions[t.x]) - origin;
-        const glm::dvec3 b = glm::dvec3(mesh.positions[t.y]) - origin;
-        const glm::dvec3 c = glm::dvec3(mesh.positions[t.z]) - origin;
-        volume[part] += glm::dot(a, glm::cross(b, c));
-    }
-    out.turned.resize(mesh.triangles.size());
-    for (size_t i = 0; i < mesh.triangles.size(); ++i)
-        out.turned[i] = volume[root(parent, welded[mesh.triangles[i].x])] < 0;
-    return out;
-}
 
 double radius_of(const Mesh& mesh) {
     return radius_around(used_points(mesh));
 }
 
-VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed)
+VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed,
+                               Casting casting, double relative_error)
     : mesh_(&mesh), scene_(&scene), bound_({}, glm::dmat3(1.0), 0), numbers_(seed) {
     if (scene.triangles() != mesh.triangles.size())
         fail(Status::InvalidArgument, "a scene of ", scene.triangles(),
              " triangles does not hold a mesh of ", mesh.triangles.size());
-    const SurfaceInertia inertia = of_mesh(mesh);
-    if (inertia.empty())
+    inertia_ = of_mesh(mesh);
+    if (inertia_.empty())
         return;
     sides_ = sides_of(mesh, scene);
-    possible_area_ = inertia.area * (sides_.open ? 2 : 1);
+    area_up_to_.resize(mesh.triangles.size());
+    for (size_t i = 0; i < area_up_to_.size(); ++i) {
+        const double part = (sides_.both(i) ? 1 : 0.5) * glm::length(area_vector(mesh, i));
+        possible_area_ += part > 0 && std::isfinite(part) ? part : 0;
+        area_up_to_[i] = possible_area_;
+    }
     const std::vector<glm::dvec3> points = used_points(mesh);
     lift_ = ray_lift(radius_around(points));
-    bound_ = ConvexBound(points, principal_variances(inertia).axes, lift_);
-    area_up_to_.resize(mesh.triangles.size());
-    double area = 0;
-    for (size_t i = 0; i < area_up_to_.size(); ++i) {
-        const double part = 0.5 * glm::length(area_vector(mesh, i));
-        area += part > 0 && std::isfinite(part) ? part : 0;
-        area_up_to_[i] = area;
+    from_surface_ = casting != Casting::FromBound;
+    if (casting == Casting::FromSurface)
+        return;
+    Pilot surface;
+    if (casting == Casting::Best) {
+        surface = pilot(seed);
+        shows_all_ = sides_.hides_nothing && surface.hits == kPilotRays;
+        if (surface.hits + kFewMisses >= kPilotRays)
+            return;  // lines could hardly be surer
     }
-    from_surface_ = prefers_surface(seed);
+    bound_ = ConvexBound(points, principal_variances(inertia_).axes, lift_);
+    if (casting == Casting::Best && bound_.area() > 0) {
+        from_surface_ = false;
+        const Pilot line = pilot(seed + 1);
+        from_surface_ = is_surface_better(surface, line, relative_error);
+    } else {
+        from_surface_ = !(bound_.area() > 0);
+    }
 }
 
-bool VisibleSampler::prefers_surface(uint64_t seed) const {
-    if (!(bound_.area() > 0))
-        return true;
+VisibleSampler::Pilot VisibleSampler::pilot(uint64_t seed) {
     // Other numbers than those of the measurement, which the choice must not depend on.
-    const Sobol numbers(scramble(seed) ^ 1u);
-    int from_bound = 0;
-    int from_surface = 0;
-    std::array<VisiblePoint, 2> points;
-    for (uint32_t i = 0; i < kPilotRays; ++i) {
-        const std::array<double, 4> u = numbers.point(i);
-        from_bound += cast_line(u, points) > 0 ? 1 : 0;
-        from_surface += cast_from_surface(u, points) > 0 ? 1 : 0;
+    const Strata numbers(~seed, kPilotRays);
+    Pilot out;
+    for (uint32_t i = 0; i < kPilotRays; i += 2) {
+        const bool one = hits(numbers.point(i));
+        const bool other = hits(numbers.point(i + 1));
+        out.hits += (one ? 1 : 0) + (other ? 1 : 0);
+        out.differ += one != other ? 1 : 0;
     }
-    return relative_variance(from_surface, kPilotRays) <
-           kSurfaceMustBe * relative_variance(from_bound, kPilotRays);
+    pilot_rays_ += kPilotRays;
+    return out;
 }
 
-int VisibleSampler::cast(uint32_t ray, std::array<VisiblePoint, 2>& points) const {
-    const std::array<double, 4> u = numbers_.point(ray);
-    return from_surface_ ? cast_from_surface(u, points) : cast_line(u, points);
+double VisibleSampler::Pilot::rays_for(double relative_error) const {
+    const double deviation = relative_error / 1.96;  // of a 95 % interval
+    return kPilotRays * relative_variance() / (deviation * deviation);
+}
+
+bool VisibleSampler::is_surface_better(const Pilot& surface, const Pilot& line,
+                                       double relative_error) {
+    if (!(relative_error > 0))
+        return kCostOfSurfaceRay * kPointsOfLine * surface.relative_variance() <
+               kCostOfLineWithPoints * line.relative_variance();
+    const double lines = line.rays_for(relative_error);
+    const double with_points = std::min(lines, static_cast<double>(kMostLinesWithPoints));
+    return kCostOfSurfaceRay * surface.rays_for(relative_error) <
+           lines + (kCostOfLineWithPoints - 1) * with_points;
+}
+
+bool VisibleSampler::hits(const std::array<double, 4>& u) const {
+    if (from_surface_)
+        return sees_out(on_surface(u), u);
+    const Ray line = bound_.enter(u);
+    return scene_->occluded(line.origin, line.direction);
+}
+
+int VisibleSampler::cast(const std::array<double, 4>& u,
+                         std::array<VisiblePoint, 2>& points) const {
+    if (!from_surface_)
+        return cast_line(u, points);
+    points[0] = on_surface(u);
+    return sees_out(points[0], u) ? 1 : 0;
 }
 
 int VisibleSampler::cast_line(const std::array<double, 4>& u,
@@ -158,38 +151,52 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
     return 2;
 }
 
-int VisibleSampler::cast_from_surface(const std::array<double, 4>& u,
-                                      std::array<VisiblePoint, 2>& points) const {
+VisiblePoint VisibleSampler::on_surface(const std::array<double, 4>& u) const {
     const double target = u[0] * area_up_to_.back();
     auto found = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), target);
     if (found == area_up_to_.end())
         found = std::lower_bound(area_up_to_.begin(), area_up_to_.end(), area_up_to_.back());
     const auto index = static_cast<size_t>(found - area_up_to_.begin());
     const double before = index == 0 ? 0 : area_up_to_[index - 1];
-    double rest = std::clamp((target - before) / (area_up_to_[index] - before), 0.0, 1.0);
+    const double rest = std::clamp((target - before) / (area_up_to_[index] - before), 0.0, 1.0);
     glm::dvec3 normal = glm::normalize(area_vector(*mesh_, index));
-    if (sides_.open) {
-        // The choice of the side takes one more bit from the same number.
-        if (rest >= 0.5) {
-            normal = -normal;
-            rest = 2 * rest - 1;
-        } else {
-            rest = 2 * rest;
-        }
-    } else if (sides_.turned[index] != 0) {
+    double across = u[1];
+    if (sides_.of[index] == Side::Both) {
+        // The choice of the side takes one bit, not of the number that runs along the triangles:
+        // there the first points on each would all be on one side.
+        normal = across < 0.5 ? normal : -normal;
+        across = 2 * across - (across < 0.5 ? 0 : 1);
+    } else if (sides_.of[index] == Side::Back) {
         normal = -normal;
     }
     const Triangle& t = mesh_->triangles[index];
     const glm::dvec3 a(mesh_->positions[t.x]);
-    const glm::dvec2 weights = uniform_in_triangle(rest, u[1]);
-    if (!scene_->stops(static_cast<uint32_t>(index), weights.x, weights.y))
-        return 0;
+    const glm::dvec2 weights = uniform_in_triangle(rest, across);
     const glm::dvec3 point = a + weights.x * (glm::dvec3(mesh_->positions[t.y]) - a) +
                              weights.y * (glm::dvec3(mesh_->positions[t.z]) - a);
-    if (scene_->occluded(point + lift_ * normal, cosine_direction(normal, u[2], u[3])))
-        return 0;
-    points[0] = {point, static_cast<uint32_t>(index), normal, weights.x, weights.y};
-    return 1;
+    return {point, static_cast<uint32_t>(index), normal, weights.x, weights.y};
+}
+
+bool VisibleSampler::sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const {
+    return scene_->stops(from.triangle, from.u, from.v) &&
+           !scene_->occluded(from.point + lift_ * from.seen_from,
+                             cosine_direction(from.seen_from, u[2], u[3])) &&
+           (!sides_.may_coincide || is_first(from));
+}
+
+bool VisibleSampler::is_first(const VisiblePoint& point) const {
+    std::array<uint32_t, kMostInOnePlace> others;
+    const size_t count =
+        scene_->crossed(point.point + lift_ * point.seen_from, -point.seen_from, 2 * lift_, others);
+    for (size_t i = 0; i < count; ++i) {
+        if (others[i] >= point.triangle)
+            continue;
+        const double along = glm::dot(area_vector(*mesh_, others[i]), point.seen_from);
+        const Side side = sides_.of[others[i]];
+        if (side == Side::Both || (side == Side::Front ? along > 0 : along < 0))
+            return false;
+    }
+    return true;
 }
 
 }  // namespace lodestone::measure

@@ -3,71 +3,106 @@
 #pragma once
 
 #include "measure/convex_bound.h"
+#include "measure/sides.h"
 #include "measure/sobol.h"
+#include "measure/surface_inertia.h"
 #include "ray/scene.h"
 
 namespace lodestone::measure {
-
-/// Which sides of a mesh's triangles can be seen from outside at all.
-struct Sides {
-    bool open = true;             // both sides of every triangle
-    std::vector<uint8_t> turned;  // closed: 1 where the outer side is not the one its corners say
-};
-/// A mesh that is closed() has one side, per connected part the one away from its volume; one that
-/// rays pass through is open.
-Sides sides_of(const Mesh& mesh, const ray::Scene& scene);
 
 /// A point of the mesh that a ray from outside hit.
 struct VisiblePoint {
     glm::dvec3 point{0.0};
     uint32_t triangle = 0;
-    glm::dvec3 seen_from{0.0};  // direction towards whoever sees it, any length
+    glm::dvec3 seen_from{0.0};  // direction towards whoever sees it, unit length
     double u = 0;               // where on the triangle, as ray::Hit
     double v = 0;
 };
 
-/// Draws visible points by one of two kinds of rays, whichever hits more surely on this mesh:
-/// lines that cross a tight convex bound (dense things: a book), or rays that leave the surface
-/// (sparse things: a flock). Every ray has a number; what it finds depends on nothing else. The
-/// mesh and the scene must outlive the sampler. Const methods may be called from any thread.
+/// Which rays a VisibleSampler casts: those that a pilot of both found to be surer for their cost,
+/// or for checks always the same ones.
+enum class Casting : uint8_t { Best, FromBound, FromSurface };
+
+/// Draws visible points by one of two kinds of rays: lines that cross a tight convex bound (dense
+/// things: a book), or rays that leave the surface (sparse things: a flock). Where surfaces of
+/// several triangles lie in one place and face the same way, the first of these triangles has the
+/// points. What a ray finds depends on its four numbers alone. The mesh and the scene must outlive
+/// the sampler. Const methods may be called from any thread.
 class VisibleSampler {
 public:
-    /// `scene` must hold `mesh`, else Error(InvalidArgument).
-    VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed);
+    /// `scene` must hold `mesh`, else Error(InvalidArgument). The better casting is chosen for an
+    /// area that is to be known to `relative_error`; 0: for a number of rays, all with points.
+    VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed,
+                   Casting casting = Casting::Best, double relative_error = 0);
 
     /// True when the mesh has no area: then nothing may be cast.
     bool empty() const { return !(possible_area_ > 0); }
-    /// Area of all sides that could be seen: the mesh's, twice that when it is open; what is
+    /// Area of all sides that could be seen: of closed parts one, of open ones both; what is
     /// transparent counts.
     double possible_area() const { return possible_area_; }
     /// Visible area (4.6) = reference_area() * rays that hit / rays cast.
     double reference_area() const { return from_surface_ ? possible_area_ : bound_.area(); }
     /// Whether rays leave the surface: then a ray that hits has one point, else mostly two.
     bool from_surface() const { return from_surface_; }
+    /// Whether nothing hides anything, so that all of possible_area() is visible.
+    bool shows_all() const { return shows_all_; }
     const Sides& sides() const { return sides_; }
+    /// By traversal, one side of everything.
+    const SurfaceInertia& inertia() const { return inertia_; }
+    /// What the choice between the two kinds has cost.
+    uint64_t pilot_rays() const { return pilot_rays_; }
 
-    /// Casts ray number `ray`: 0...2 visible points, all with equal weight.
-    int cast(uint32_t ray, std::array<VisiblePoint, 2>& points) const;
+    /// Casts the ray of four numbers in [0, 1): 0...2 visible points, all with equal weight.
+    int cast(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
+    /// Casts ray number `ray` of an even sequence.
+    int cast(uint32_t ray, std::array<VisiblePoint, 2>& points) const {
+        return cast(numbers_.point(ray), points);
+    }
+    /// As cast(), without the points: whether there are any.
+    bool hits(const std::array<double, 4>& u) const;
+    /// A point uniform in possible_area(), seen or not.
+    VisiblePoint on_surface(const std::array<double, 4>& u) const;
 
 private:
     int cast_line(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
-    int cast_from_surface(const std::array<double, 4>& u,
-                          std::array<VisiblePoint, 2>& points) const;
-    bool prefers_surface(uint64_t seed) const;
+    bool sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const;
+    bool is_first(const VisiblePoint& point) const;
+
+    struct Pilot {
+        uint32_t hits = 0;
+        uint32_t differ = 0;  // pairs of which one ray hits
+        /// Of the estimate, over its square. Two are added: a pilot in which no pair differs does
+        /// not know that none does.
+        double relative_variance() const {
+            const double h = hits + 1.0;
+            return (differ + 2.0) / (h * h);
+        }
+        /// How many rays make the estimate as sure as that, about.
+        double rays_for(double relative_error) const;
+    };
+    Pilot pilot(uint64_t seed);
+    static bool is_surface_better(const Pilot& surface, const Pilot& line, double relative_error);
 
     const Mesh* mesh_;
     const ray::Scene* scene_;
+    SurfaceInertia inertia_;
     Sides sides_;
     double possible_area_ = 0;
     double lift_ = 0;
     ConvexBound bound_;
-    std::vector<double> area_up_to_;  // of each triangle and all before
+    std::vector<double> area_up_to_;  // sides that could be seen of each triangle and all before
     bool from_surface_ = false;
+    bool shows_all_ = false;
+    uint64_t pilot_rays_ = 0;
     Sobol numbers_;
 };
 
 /// Radius of the mesh's bounding sphere, of finite vertices that a triangle uses; 0 without any.
 double radius_of(const Mesh& mesh);
+
+/// Where the area is what is wanted, only so many lines look for their points: they know centroid,
+/// tensor and colors to a percent or two. Rays from the surface have their points anyway.
+inline constexpr uint64_t kMostLinesWithPoints = 2048;
 
 /// How far off a surface its rays start: well above the rounding of single precision, well below
 /// anything visible.
