@@ -81,6 +81,39 @@ TEST(Cut, ZeroPixelErrorDrawsTheOriginalsOnce) {
     EXPECT_EQ(cut.kinds.at("mesh"), 8u);
 }
 
+TEST(Cut, AGroupWhoseStandInCostsMoreThanItsChildrenIsOpened) {
+    Model model = models::row_of_balls(8);
+    Representation box;
+    box.summary.kind = Kind::Box;
+    box.materials = {0};
+    box.payload = Primitive{};
+    summarize(box, model);
+    box.summary.error = 0.15;
+    model.objects[0].representations.push_back(box);         // a ball
+    add_level(model, 1, 0.2, shapes::sphere(1, 1));          // the pair: more than two boxes
+    add_level(model, model.root, 30, shapes::sphere(1, 2));  // the row: more than four spheres
+    summarize_assemblies(model, bottom_up(model));
+    View far = view_from(1e6, 1);
+    quality::Cut cut = quality::choose(model, far);
+    EXPECT_EQ(cut.kinds.at("box"), 8u);
+    EXPECT_EQ(cut.nodes.size(), 1u + 4u + 8u);
+    for (const uint32_t index : cut.chosen)
+        EXPECT_EQ(quality::path_of(model, cut, index).substr(0, 5), "pair ");
+    far.kinds = mask_of(Kind::Mesh);  // spheres for pairs cost less than the balls themselves
+    cut = quality::choose(model, far);
+    EXPECT_EQ(cut.chosen.size(), 1u);
+    add_level(model, 1, 0.3, shapes::cube());
+    cut = quality::choose(model, far);
+    EXPECT_EQ(cut.chosen.size(), 4u);
+    EXPECT_EQ(cut.nodes.size(), 1u + 4u);
+    EXPECT_EQ(cut.triangles, 4u * 12u);
+    add_level(model, model.root, 40, shapes::cube());
+    cut = quality::choose(model, far);
+    EXPECT_EQ(cut.chosen.size(), 1u);
+    EXPECT_EQ(cut.nodes.size(), 1u);
+    EXPECT_EQ(cut.largest_error_node, 0u);
+}
+
 TEST(Cut, FarGroupsAreNeverOpened) {
     const Model model = balls_with_levels();
     const quality::Cut cut = quality::choose(model, view_from(1000, 1));

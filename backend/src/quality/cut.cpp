@@ -8,9 +8,17 @@
 namespace lodestone::quality {
 namespace {
 
+// Nothing that is drawn costs less than this: a primitive, placed once.
+constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
+
+struct Pick {
+    const Representation* choice = nullptr;  // nothing can be drawn
+    bool good = false;                       // within the error
+};
+
 /// The cheapest good representation that the view can draw, or the finest drawable one, or none.
 /// Representations are ordered finest first with strictly rising errors and falling costs.
-const Representation* pick(const Object& object, const View& view, double enlarge, double z) {
+Pick pick(const Object& object, const View& view, double enlarge, double z) {
     const Representation* finest = nullptr;
     for (size_t i = object.representations.size(); i-- > 0;) {
         const Representation& candidate = object.representations[i];
@@ -19,51 +27,64 @@ const Representation* pick(const Object& object, const View& view, double enlarg
             continue;
         finest = &candidate;
         if (good_enough(view, candidate.summary.error, enlarge, z))
-            return finest;
+            return {finest, true};
     }
-    return finest;
+    return {finest, false};
 }
 
-}  // namespace
-
-Cut choose(const Model& model, const View& view, const Job& job) {
-    if (model.root >= model.objects.size())
-        fail(Status::InvalidArgument, "the model has no root object");
-    return choose_below(model, model.root, view, job);
+/// Whether a group's children could cost less than this stand-in of theirs.
+bool worth_opening(const Object& object, const Representation& stand_in) {
+    return object.group() && stand_in.summary.kind != Kind::Assembly &&
+           stand_in.summary.cost.bytes + kBytesPerOccurrence >
+               kLeastBytes * object.representations[0].assembly().placements.size();
 }
 
-Cut choose_below(const Model& model, ObjectIndex root_object, const View& view, const Job& job) {
-    if (view.width <= 0 || view.height <= 0)
-        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
-    if (!(view.pixel_error >= 0))
-        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
-             "; it must be 0 or more");
-    Cut cut;
-    std::set<Hash> distinct;
-    std::vector<Node> stack;
-    Node root;
-    root.object = root_object;
-    stack.push_back(root);
-    while (!stack.empty()) {
-        Node node = stack.back();
-        stack.pop_back();
-        if ((cut.nodes.size() & 1023u) == 0)
-            job.check();
-        const Object& object = model.objects.at(node.object);
-        const double enlarge = stretch(node.world);
-        if (object.representations.empty())
-            continue;
-        const double z = distance(transformed(object.bound(), node.world), view.camera.position);
-        const Representation* choice = pick(object, view, enlarge, z);
-        if (choice == nullptr)
-            continue;
-        node.lod = static_cast<uint32_t>(choice - object.representations.data());
-        node.kind = choice->summary.kind;
-        const auto index = static_cast<uint32_t>(cut.nodes.size());
-        if (choice->summary.kind == Kind::Assembly) {
-            node.opened = true;
-            cut.nodes.push_back(node);
-            const std::vector<Placement>& placements = choice->assembly().placements;
+/// Visits what may be drawn, depth first. A group whose stand-in is good is entered nevertheless
+/// where that might be cheaper.
+class Chooser {
+public:
+    Chooser(const Model& model, const View& view, const Job& job)
+        : model_(model), view_(view), job_(job) {}
+
+    Cut run(ObjectIndex root) {
+        visit(root);
+        close_dear();
+        return total();
+    }
+
+private:
+    void visit(ObjectIndex root) {
+        std::vector<Node> stack(1);
+        stack.back().object = root;
+        while (!stack.empty()) {
+            Node node = stack.back();
+            stack.pop_back();
+            if ((nodes_.size() & 1023u) == 0)
+                job_.check();
+            const Object& object = model_.objects.at(node.object);
+            if (object.representations.empty())
+                continue;
+            const double enlarge = stretch(node.world);
+            const double z =
+                distance(transformed(object.bound(), node.world), view_.camera.position);
+            const Pick picked = pick(object, view_, enlarge, z);
+            if (picked.choice == nullptr)
+                continue;
+            const Summary& summary = picked.choice->summary;
+            node.lod = static_cast<uint32_t>(picked.choice - object.representations.data());
+            node.kind = summary.kind;
+            node.opened = node.kind == Kind::Assembly;
+            if (!node.opened)
+                node.error_px = error_on_screen(view_, summary.error, enlarge, z);
+            const bool enter =
+                node.opened || (picked.good && worth_opening(object, *picked.choice));
+            const auto index = static_cast<uint32_t>(nodes_.size());
+            nodes_.push_back(node);
+            entered_.push_back(enter ? 1 : 0);
+            if (!enter)
+                continue;
+            const std::vector<Placement>& placements =
+                object.representations[0].assembly().placements;
             for (size_t i = placements.size(); i-- > 0;) {
                 Node child;
                 child.object = placements[i].object;
@@ -74,23 +95,92 @@ Cut choose_below(const Model& model, ObjectIndex root_object, const View& view, 
                 if (child.hidden != kAllRays)  // else nothing would show it
                     stack.push_back(child);
             }
-            continue;
-        }
-        node.error_px = error_on_screen(view, choice->summary.error, enlarge, z);
-        cut.nodes.push_back(node);
-        cut.chosen.push_back(index);
-        cut.triangles += choice->summary.cost.triangles;
-        cut.bytes += kBytesPerOccurrence;
-        if (distinct.insert(choice->summary.hash).second ||
-            choice->summary.kind == Kind::Composite)  // copied for each
-            cut.bytes += choice->summary.cost.bytes;
-        ++cut.kinds[name_of(choice->summary.kind)];
-        if (node.error_px > cut.largest_error_px) {
-            cut.largest_error_px = node.error_px;
-            cut.largest_error_node = index;
         }
     }
-    return cut;
+
+    /// Of everything entered, keeps the stand-in or what is below, whichever costs less.
+    void close_dear() {
+        std::vector<uint64_t> below(nodes_.size(), 0);
+        for (size_t i = nodes_.size(); i-- > 0;) {  // children before parents
+            Node& node = nodes_[i];
+            uint64_t bytes = below[i];
+            if (!node.opened) {
+                const uint64_t own =
+                    representation_of(node).summary.cost.bytes + kBytesPerOccurrence;
+                if (entered_[i] != 0 && below[i] < own && below[i] > 0) {
+                    node.opened = true;
+                    node.lod = 0;
+                    node.kind = Kind::Assembly;
+                    node.error_px = 0;
+                } else {
+                    entered_[i] = 0;
+                    bytes = own;
+                }
+            }
+            if (node.parent != kNoParent)
+                below[node.parent] += bytes;
+        }
+    }
+
+    const Representation& representation_of(const Node& node) const {
+        return model_.objects[node.object].representations[node.lod];
+    }
+
+    /// Without what lies below closed nodes.
+    Cut total() const {
+        Cut cut;
+        std::set<Hash> distinct;
+        std::vector<uint32_t> moved(nodes_.size(), kNoParent);
+        for (size_t i = 0; i < nodes_.size(); ++i) {
+            Node node = nodes_[i];
+            if (node.parent != kNoParent) {
+                if (entered_[node.parent] == 0 || moved[node.parent] == kNoParent)
+                    continue;
+                node.parent = moved[node.parent];
+            }
+            const auto index = static_cast<uint32_t>(cut.nodes.size());
+            moved[i] = index;
+            cut.nodes.push_back(node);
+            if (node.opened)
+                continue;
+            const Summary& summary = representation_of(node).summary;
+            cut.chosen.push_back(index);
+            cut.triangles += summary.cost.triangles;
+            cut.bytes += kBytesPerOccurrence;
+            // A composite is copied for each occurrence.
+            if (distinct.insert(summary.hash).second || summary.kind == Kind::Composite)
+                cut.bytes += summary.cost.bytes;
+            ++cut.kinds[name_of(summary.kind)];
+            if (node.error_px > cut.largest_error_px) {
+                cut.largest_error_px = node.error_px;
+                cut.largest_error_node = index;
+            }
+        }
+        return cut;
+    }
+
+    const Model& model_;
+    const View& view_;
+    const Job& job_;
+    std::vector<Node> nodes_;       // a node's own come right after it
+    std::vector<uint8_t> entered_;  // whether its children are there, and count
+};
+
+}  // namespace
+
+Cut choose(const Model& model, const View& view, const Job& job) {
+    if (model.root >= model.objects.size())
+        fail(Status::InvalidArgument, "the model has no root object");
+    return choose_below(model, model.root, view, job);
+}
+
+Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
+    if (view.width <= 0 || view.height <= 0)
+        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
+    if (!(view.pixel_error >= 0))
+        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
+             "; it must be 0 or more");
+    return Chooser(model, view, job).run(root);
 }
 
 std::string path_of(const Model& model, const Cut& cut, uint32_t node) {

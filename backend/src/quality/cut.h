@@ -37,9 +37,12 @@ struct Cut {
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
 };
 
-/// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. Groups good enough are never
-/// opened. Throws Error(InvalidArgument) for a view without size or a model without root.
-/// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
+/// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. A group
+/// that is good enough is drawn by its stand-in, unless what its children would be drawn by costs
+/// less (in bytes, those of shared representations counted each time). Throws
+/// Error(InvalidArgument) for a view without size or a model without root.
+/// cost: one visit per opened group and chosen occurrence, and at most so many more as primitives
+/// would cost what the chosen stand-ins do. Thread-safe on a const model.
 Cut choose(const Model& model, const View& view, const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
