@@ -5,6 +5,7 @@
 #include "group/position.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 #include <set>
@@ -162,6 +163,19 @@ TEST(GroupByPosition, FarAwayAndHugeAndTinyPlacesDoNoHarm) {
         EXPECT_EQ(occurrences(model), before);
         EXPECT_LE(most_children(model), 8u);
     }
+}
+
+TEST(GroupByPosition, PlacesThatAreNoNumbersDoNotHang) {
+    Model model = meadow(100);
+    auto wild = std::make_shared<Assembly>(model.objects[model.root].representations[0].assembly());
+    for (const double place : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+        wild->placements.push_back({0, models::moved(place, 0, 0), "nowhere"});
+    model.objects[model.root].representations[0].payload = std::shared_ptr<const Assembly>(wild);
+    group::group_by_position(model, model.root, 8);
+    EXPECT_LE(most_children(model), 8u);
+    size_t count = 0;
+    for_each_occurrence(model, [&](const Occurrence&) { ++count; });
+    EXPECT_EQ(count, 103u);
 }
 
 TEST(GroupByPosition, RoleIsKeptAndMistakesAreRefused) {

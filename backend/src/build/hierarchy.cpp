@@ -171,6 +171,10 @@ public:
         const double wall = wall_seconds();
         const double cpu = cpu_seconds();
         const std::vector<ObjectIndex> order = bottom_up(model_);
+        for (const ObjectIndex index : order) {  // of an earlier build
+            std::vector<Representation>& own = model_.objects[index].representations;
+            own.resize(std::min<size_t>(own.size(), 1));
+        }
         summarize_assemblies(model_, order);
         const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);

@@ -23,7 +23,7 @@ struct Report {
 /// What build_hierarchy would do; wall_s is a guess from the triangles.
 Report estimate(Model& model, const segment::Store& store, const Settings& settings);
 
-/// `model` has finest representations only (resident); afterwards every reachable object has its
+/// `model` has its finest representations resident, what else it has is replaced; afterwards every reachable object has its
 /// list and the store holds it. Objects are matched with the store's by source hash, so names and
 /// places may change freely. The same result on any number of threads.
 /// Throws Error(Cancelled): then the store and the model's lists are as before.

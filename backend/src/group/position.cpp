@@ -26,7 +26,10 @@ public:
         for (const Placement& placement : placements_) {
             const Object& child = model.objects.at(placement.object);
             const Bound bound = child.representations.empty() ? Bound() : child.bound();
-            middles_.push_back(placement.transform(bound.empty() ? glm::dvec3(0.0) : bound.center));
+            const glm::dvec3 middle =
+                placement.transform(bound.empty() ? glm::dvec3(0.0) : bound.center);
+            const bool finite = std::isfinite(middle.x + middle.y + middle.z);
+            middles_.push_back(finite ? middle : glm::dvec3(0.0));  // no cell holds NaN
         }
     }
 
