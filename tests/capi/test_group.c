@@ -59,6 +59,54 @@ static void test_equal_meshes_are_one_content(void) {
     lds_model_destroy(model);
 }
 
+static void test_structuring_keeps_every_occurrence(void) {
+    lds_object cube, many, child;
+    lds_model* model = two_cubes(&cube);
+    const lds_object_info info = info_of("many", "Many");
+    EXPECT(lds_model_add_group(model, &info, &many) == LDS_OK);
+    for (int i = 0; i < MANY; ++i) {
+        double place[12];
+        memcpy(place, kIdentity, sizeof place);
+        place[3] = i;
+        EXPECT(lds_model_add_placement(model, many, cube, place, "one") == LDS_OK);
+    }
+    EXPECT(lds_model_set_root(model, many) == LDS_OK);
+    lds_structure_options options = lds_structure_options_default();
+    lds_structure_report report;
+    memset(&report, 0, sizeof report);
+    EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    report.struct_size = sizeof report;
+    EXPECT(lds_model_structure(model, NULL, 0, NULL, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_structure(model, &cube, 1, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    options.orders = 0;
+    EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strcmp(lds_last_error_text(), "orders is 0; 1 to 1024 expected") == 0);
+    options = lds_structure_options_default();
+    EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.structured == 1 && report.made > 2 && report.cost_after < report.cost_before / 2);
+    size_t count = 0;
+    EXPECT(lds_model_occurrence_count(model, &count) == LDS_OK && count == MANY);
+    lds_placement placed;
+    memset(&placed, 0, sizeof placed);
+    EXPECT(lds_model_child(model, many, 0, &placed) == LDS_ERROR_INVALID_ARGUMENT);
+    placed.struct_size = sizeof placed;
+    EXPECT(lds_model_child(model, many, 0, &placed) == LDS_OK && strcmp(placed.name, "Many") > 0);
+    EXPECT(memcmp(placed.transform, kIdentity, sizeof kIdentity) == 0 && placed.hidden == 0);
+    EXPECT(lds_model_child(model, many, MANY, &placed) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_child(model, cube, 0, &placed) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_object_summary summary;
+    memset(&summary, 0, sizeof summary);
+    summary.struct_size = sizeof summary;
+    EXPECT(lds_model_object_summary(model, placed.object, &summary) == LDS_OK &&
+           summary.group == 1);
+    EXPECT(lds_model_find_object(model, summary.uid, &child) == LDS_OK);
+    EXPECT(child.index == placed.object.index);
+    lds_model_destroy(model);
+}
+
 static void test_grouping_keeps_every_occurrence(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -223,6 +271,7 @@ int main(void) {
     test_strands_become_tubes();
     test_equal_meshes_are_one_content();
     test_grouping_keeps_every_occurrence();
+    test_structuring_keeps_every_occurrence();
     test_hidden_placements_hide_all_below();
     return failures == 0 ? 0 : 1;
 }

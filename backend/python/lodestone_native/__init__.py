@@ -41,6 +41,7 @@ from .model import (
     MeasureOptions,
     Model,
     SimplifyOptions,
+    StructureOptions,
     texture,
 )
 from .povray import (
@@ -85,6 +86,7 @@ __all__ = [
     "SimplifyOptions",
     "Stage",
     "Status",
+    "StructureOptions",
     "StrandBuffers",
     "View",
     "abi_version",

@@ -42,6 +42,11 @@ def texture(
     )
 
 
+class StructureOptions(structs.StructureOptions):
+    def __new__(cls, **changes: Any) -> Any:
+        return _changed(library().lds_structure_options_default(), changes)
+
+
 class MeasureOptions(structs.MeasureOptions):
     def __new__(cls, **changes: Any) -> Any:
         return _changed(library().lds_measure_options_default(), changes)
@@ -261,6 +266,27 @@ class Model(Handle):
         )
         return added.value
 
+    def structure(
+        self,
+        groups: Sequence[Object] | None = None,
+        options: structs.StructureOptions | None = None,
+        job: Job | None = None,
+    ) -> Any:
+        """Gives flat groups (None: all below the root) small groups of what is near and alike."""
+        given = None if groups is None else (Object * len(groups))(*groups)
+        out = structs.StructureReport()
+        check(
+            library().lds_model_structure(
+                self.handle,
+                given,
+                len(groups or ()),
+                options or StructureOptions(),
+                job,
+                ctypes.byref(out),
+            )
+        )
+        return record(out)
+
     def set_root(self, root: Object) -> None:
         check(library().lds_model_set_root(self.handle, root))
 
@@ -309,6 +335,14 @@ class Model(Handle):
         out = structs.ObjectSummary()
         check(library().lds_model_object_summary(self.handle, item, ctypes.byref(out)))
         return record(out)
+
+    def children(self, group: Object) -> Iterator[tuple[Object, Sequence[float], str, int]]:
+        """Of a group, as add_placements() takes them."""
+        for position in range(self.object_summary(group).child_count):
+            out = structs.Placement()
+            check(library().lds_model_child(self.handle, group, position, ctypes.byref(out)))
+            placed = Object(*out.object.key)
+            yield placed, tuple(out.transform), record(out).name, out.hidden
 
     def representation(self, item: Object, lod: int) -> Any:
         """lod 0 is the finest."""

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The C structs, field by field as in lodestone.h, and the ways in and out of them."""
+"""The C structs, field by field as in lodestone.h, and the ways in and out of them.
+
+More than 500 lines: one table.
+"""
 
 import ctypes
 from collections import namedtuple
@@ -273,6 +276,16 @@ class ObjectSummary(Sized):
     ]
 
 
+class Placement(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("object", Object),
+        ("transform", c_double * 12),
+        ("name", c_char_p),
+        ("hidden", c_uint32),
+    ]
+
+
 class Representation(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -296,6 +309,30 @@ class Problem(Sized):
         ("severity", c_int32),
         ("code", c_char_p),
         ("message", c_char_p),
+    ]
+
+
+class StructureOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fewest_children", c_uint32),
+        ("most_children", c_uint32),
+        ("orders", c_uint32),
+        ("similarity", c_double),
+        ("group_cost", c_double),
+        ("seed", c_uint64),
+        ("threads", c_int32),
+    ]
+
+
+class StructureReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("structured", c_uint64),
+        ("made", c_uint64),
+        ("cost_before", c_double),
+        ("cost_after", c_double),
+        ("cpu_s", c_double),
     ]
 
 

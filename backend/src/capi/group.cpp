@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Groups in the C interface: making them, placing objects in them, structuring them.
+#include "base/clock.h"
+#include "base/parallel.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "group/position.h"
+#include "group/structure.h"
 
 #include <algorithm>
 #include <iterator>
@@ -38,6 +41,37 @@ Placement placement_of(const lds_model& model, lds_object child, const double* t
         fail(Status::InvalidArgument, "the transform of '", placement.name,
              "' holds numbers that are not finite");
     return placement;
+}
+
+/// Objects that were added from `first` on can be found by their uids, too.
+void list_new(lds_model& model, size_t first) {
+    for (size_t i = first; i < model.model.objects.size(); ++i)
+        model.by_uid.emplace(model.model.objects[i].uid, static_cast<uint32_t>(i));
+    if (first < model.model.objects.size())
+        model.summarized = false;
+}
+
+group::StructureOptions structure_options(const lds_structure_options* given) {
+    const lds_structure_options& options = checked(given, "options");
+    if (options.fewest_children < 2)
+        fail(Status::InvalidArgument, "fewest_children is ", options.fewest_children,
+             "; 2 or more expected");
+    if (options.orders < 1 || options.orders > 1024)
+        fail(Status::InvalidArgument, "orders is ", options.orders, "; 1 to 1024 expected");
+    if (!(options.similarity >= 0 && options.similarity <= 1e6))
+        fail(Status::InvalidArgument, "similarity is ", options.similarity,
+             "; 0 to 1,000,000 expected");
+    if (!(options.group_cost >= 0 && options.group_cost <= 1e6))
+        fail(Status::InvalidArgument, "group_cost is ", options.group_cost,
+             "; 0 to 1,000,000 expected");
+    group::StructureOptions out;
+    out.fewest = options.fewest_children;
+    out.most = options.most_children;
+    out.orders = options.orders;
+    out.similarity = options.similarity;
+    out.group_cost = options.group_cost;
+    out.seed = options.seed;
+    return out;
 }
 
 RayMask ray_mask(uint32_t ray_classes) {
@@ -113,11 +147,69 @@ lds_status lds_model_group_by_position(lds_model* model, lds_object group, uint3
         const ObjectIndex index = model->index_of(group);
         const size_t before = model->model.objects.size();
         const size_t added = group::group_by_position(model->model, index, most_children);
-        for (size_t i = before; i < model->model.objects.size(); ++i)
-            model->by_uid.emplace(model->model.objects[i].uid, static_cast<uint32_t>(i));
-        if (added > 0)
-            model->summarized = false;
+        list_new(*model, before);
         if (out_added != nullptr)
             *out_added = added;
+    });
+}
+
+lds_structure_options lds_structure_options_default(void) {
+    const group::StructureOptions defaults;
+    lds_structure_options options{};
+    options.struct_size = sizeof options;
+    options.fewest_children = static_cast<uint32_t>(defaults.fewest);
+    options.most_children = static_cast<uint32_t>(defaults.most);
+    options.orders = defaults.orders;
+    options.similarity = defaults.similarity;
+    options.group_cost = defaults.group_cost;
+    options.seed = defaults.seed;
+    return options;
+}
+
+lds_status lds_model_structure(lds_model* model, const lds_object* groups, size_t group_count,
+                               const lds_structure_options* options, lds_job* job,
+                               lds_structure_report* out_report) {
+    return guard([&] {
+        require(model, "model");
+        checked(out_report, "out_report");
+        const group::StructureOptions given = structure_options(options);
+        const ThreadLimit limit(options->threads);
+        std::vector<ObjectIndex> wanted;
+        if (groups == nullptr)
+            wanted = group::flat_groups(model->model, given.fewest);
+        for (size_t i = 0; groups != nullptr && i < group_count; ++i)
+            wanted.push_back(model->index_of(groups[i]));
+        const double cpu = cpu_seconds();
+        const size_t before = model->model.objects.size();
+        const group::StructureReport made =
+            group::structure_groups(model->model, wanted, given, job_of(job));
+        list_new(*model, before);
+        lds_structure_report report{};
+        report.structured = made.structured;
+        report.made = made.made;
+        report.cost_before = made.cost_before;
+        report.cost_after = made.cost_after;
+        report.cpu_s = cpu_seconds() - cpu;
+        hand_out(out_report, report, "out_report");
+    });
+}
+
+lds_status lds_model_child(const lds_model* model, lds_object group, size_t position,
+                           lds_placement* out_placement) {
+    return guard([&] {
+        require(model, "model");
+        const Object& from = model->model.objects[model->index_of(group)];
+        if (!from.group())
+            fail(Status::InvalidArgument, "'", from.name, "' is not a group");
+        const std::vector<Placement>& placements = from.representations[0].assembly().placements;
+        if (position >= placements.size())
+            fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
+        const Placement& placement = placements[position];
+        lds_placement out{};
+        out.object = model->id_of(placement.object);
+        placement.transform.to_rows(out.transform);
+        out.name = placement.name.c_str();
+        out.hidden = placement.hidden;
+        hand_out(out_placement, out, "out_placement");
     });
 }
