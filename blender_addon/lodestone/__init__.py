@@ -23,6 +23,7 @@ _MODULES = (
     "preferences",
     "engine",
     "operators.update_levels",
+    "operators.auto_structure",
     "operators.clear_levels",
     "operators.select_object",
     "operators.linked_role",

@@ -23,15 +23,19 @@ class Request:
 
     `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
     (None for the scene's): their frames are in `frames` in the same order. `still`: what
-    motion.sample() found. `with_poses`: also the `poses` that levels follow; close them when done.
+    motion.sample() found. `structured`: as scene.extract() takes it. `with_poses`: also the `poses`
+    that levels follow; close them when done.
     """
 
-    def __init__(self, cameras=(), tick=None, compare=False, still=None, with_poses=False):
+    def __init__(
+        self, cameras=(), tick=None, compare=False, still=None, with_poses=False, structured=True
+    ):
         self.cameras = tuple(cameras)
         self.tick = tick or (lambda: None)
         self.compare = compare
         self.still = still
         self.with_poses = with_poses
+        self.structured = structured
         self.poses = poses.Poses()
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
@@ -58,7 +62,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
         try:
             if request.with_poses:
                 request.poses = poses.read(depsgraph, self.frame_set, request.still, tick)
-            extraction = scene.extract(depsgraph, tick, request.still)
+            extraction = scene.extract(depsgraph, tick, request.still, request.structured)
             try:
                 for name, size in request.cameras:
                     if not name and request.without_camera:

@@ -59,6 +59,15 @@ BUILD_ON_RENDER = (
     ("ALL", "Everything", "Levels of everything that has none yet or has changed"),
     ("NONE", "Nothing", "Use the levels that there are; only Update Levels makes them"),
 )
+STRUCTURE = (
+    (
+        "AUTOMATIC",
+        "Automatic",
+        "Collections of more than 64 children get groups of what is near and alike below them, "
+        "which have levels of their own. Nothing in the Outliner changes",
+    ),
+    ("COLLECTIONS", "Collections Only", "Groups are the collections, as they are"),
+)
 KEEP = (
     ("NEVER", "Never", "Remove the files of the POV-Ray scene after each render"),
     ("FAILED", "If Failed", "Keep them when POV-Ray fails, to look at what it was given"),
@@ -122,6 +131,12 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         description="Which levels are made before a picture",
         items=BUILD_ON_RENDER,
         default="HELPFUL",
+    )
+    structure: EnumProperty(
+        name="Groups",
+        description="Which groups get levels that stand for all that is in them",
+        items=STRUCTURE,
+        default="AUTOMATIC",
     )
     keep_scene_files: EnumProperty(
         name="Keep Scene Files",

@@ -76,6 +76,12 @@ class Window(unittest.TestCase):
     def test_update_levels(self):
         self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate"))
 
+    def test_auto_structure(self):
+        self.succeeds(self.blender("window_auto_structure.py", "--enable-event-simulate"))
+        kept = os.environ.get("LODESTONE_SCREENS")
+        if kept:
+            shutil.copytree(self.folder, kept, dirs_exist_ok=True)
+
     def test_every_properties_tab_draws_under_our_engine(self):
         self.succeeds(self.blender("window_panels.py"))
         said = self.log.read_text("utf-8", "replace")

@@ -124,6 +124,7 @@ class Groups:
         self._emitters: dict[Any, list[tuple[list[Emitted], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
         self.parts: dict[ids.Key, list[Any]] = defaultdict(list)  # what a datablock became
+        self.collections: dict[Any, None] = {}  # their groups that stay as they are in every frame
 
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
@@ -231,6 +232,8 @@ class Groups:
         else:
             uid = ids.uid_of("collection", branch.collection)
         group = self._intern(uid, branch.name, branch.environment, placements, changes)
+        if not changes:
+            self.collections[group] = None
         if branch.collection is not None:
             self.parts[ids.key_of("collection", branch.collection)].append(group)
         return group

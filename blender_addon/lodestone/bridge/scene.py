@@ -48,16 +48,21 @@ def extract(
     depsgraph: Any,
     tick: Callable[[], None] = lambda: None,
     still: dict[str, list[str]] | None = None,
+    structured: bool = True,
 ) -> Extraction:
     """`tick()` is called between meshes; what it raises stops the extraction. `still`: what
-    motion.sample() found out. A scene that shows nothing gives a model whose root group is empty.
+    motion.sample() found out. `structured`: flat collections get groups below them, unless the
+    designer wants none. A scene that shows nothing gives a model whose root group is empty.
     """
     with _without_garbage_collection():
-        return _extract(depsgraph, tick, still)
+        return _extract(depsgraph, tick, still, structured)
 
 
 def _extract(
-    depsgraph: Any, tick: Callable[[], None], still: dict[str, list[str]] | None
+    depsgraph: Any,
+    tick: Callable[[], None],
+    still: dict[str, list[str]] | None,
+    structured: bool,
 ) -> Extraction:
     scene = depsgraph.scene_eval
     settings = ids.settings_of(depsgraph.scene)  # of the original: writing them tags nothing
@@ -72,6 +77,8 @@ def _extract(
         if root is None:
             root = model.add_group(uids.claim(ids.scene_uid(name_of(scene))), name_of(scene))
         model.set_root(root)
+        if structured and (settings is None or settings.structure == "AUTOMATIC"):
+            model.structure(list(tree.collections))
         for name in tree.unplaced:
             report_outside(problems, name)
         surroundings(model, scene, walk.found, problems)

@@ -60,6 +60,30 @@ def update_levels(context, scope):
         request.poses.close()
 
 
+def start_reading(context, request):
+    """Starts a render job that reads the scene for an extract_engine.Request; returns what to close
+    afterwards. Raises RuntimeError when Blender refuses."""
+    preferences = context.preferences
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(extract_engine.prepared(context.scene, request))
+        view, dirty = preferences.view, preferences.is_dirty
+        stack.callback(setattr, preferences, "is_dirty", dirty)
+        stack.callback(setattr, view, "render_display_type", view.render_display_type)
+        view.render_display_type = "NONE"
+        result = bpy.data.images.get("Render Result")
+        if result is not None and len(result.render_slots) > 1:  # the picture there must stay
+            slots = result.render_slots
+            stack.callback(setattr, slots, "active_index", slots.active_index)
+            slots.active_index = (slots.active_index + 1) % len(slots)
+        bpy.ops.render.render("INVOKE_DEFAULT")
+        return stack.pop_all()
+
+
+def running():
+    """Whether an update runs in the window."""
+    return _running is not None
+
+
 class _Session:
     """One update in the window: what has to be put back, and how far it is."""
 
@@ -81,18 +105,7 @@ class _Session:
 
     def start_reading(self, context):
         """Starts the render job; raises RuntimeError when Blender refuses."""
-        stack, preferences = self._reading, context.preferences
-        stack.enter_context(extract_engine.prepared(context.scene, self.request))
-        view, dirty = preferences.view, preferences.is_dirty
-        stack.callback(setattr, preferences, "is_dirty", dirty)
-        stack.callback(setattr, view, "render_display_type", view.render_display_type)
-        view.render_display_type = "NONE"
-        result = bpy.data.images.get("Render Result")
-        if result is not None and len(result.render_slots) > 1:  # the picture there must stay
-            slots = result.render_slots
-            stack.callback(setattr, slots, "active_index", slots.active_index)
-            slots.active_index = (slots.active_index + 1) % len(slots)
-        bpy.ops.render.render("INVOKE_DEFAULT")
+        self._reading = start_reading(context, self.request)
 
     def reading(self):
         """True while the render job runs; afterwards its result is taken, or its error raised."""

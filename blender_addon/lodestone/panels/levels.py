@@ -36,6 +36,7 @@ class LODESTONE_RENDER_PT_levels(Panel):
         layout.prop(settings, "pixel_error_render", text="Pixel Error")
         layout.prop(settings, "deforming")
         layout.prop(settings, "build_on_render")
+        layout.prop(settings, "structure")
         layout.prop(settings, "scope")
         row = layout.row(align=True)
         row.operator("lodestone.update_levels", icon="FILE_REFRESH")
@@ -140,6 +141,7 @@ class LODESTONE_COLLECTION_PT_levels(Panel):
 
     def draw(self, context):
         draw_levels(self.layout, context, context.collection)
+        self.layout.operator("lodestone.auto_structure", icon="OUTLINER_COLLECTION")
 
 
 _CLASSES = (

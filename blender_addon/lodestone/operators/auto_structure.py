@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto-Structure: groups what stands flat in a collection into new collections below it.
+
+In the window: the scene is read by a render job, a thread measures what the groups are worth, a
+dialog tells it, and only OK changes the file. Esc stops each.
+"""
+
+import contextlib
+import os
+import shutil
+import tempfile
+from dataclasses import dataclass
+
+import bpy
+
+from .. import extract_engine
+from ..bridge import structure
+from ..core import motion_file, progress, store_path, work
+from ..core.native import lodestone_native as native
+from ..core.text import sentence
+from . import update_levels
+
+FEWEST = 8  # a collection of at most so many is not structured
+TRIANGLES_OF = {"box": 12, "ellipsoid": 80}  # what they count as beside meshes
+GROUP_COST = 20.0  # fewer and larger groups than those nobody sees
+
+
+class NothingToGroup(Exception):
+    """The collection has no groups that could be made."""
+
+
+FAILURES = (*update_levels.FAILURES, extract_engine.CameraMissing, NothingToGroup)
+_running = None  # the one session in the window
+
+
+@dataclass
+class Preview:
+    """What grouping is worth: expected costs, and triangles of the scene camera's cut (None: not
+    measured)."""
+
+    groups: int
+    cost_before: float
+    cost_after: float
+    triangles_before: int | None = None
+    triangles_after: int | None = None
+
+    def lines(self):
+        less = progress.percent(self.cost_after, self.cost_before)
+        lines = [
+            f"{self.groups:,} new collections",
+            f"Expected Cost {self.cost_before:,.1f} \N{RIGHTWARDS ARROW} {self.cost_after:,.1f}"
+            f"   {less}",
+        ]
+        if self.triangles_before is not None:
+            before, after = map(progress.count, (self.triangles_before, self.triangles_after))
+            share = progress.percent(self.triangles_after, self.triangles_before)
+            lines.append(f"Triangles in View {before} \N{RIGHTWARDS ARROW} {after}   {share}")
+        return lines
+
+
+def group_in(extraction, collection):
+    """The model's group of a collection. Raises NothingToGroup."""
+    group = structure.group_of(extraction, collection)
+    if group is None or extraction.model.object_summary(group).child_count <= FEWEST:
+        raise NothingToGroup(f'"{collection.name}" shows at most {FEWEST} things to group')
+    return group
+
+
+def structure_model(model, group):
+    """Groups what is in a group; returns (number of objects before, expected cost before and
+    after)."""
+    known = sum(1 for _ in model.objects())
+    report = model.structure(
+        [group], native.StructureOptions(fewest_children=FEWEST, group_cost=GROUP_COST)
+    )
+    return known, report.cost_before, report.cost_after
+
+
+def groups_in(extraction, group, collection, known):
+    """What was found, by Blender's names. Raises NothingToGroup."""
+    found = structure.found_groups(extraction, group, collection, known)
+    if not found.count():
+        raise NothingToGroup(f'Nothing in "{collection.name}" belongs together')
+    return found
+
+
+def auto_structure(context, collection):
+    """Reads the scene and groups what is directly in a collection, synchronously; returns (the new
+    collections, a Preview without triangles). Raises what failed, then nothing has changed."""
+    still = motion_file.read(store_path.store_folder(bpy.data.filepath))
+    request = extract_engine.Request(still=still, structured=False)
+    extraction = extract_engine.extract_now(context.scene, request)
+    with extraction.model as model:
+        group = group_in(extraction, collection)
+        known, before, after = structure_model(model, group)
+        found = groups_in(extraction, group, collection, known)
+    return structure.make_collections(collection, found), Preview(found.count(), before, after)
+
+
+def refusal(collection):
+    """Why a collection cannot be structured; "" when it can."""
+    if collection is None:
+        return "No active collection"
+    if collection.library is not None:
+        return f"Linked from {collection.library.name}: its collections cannot be changed"
+    if collection.override_library is not None:
+        return "A library override: its collections cannot be changed"
+    if len(collection.objects) + len(collection.children) <= FEWEST:
+        return f"At most {FEWEST} things are directly in this collection"
+    return ""
+
+
+class _Session:
+    """One run in the window, and what has to be put back."""
+
+    def __init__(self, context):
+        self.collection = context.collection.name
+        self.found = self.preview = None
+        self._store = store_path.store_folder(bpy.data.filepath)
+        still = motion_file.read(self._store)
+        cameras = [("", None)] if context.scene.camera is not None else []
+        self.request = extract_engine.Request(cameras, still=still, structured=False)
+        self._pixel_error = max(0.01, context.scene.lodestone.pixel_error_render)
+        self._work = work.Work()
+        self._outcome = {}
+        self._thread = None
+        self._group = None
+        self._reading = update_levels.start_reading(context, self.request)
+
+    def waits_for_reading(self, collection):
+        """True while the render job runs; afterwards measuring has started."""
+        if self._thread is not None:
+            return False
+        if bpy.app.is_job_running("RENDER"):
+            return True
+        self._reading.close()
+        if self._work.stopping:
+            raise work.Stopped
+        if self.request.error is not None:
+            raise self.request.error
+        extraction = self.request.extraction
+        if extraction is None:
+            raise work.Stopped
+        self._group = group_in(extraction, collection)
+        self._thread = work.start(self._measure, self._outcome)
+        return False
+
+    def _measure(self):
+        """On the thread, which alone touches the model meanwhile: the number of objects before
+        grouping, and the Preview."""
+        model, frames = self.request.extraction.model, self.request.frames
+
+        def triangles(store):
+            if not frames:
+                return None
+            model.build(store, None, self._work.new_job("Levels"))
+            camera, (width, height) = frames[0]
+            with native.Cut(model, native.View(camera, width, height, self._pixel_error)) as cut:
+                drawn = cut.summary()
+            return drawn.triangles + sum(getattr(drawn, k) * n for k, n in TRIANGLES_OF.items())
+
+        with _scratch_store(self._store) as store:
+            before = triangles(store)
+            known, *costs = structure_model(model, self._group)
+            return known, Preview(0, *costs, before, triangles(store))
+
+    def measuring(self, collection):
+        """True while the thread runs; afterwards `found` and `preview` are there."""
+        if self._thread.is_alive():
+            return True
+        known, preview = work.finish(self._outcome, self._work.stopping)
+        self.found = groups_in(self.request.extraction, self._group, collection, known)
+        preview.groups = self.found.count()
+        self.preview = preview
+        return False
+
+    @property
+    def fraction(self):
+        return self._work.fraction
+
+    def stop(self):
+        self.request.tick = _raise_stopped
+        self._work.stop()
+
+    def busy(self):
+        running = self._thread is not None and self._thread.is_alive()
+        return bpy.app.is_job_running("RENDER") or running
+
+    def close(self):
+        self._work.stop()
+        if self._thread is not None:
+            self._thread.join()
+        self._reading.close()
+        if self.request.extraction is not None:
+            self.request.extraction.model.close()
+        self.request.poses.close()
+
+
+@contextlib.contextmanager
+def _scratch_store(store):
+    """A folder with the levels there are, to build into: the file's own store stays as it is."""
+    beside = store.parent if store.is_dir() and os.access(store.parent, os.W_OK) else None
+    with tempfile.TemporaryDirectory(prefix=".structure", dir=beside) as folder:
+        made = os.path.join(folder, "store")
+        if store.is_dir():
+            ignore = shutil.ignore_patterns("lock")
+            shutil.copytree(store, made, ignore=ignore, copy_function=_link)
+        else:
+            os.mkdir(made)
+        yield made
+
+
+def _link(source, target):
+    try:
+        os.link(source, target)  # files of a store are replaced, never written into
+    except OSError:
+        shutil.copyfile(source, target)
+
+
+class LODESTONE_OT_auto_structure(bpy.types.Operator):
+    bl_idname = "lodestone.auto_structure"
+    bl_label = "Auto-Structure"
+    bl_description = (
+        "Find groups of what is near and alike directly in the active collection, tell what they "
+        "are worth, and make them collections"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    _timer = None
+
+    @classmethod
+    def poll(cls, context):
+        if _running is not None or update_levels.running():
+            cls.poll_message_set("Already running (Esc to cancel)")
+            return False
+        if bpy.app.is_job_running("RENDER"):
+            cls.poll_message_set("A render is running")
+            return False
+        why = refusal(context.collection)
+        if why:
+            cls.poll_message_set(why)
+        return not why
+
+    def execute(self, context):
+        try:
+            made, preview = auto_structure(context, context.collection)
+        except FAILURES as error:
+            self.report({"ERROR"}, sentence(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, "; ".join(preview.lines()))
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        global _running
+        try:
+            _running = _Session(context)
+        except FAILURES as error:
+            self.report({"ERROR"}, sentence(error))
+            return {"CANCELLED"}
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(update_levels.INTERVAL_S, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        session = _running
+        if session is None:
+            return self._end(context)
+        if event.type == "ESC" and event.value == "PRESS":
+            session.stop()
+            _status(context, "Lodestone: stopping")
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            return self._step(context, session)
+        except work.Stopped:
+            return self._end(context)
+        except Exception as error:
+            self.report({"ERROR"}, sentence(error))
+            return self._end(context)
+
+    def _step(self, context, session):
+        collection = _collection(session.collection)
+        if collection is None:
+            raise work.Stopped
+        if session.waits_for_reading(collection):
+            _status(context, "Lodestone: reading the scene   [Esc] Cancel")
+            return {"PASS_THROUGH"}
+        if session.measuring(collection):
+            share = progress.percent(session.fraction, 1.0)
+            _status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
+            return {"PASS_THROUGH"}
+        _status(context, None)
+        context.window_manager.event_timer_remove(self._timer)
+        bpy.ops.lodestone.make_groups("INVOKE_DEFAULT")
+        return {"CANCELLED"}  # nothing has changed yet: there is nothing to undo
+
+    def _end(self, context):
+        stop_running()
+        _status(context, None)
+        context.window_manager.event_timer_remove(self._timer)
+        return {"CANCELLED"}
+
+
+class LODESTONE_OT_make_groups(bpy.types.Operator):
+    bl_idname = "lodestone.make_groups"
+    bl_label = "Auto-Structure"
+    bl_description = "Make the groups that were found collections"
+    bl_options = {"INTERNAL", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return _running is not None and _running.preview is not None
+
+    def invoke(self, context, event):
+        return context.window_manager.invoke_props_dialog(self, width=320)
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        if _running is not None and _running.preview is not None:
+            column.label(text=_running.collection, icon="OUTLINER_COLLECTION")
+            for line in _running.preview.lines():
+                column.label(text=line)
+
+    def execute(self, context):
+        session = _running
+        collection = _collection(session.collection)
+        try:
+            if collection is None or refusal(collection):
+                self.report({"ERROR"}, "The collection has changed meanwhile")
+                return {"CANCELLED"}
+            made = structure.make_collections(collection, session.found)
+        finally:
+            stop_running()
+        self.report({"INFO"}, f"Made {len(made):,} collections")
+        return {"FINISHED"}
+
+    def cancel(self, context):
+        stop_running()
+
+
+def _raise_stopped():
+    raise work.Stopped
+
+
+def _collection(name):
+    """By name: Blender may have moved its memory."""
+    scene = bpy.context.scene
+    if scene.collection.name == name:
+        return scene.collection
+    return next((item for item in bpy.data.collections if item.name == name), None)
+
+
+def _status(context, text):
+    if context.workspace is not None:
+        context.workspace.status_text_set(text)
+
+
+def stop_running():
+    """Ends a session from outside, leaving the file as it is."""
+    global _running
+    session, _running = _running, None
+    if session is not None:
+        session.stop()
+        session.close()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    stop_running()
+
+
+_CLASSES = (LODESTONE_OT_auto_structure, LODESTONE_OT_make_groups)
+_register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
+
+
+def register():
+    _register()
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister():
+    stop_running()
+    if _on_load in bpy.app.handlers.load_pre:
+        bpy.app.handlers.load_pre.remove(_on_load)
+    _unregister()
