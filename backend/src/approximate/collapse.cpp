@@ -19,43 +19,49 @@ double longest_square(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3
 }  // namespace
 
 Collapser::Collapser(CollapseMesh& mesh, const Adjacency& adjacency, Effort effort, double max_turn)
-    : mesh_(mesh),
-      adjacency_(adjacency),
-      effort_(effort),
-      min_cosine_(effort >= Effort::Rough ? 0.0 : std::cos(max_turn * 3.14159265358979 / 180)) {
-    near_a_.resize(mesh.points.size());
-    common_.resize(mesh.points.size());
+    : mesh_(mesh), adjacency_(adjacency), effort_(effort) {
+    const double cosine =
+        effort >= Effort::Rough ? 0.0 : std::cos(max_turn * 3.14159265358979 / 180);
+    square_cosine_ = cosine * cosine;
+    stamps_.assign(mesh.points.size(), 0);
+}
+
+void Collapser::find_corners(uint32_t vertex, Corners& corners) const {
+    corners.clear();
+    for (const uint32_t t : adjacency_.around(vertex)) {
+        const Triangle& c = mesh_.triangles[t];
+        if (c.x == kNone)
+            continue;
+        if (c.x == vertex)
+            corners.push_back({t, c.y, c.z});
+        else if (c.y == vertex)
+            corners.push_back({t, c.z, c.x});
+        else
+            corners.push_back({t, c.x, c.y});
+    }
 }
 
 bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
-    near_a_.clear();
-    common_.clear();
-    for (const uint32_t t : adjacency_.around(a)) {
-        if (mesh_.dead(t))
-            continue;
-        const Triangle& corners = mesh_.triangles[t];
-        for (int i = 0; i < 3; ++i)
-            near_a_.set(corners[i]);
+    now_ += 2;
+    find_corners(a, around_a_);
+    find_corners(b, around_b_);
+    shared_ = left_ = 0;
+    for (const Corner& corner : around_a_) {
+        left_ += !corner.on(b);
+        stamps_[corner.next] = stamps_[corner.last] = now_;
     }
     size_t common = 0;
-    shared_ = left_ = 0;
-    for (const uint32_t t : adjacency_.around(b)) {
-        if (mesh_.dead(t))
-            continue;
-        const Triangle& corners = mesh_.triangles[t];
-        const bool on = on_edge(t, a);
+    for (const Corner& corner : around_b_) {
+        const bool on = corner.on(a);
         shared_ += on;
         left_ += !on;
-        for (int i = 0; i < 3; ++i) {
-            const uint32_t u = corners[i];
-            if (u == a || u == b || !near_a_.has(u) || common_.has(u))
+        for (const uint32_t u : {corner.next, corner.last}) {
+            if (stamps_[u] != now_)
                 continue;
-            common_.set(u);
+            stamps_[u] = now_ + 1;
             ++common;
         }
     }
-    for (const uint32_t t : adjacency_.around(a))
-        left_ += !mesh_.dead(t) && !on_edge(t, b);
     if (!search && common != shared_)
         return false;
     // A hub's coinciding triangles are left: finding them takes quadratic time.
@@ -64,32 +70,31 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
 }
 
 bool Collapser::turns_allow(const std::vector<glm::dvec3>& points,
-                            const std::vector<glm::dvec3>& facets, uint32_t moved, uint32_t other,
-                            const glm::dvec3& point) const {
-    for (const uint32_t t : adjacency_.around(moved)) {
-        if (mesh_.dead(t) || on_edge(t, other))
+                            const std::vector<glm::vec3>& facets, const Corners& corners,
+                            uint32_t other, const glm::dvec3& from, const glm::dvec3& point) {
+    for (const Corner& corner : corners) {
+        if (corner.on(other))
             continue;
-        const Triangle& corners = mesh_.triangles[t];
-        glm::dvec3 p[3];
-        for (int i = 0; i < 3; ++i)
-            p[i] = corners[i] == moved ? point : points[corners[i]];
-        const glm::dvec3 facet = 0.5 * glm::cross(p[1] - p[0], p[2] - p[0]);
-        const glm::dvec3& old = facets[t];
+        const glm::dvec3& next = points[corner.next];
+        const glm::dvec3& last = points[corner.last];
+        const glm::dvec3 facet = 0.5 * glm::cross(next - point, last - point);
+        const glm::dvec3 old(facets[corner.triangle]);
         const double square = glm::dot(facet, facet);
         const double old_square = glm::dot(old, old);
-        const double longest = longest_square(p[0], p[1], p[2]);
-        const double old_longest =
-            longest_square(points[corners.x], points[corners.y], points[corners.z]);
+        const double longest = longest_square(point, next, last);
+        const double dot = glm::dot(facet, old);
+        const double thin = kThin * kThin * longest * longest;
+        if (dot > 0 && dot * dot >= square_cosine_ * square * old_square && 4 * square >= thin)
+            continue;
+        const double old_longest = longest_square(from, next, last);
         // Where there was no area there is no side to keep.
-        const bool flat_before = old_square <= 1e-20 * old_longest * old_longest;
-        if (flat_before)
+        if (old_square <= 1e-20 * old_longest * old_longest)
             continue;
         if (square <= 1e-20 * longest * longest)
             return false;
-        const double dot = glm::dot(facet, old);
-        if (dot <= 0 || dot * dot < min_cosine_ * min_cosine_ * square * old_square)
+        if (dot <= 0 || dot * dot < square_cosine_ * square * old_square)
             return false;
-        if (effort_ < Effort::Rough && 4 * square < kThin * kThin * longest * longest &&
+        if (effort_ < Effort::Rough && 4 * square < thin &&
             square * old_longest * old_longest < old_square * longest * longest)
             return false;
     }
@@ -97,14 +102,16 @@ bool Collapser::turns_allow(const std::vector<glm::dvec3>& points,
 }
 
 bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point,
-                                std::span<const glm::dvec3> others) const {
-    if (!turns_allow(mesh_.points, mesh_.facets, a, b, point) ||
-        !turns_allow(mesh_.points, mesh_.facets, b, a, point))
+                                std::span<const glm::dvec3> others) {
+    const auto both = [&](const std::vector<glm::dvec3>& points,
+                          const std::vector<glm::vec3>& facets, const glm::dvec3& to) {
+        return turns_allow(points, facets, around_a_, b, points[a], to) &&
+               turns_allow(points, facets, around_b_, a, points[b], to);
+    };
+    if (!both(mesh_.points, mesh_.facets, point))
         return false;
     for (size_t i = 0; i < others.size(); ++i) {
-        const OtherPose& pose = mesh_.others[i];
-        if (!turns_allow(pose.points, pose.facets, a, b, others[i]) ||
-            !turns_allow(pose.points, pose.facets, b, a, others[i]))
+        if (!both(mesh_.others[i].points, mesh_.others[i].facets, others[i]))
             return false;
     }
     return true;
@@ -112,24 +119,17 @@ bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point,
 
 bool Collapser::find_coinciding(uint32_t a, uint32_t b) {
     doomed_.clear();
-    for (const uint32_t t : adjacency_.around(b)) {
-        if (mesh_.dead(t) || on_edge(t, a))
+    const auto near_a = [&](uint32_t u) { return stamps_[u] - now_ <= 1; };
+    for (const Corner& corner : around_b_) {
+        if (corner.on(a) || !near_a(corner.next) || !near_a(corner.last))
             continue;
-        const Triangle& corners = mesh_.triangles[t];
-        const int at = corners.x == b ? 0 : (corners.y == b ? 1 : 2);
-        const uint32_t from = corners[(at + 1) % 3];
-        const uint32_t to = corners[(at + 2) % 3];
-        if (!near_a_.has(from) || !near_a_.has(to))
-            continue;
-        for (const uint32_t s : adjacency_.around(a)) {
-            if (mesh_.dead(s) || !on_edge(s, from) || !on_edge(s, to) || on_edge(s, b) ||
-                std::find(doomed_.begin(), doomed_.end(), s) != doomed_.end())
+        for (const Corner& other : around_a_) {
+            if (!other.on(corner.next) || !other.on(corner.last) || other.on(b) ||
+                std::find(doomed_.begin(), doomed_.end(), other.triangle) != doomed_.end())
                 continue;
-            const Triangle& other = mesh_.triangles[s];
-            const int at_a = other.x == a ? 0 : (other.y == a ? 1 : 2);
-            doomed_.push_back(t);
-            if (other[(at_a + 1) % 3] == to)
-                doomed_.push_back(s);
+            doomed_.push_back(corner.triangle);
+            if (other.next == corner.last)
+                doomed_.push_back(other.triangle);
             break;
         }
     }
@@ -164,14 +164,14 @@ size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point,
     mesh_.points[a] = point;
     for (size_t i = 0; i < others.size(); ++i)
         mesh_.others[i].points[a] = others[i];
-    if (!mesh_.ids.empty())
-        mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
+    mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
     for (const uint32_t end : {a, b}) {
-        for (const uint32_t t : adjacency_.around(end)) {
-            if (mesh_.dead(t))
-                continue;
+        for (const Corner& corner : end == a ? around_a_ : around_b_) {
+            const uint32_t t = corner.triangle;
             Triangle& corners = mesh_.triangles[t];
-            if (on_edge(t, end == a ? b : a)) {
+            if (corners.x == kNone)  // doomed, or on the edge and met before
+                continue;
+            if (corner.on(end == a ? b : a)) {
                 corners.x = kNone;
                 ++gone;
                 continue;
@@ -183,9 +183,9 @@ size_t Collapser::collapse(uint32_t a, uint32_t b, const glm::dvec3& point,
                 if (carried)
                     mesh_.wedges[t][i] = wedges_.wedge_of(mesh_.wedges[t][i]);
             }
-            mesh_.facets[t] = mesh_.facet_of(corners);
+            mesh_.facets[t] = glm::vec3(mesh_.facet_of(corners));
             for (OtherPose& other : mesh_.others)
-                other.facets[t] = CollapseMesh::facet_of(other.points, corners);
+                other.facets[t] = glm::vec3(CollapseMesh::facet_of(other.points, corners));
         }
     }
     if (carried)

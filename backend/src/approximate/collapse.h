@@ -22,27 +22,34 @@ public:
     size_t work() const { return work_; }
 
 private:
-    /// True when the surface stays as connected as it was. Counts left_ and shared_; fills doomed_ if it could
-    /// be true, or always with `search`.
+    /// A live triangle around a vertex: after it come the corners next and last.
+    struct Corner {
+        uint32_t triangle, next, last;
+        bool on(uint32_t vertex) const { return next == vertex || last == vertex; }
+    };
+    using Corners = std::vector<Corner>;
+    void find_corners(uint32_t vertex, Corners& corners) const;
+    /// True when the surface stays as connected as it was. Counts left_ and shared_; fills doomed_
+    /// if it could be true, or always with `search`.
     bool link_allows(uint32_t a, uint32_t b, bool search);
-    bool turns_allow(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec3>& facets,
-                     uint32_t moved, uint32_t other, const glm::dvec3& point) const;
+    /// In one pose: `from` is where the corners' vertex is. Appends the new area vectors.
+    bool turns_allow(const std::vector<glm::dvec3>& points, const std::vector<glm::vec3>& facets,
+                     const Corners& corners, uint32_t other, const glm::dvec3& from,
+                     const glm::dvec3& point);
     /// Both ends, in all poses.
     bool all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point,
-                         std::span<const glm::dvec3> others) const;
+                         std::span<const glm::dvec3> others);
     /// Fills doomed_ with triangles that would coincide: opposite pairs vanish, copies stay once.
     bool find_coinciding(uint32_t a, uint32_t b);
-    bool on_edge(uint32_t triangle, uint32_t other) const {
-        const Triangle& t = mesh_.triangles[triangle];
-        return t.x == other || t.y == other || t.z == other;
-    }
 
     CollapseMesh& mesh_;
     const Adjacency& adjacency_;
     Effort effort_;
-    double min_cosine_;
-    Marks near_a_;
-    Marks common_;
+    double square_cosine_;
+    Corners around_a_;
+    Corners around_b_;
+    std::vector<uint32_t> stamps_;  // now_: near a; now_ + 1: near both
+    uint32_t now_ = 0;
     WedgeMerge wedges_;
     std::vector<uint32_t> doomed_;
     size_t left_ = 0;    // triangles around the edge that are not on it

@@ -72,7 +72,7 @@ std::vector<glm::dvec3> scaled(const std::vector<glm::vec3>& positions, double s
 
 }  // namespace
 
-CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, bool tracked) {
+CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     CollapseMesh mesh;
     mesh.has_normals = !source.normals.empty();
     Box3 box;
@@ -94,10 +94,8 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, boo
         mesh.points.push_back((glm::dvec3(position) - mesh.center) / mesh.scale);
     for (const std::vector<glm::vec3>& positions : others)
         mesh.others.push_back({scaled(positions, mesh.scale), {}});
-    if (tracked) {
-        mesh.sources.resize(mesh.points.size());
-        std::iota(mesh.sources.begin(), mesh.sources.end(), 0u);
-    }
+    mesh.sources.resize(mesh.points.size());
+    std::iota(mesh.sources.begin(), mesh.sources.end(), 0u);
     job.check();
     {
         const std::vector<uint32_t> welded = weld(source);
@@ -126,17 +124,15 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, boo
     find_parts(mesh);
     mesh.facets.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles)
-        mesh.facets.push_back(mesh.facet_of(t));
+        mesh.facets.emplace_back(mesh.facet_of(t));
     for (OtherPose& other : mesh.others) {
         other.facets.reserve(mesh.triangles.size());
         for (const Triangle& t : mesh.triangles)
-            other.facets.push_back(CollapseMesh::facet_of(other.points, t));
+            other.facets.emplace_back(CollapseMesh::facet_of(other.points, t));
     }
-    if (tracked) {
-        mesh.ids.resize(mesh.points.size());
-        std::iota(mesh.ids.begin(), mesh.ids.end(), 0u);
-        mesh.merged = mesh.ids;
-    }
+    mesh.ids.resize(mesh.points.size());
+    std::iota(mesh.ids.begin(), mesh.ids.end(), 0u);
+    mesh.merged = mesh.ids;
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();
@@ -178,16 +174,14 @@ void compact(CollapseMesh& mesh) {
         mesh.points[count] = mesh.points[v];
         for (OtherPose& other : mesh.others)
             other.points[count] = other.points[v];
-        if (!mesh.ids.empty())
-            mesh.ids[count] = mesh.ids[v];
+        mesh.ids[count] = mesh.ids[v];
         mesh.parts[count] = mesh.parts[v];
         moved[v] = count++;
     }
     mesh.points.resize(count);
     for (OtherPose& other : mesh.others)
         other.points.resize(count);
-    if (!mesh.ids.empty())
-        mesh.ids.resize(count);
+    mesh.ids.resize(count);
     mesh.parts.resize(count);
     for (Triangle& t : mesh.triangles)
         t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
@@ -201,8 +195,9 @@ Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made) {
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i))
             continue;
-        const double length = glm::length(mesh.facets[i]);
-        const glm::vec3 face(length > 0 ? mesh.facets[i] / length : glm::dvec3(0, 0, 1));
+        const glm::dvec3 facet(mesh.facets[i]);
+        const double length = glm::length(facet);
+        const glm::vec3 face(length > 0 ? facet / length : glm::dvec3(0, 0, 1));
         Triangle t;
         for (int corner = 0; corner < 3; ++corner) {
             const uint32_t vertex = mesh.triangles[i][corner];

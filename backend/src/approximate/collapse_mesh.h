@@ -6,6 +6,7 @@
 #include "model/mesh.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lodestone::approximate {
@@ -15,7 +16,7 @@ inline constexpr uint32_t kNone = ~uint32_t{0};
 /// The same vertices where another frame of an animation has them, in a frame of their own.
 struct OtherPose {
     std::vector<glm::dvec3> points;  // recentred and scaled as much as the mesh
-    std::vector<glm::dvec3> facets;
+    std::vector<glm::vec3> facets;
 };
 
 /// Vertices at one position are one vertex, except where sheets only touch in a point or coincide
@@ -24,16 +25,17 @@ struct CollapseMesh {
     std::vector<glm::dvec3> points;   // recentred and scaled into the cube of +-1
     std::vector<uint32_t> parts;      // connected part of each vertex
     std::vector<Triangle> triangles;  // x == kNone: dead
-    std::vector<glm::dvec3> facets;   // area vector (half the cross product) of each triangle
+    std::vector<glm::vec3> facets;    // area vector (half the cross product) of each triangle
     std::vector<Triangle> wedges;     // wedge of each corner; empty when nothing is carried
     std::vector<uint16_t> slots;      // empty or one a triangle
     std::vector<glm::vec3> normals;   // empty or one a wedge
     std::vector<glm::vec2> uvs;       // empty or one a wedge
     std::vector<glm::vec4> colors;    // empty or one a wedge
     std::vector<OtherPose> others;    // what a collapse must suit besides; mostly none
-    std::vector<uint32_t> ids;      // empty, or of each vertex: its first number, into the next two
-    std::vector<uint32_t> sources;  // the input vertex (the welded one) it was
-    std::vector<uint32_t> merged;   // the vertex it was collapsed into, by first number, or itself
+    std::vector<uint32_t> ids;        // of each vertex: its first number, into the next two
+    std::vector<uint32_t> sources;    // the input vertex (the welded one) it was
+    std::vector<uint32_t> merged;  // the vertex it was collapsed into, by first number, or itself
+    std::vector<std::pair<uint32_t, uint32_t>> outline;  // edges on borders at first, likewise
     uint32_t part_count = 0;
     size_t live = 0;  // triangles not dead
     glm::dvec3 center{0.0};
@@ -51,8 +53,7 @@ struct CollapseMesh {
         points.push_back(glm::dvec3(points[vertex]));
         for (OtherPose& other : others)
             other.points.push_back(glm::dvec3(other.points[vertex]));
-        if (!sources.empty())
-            sources.push_back(uint32_t{sources[vertex]});
+        sources.push_back(uint32_t{sources[vertex]});
         return static_cast<uint32_t>(points.size() - 1);
     }
 };
@@ -60,10 +61,8 @@ struct CollapseMesh {
 /// Positions of the input's vertices in other frames, each as many as it has and finite.
 using OtherPositions = std::span<const std::vector<glm::vec3>>;
 
-/// Leaves out triangles with non-finite vertices and those with two corners in one place. With
-/// `tracked` it remembers which vertices are collapsed into which.
-CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {},
-                  bool tracked = false);
+/// Leaves out triangles with non-finite vertices and those with two corners in one place.
+CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {});
 
 /// Drops dead triangles and the vertices nothing uses, keeping order.
 void compact(CollapseMesh& mesh);

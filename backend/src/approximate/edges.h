@@ -26,18 +26,39 @@ enum class Effort : uint8_t {
     Anything,  // triangles may turn over; hubs of any size are collapsed
 };
 
-/// Rebuilt from the present mesh before every pass ("memoryless"); arrays are reused.
+/// An edge that may be collapsed, and its cost as a float's bits: those of costs sort as they do.
+struct Candidate {
+    Edge edge;
+    uint32_t key;
+};
+
+/// Rebuilt from the present mesh before every pass ("memoryless"); arrays are reused. Works on
+/// several threads; the result does not depend on how many.
 class Edges {
 public:
     void build(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
                const Job& job);
+    /// What every edge costs; of those the ends of which forbid it, infinitely much.
+    void rank(const CollapseMesh& mesh, Effort effort, const Job& job);
+    /// How many can be collapsed, and the cost that (about, not below) `count` of them do not
+    /// exceed.
+    size_t possible() const { return possible_; }
+    uint32_t key_of(size_t count) const;
+    /// The possible ones up to a cost.
+    void take(uint32_t limit, std::vector<Candidate>& candidates) const;
 
-    size_t size() const { return edges_.size(); }
-    const Edge& operator[](size_t i) const { return edges_[i]; }
     VertexKind kind(uint32_t vertex) const { return kinds_[vertex]; }
+    /// Calls visit(a, b) for every edge that is not shared by exactly two triangles.
+    template <typename Visit>
+    void borders(const Visit& visit) const {
+        for (const Chunk& chunk : chunks_) {
+            for (const Edge& edge : chunk.edges) {
+                if (edge.border())
+                    visit(edge.a, edge.b);
+            }
+        }
+    }
 
-    /// False when the kinds of its ends forbid it.
-    bool allowed(const Edge& edge, Effort effort) const;
     /// Where it goes; the cost is that of all poses together.
     Optimum optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const;
     /// Where it goes in each of the mesh's other poses.
@@ -47,28 +68,34 @@ public:
 private:
     /// Of a vertex's surroundings in one pose.
     struct Around {
-        std::vector<Quadric> quadrics;   // by vertex
-        std::vector<glm::dvec3> facets;  // likewise: their sum
-        void resize(size_t vertices) {
-            quadrics.assign(vertices, Quadric{});
-            facets.resize(vertices);
-        }
+        glm::vec3 point;  // as the ranking sees it
+        glm::vec3 facet;  // sum of the area vectors
+        float xx, xy, xz, yy, yz, zz;
+        Quadric quadric() const { return {xx, xy, xz, yy, yz, zz}; }
     };
-    void visit(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
-               uint32_t vertex);
-    Optimum optimum_in(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec3>& facets,
-                       const Around& around, const Edge& edge, Effort effort) const;
-
     struct Neighbor {
         uint32_t vertex, uses, t0, t1;
         bool leaving0, leaving1;  // the triangle runs vertex -> neighbor
     };
-    std::vector<Edge> edges_;
-    Around own_;
-    std::vector<Around> others_;  // by pose
+    /// Vertices [first, last), and the edges of which they are the lower end.
+    struct Chunk {
+        std::vector<Edge> edges;
+        std::vector<uint32_t> keys;
+        std::vector<Neighbor> neighbors;
+    };
+    void visit(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
+               uint32_t vertex, Chunk& chunk);
+    bool allowed(const Edge& edge, Effort effort) const;
+    void rank(const CollapseMesh& mesh, Effort effort, Chunk& chunk) const;
+    Optimum optimum_in(const std::vector<glm::dvec3>& points, const std::vector<glm::vec3>& facets,
+                       const std::vector<Around>& around, const Edge& edge, Effort effort) const;
+
+    std::vector<Chunk> chunks_;
+    std::vector<Around> own_;                  // by vertex
+    std::vector<std::vector<Around>> others_;  // by pose
     std::vector<VertexKind> kinds_;
-    std::vector<Neighbor> neighbors_;
-    Marks marks_;
+    std::vector<uint32_t> counts_;  // of possible edges by the upper half of their keys
+    size_t possible_ = 0;
 };
 
 }  // namespace lodestone::approximate

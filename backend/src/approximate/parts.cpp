@@ -25,7 +25,7 @@ void Parts::measure(const CollapseMesh& mesh, double weight) {
         // Moments about a vertex of the part: small parts far out lose no digits.
         if (sum.triangles++ == 0)
             sum.origin = mesh.points[t.x];
-        const double area = glm::length(mesh.facets[i]);
+        const double area = glm::length(glm::dvec3(mesh.facets[i]));
         sum.area += area;
         glm::dvec3 middle(0.0);
         double squares = 0;

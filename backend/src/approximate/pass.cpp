@@ -1,72 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/pass.h"
 
+#include "approximate/edge_costs.h"
 #include "approximate/sheets.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
 namespace lodestone::approximate {
 namespace {
 
-/// Of the live triangles, how many one pass may take. Smaller passes choose with fresher costs.
-constexpr double kShare = 0.25;
-/// A careful pass stops at this many times the cost at which its edges would suffice: some of them
-/// turn out to be barred by their neighbors.
-constexpr double kSlack = 1.3;
 /// A pass that takes less than this share of what is wanted is worth trying harder.
 constexpr double kSlow = 0.02;
 constexpr int kMostSlowPasses = 64;
 /// Triangles a pass may look at for each one there is; ordinary meshes need 18 at most.
 constexpr size_t kWork = 40;
 
+/// Small passes choose with fresher costs, large ones take less time.
+constexpr Pace kFast{0.35, 2.0, 1.0 / 3, 22};
+constexpr Pace kBest{0.12, 1.0, 0.5, 22};
+
 bool is_slow(size_t gone, size_t wanted) {
     return static_cast<double>(gone) < kSlow * static_cast<double>(wanted);
 }
 
-/// Sorts order by key, stable. The lowest 10 of 32 bits are ignored: for positive floats that is
-/// 0.02 % of the value.
-void radix_sort(std::vector<uint32_t>& keys, std::vector<uint32_t>& order,
-                std::vector<uint32_t>& keys_spare, std::vector<uint32_t>& order_spare) {
-    keys_spare.resize(keys.size());
-    order_spare.resize(order.size());
-    for (const unsigned shift : {10u, 21u}) {
-        std::array<uint32_t, 2049> first{};
-        for (const uint32_t key : keys)
-            ++first[((key >> shift) & 2047u) + 1];
-        for (size_t i = 0; i < 2048; ++i)
-            first[i + 1] += first[i];
-        for (size_t i = 0; i < keys.size(); ++i) {
-            const uint32_t to = first[(keys[i] >> shift) & 2047u]++;
-            keys_spare[to] = keys[i];
-            order_spare[to] = order[i];
-        }
-        keys.swap(keys_spare);
-        order.swap(order_spare);
-    }
+/// The candidates by cost, those of almost the same one as they come: neighbors in the mesh, which
+/// the processor's caches know, mostly follow each other.
+void sort(const std::vector<Candidate>& candidates, unsigned shift, std::vector<uint32_t>& order) {
+    std::vector<uint32_t> first((kImpossible >> shift) + 2, 0);
+    for (const Candidate& candidate : candidates)
+        ++first[(candidate.key >> shift) + 1];
+    for (size_t i = 1; i < first.size(); ++i)
+        first[i] += first[i - 1];
+    order.resize(candidates.size());
+    for (uint32_t i = 0; i < candidates.size(); ++i)
+        order[first[candidates[i].key >> shift]++] = i;
 }
 
 }  // namespace
 
-void Reducer::rank(Effort effort, const Job& job) {
-    keys_.clear();
-    order_.clear();
-    for (size_t i = 0; i < edges_.size(); ++i) {
-        if ((i & 0xffffu) == 0)
-            job.check();
-        const Edge& edge = edges_[i];
-        if (!edges_.allowed(edge, effort))
-            continue;
-        const auto cost = static_cast<float>(edges_.optimum(mesh_, edge, effort).cost);
-        if (!std::isfinite(cost))
-            continue;
-        keys_.push_back(std::bit_cast<uint32_t>(cost));
-        order_.push_back(static_cast<uint32_t>(i));
-    }
-    radix_sort(keys_, order_, keys_spare_, order_spare_);
-}
+Reducer::Reducer(CollapseMesh& mesh, const SimplifyOptions& options)
+    : mesh_(mesh), options_(options), pace_(options.mode == SimplifyMode::Best ? kBest : kFast) {}
 
 size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t before = mesh_.live;
@@ -77,16 +52,26 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         return before - mesh_.live;
     adjacency_.build(mesh_);
     edges_.build(mesh_, adjacency_, options_, job);
+    if (!begun_) {
+        edges_.borders([&](uint32_t a, uint32_t b) {
+            mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
+        });
+    }
+    begun_ = true;
     parts_.measure(mesh_, options_.part_weight);
-    rank(effort, job);
+    edges_.rank(mesh_, effort, job);
 
     const size_t start = mesh_.live;
-    const auto share = static_cast<size_t>(kShare * static_cast<double>(start));
+    const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
     const size_t want = std::min(start - target, std::max<size_t>(share, 64));
-    uint32_t limit = ~uint32_t{0};
-    if (effort == Effort::Careful && want / 2 < keys_.size())
-        limit = std::bit_cast<uint32_t>(static_cast<float>(kSlack) *
-                                        std::bit_cast<float>(keys_[want / 2]));
+    uint32_t limit = kImpossible - 1;
+    const auto enough = static_cast<size_t>(pace_.quantile * static_cast<double>(want));
+    if (effort == Effort::Careful && enough < edges_.possible())
+        limit =
+            std::min(limit, std::bit_cast<uint32_t>(static_cast<float>(pace_.slack) *
+                                                    std::bit_cast<float>(edges_.key_of(enough))));
+    edges_.take(limit, candidates_);
+    sort(candidates_, pace_.shift, order_);
 
     Collapser collapser(mesh_, adjacency_, effort, options_.max_turn);
     used_.assign(mesh_.points.size(), 0);
@@ -101,15 +86,16 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         gone += part.triangles - taken[part.part];
     };
     const size_t most_work = kWork * start + 100000;
-    for (size_t i = 0; i < order_.size() && gone < want && keys_[i] <= limit; ++i) {
+    for (size_t i = 0; i < order_.size() && gone < want; ++i) {
         if ((i & 0xfffu) == 0)
             job.check();
         if (collapser.work() > most_work)
             break;
-        const auto cost = static_cast<double>(std::bit_cast<float>(keys_[i]));
+        const Candidate& candidate = candidates_[order_[i]];
+        const auto cost = static_cast<double>(std::bit_cast<float>(candidate.key));
         while (next_part < removable.size() && removable[next_part].cost < cost && gone < want)
             remove_next_part();
-        const Edge& edge = edges_[order_[i]];
+        const Edge& edge = candidate.edge;
         if (gone >= want || used_[edge.a] || used_[edge.b])
             continue;
         const uint32_t part = mesh_.parts[edge.a];

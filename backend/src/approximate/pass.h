@@ -6,12 +6,22 @@
 #include "approximate/parts.h"
 
 #include <functional>
+#include <utility>
+#include <vector>
 
 namespace lodestone::approximate {
 
+/// How far one pass goes.
+struct Pace {
+    double share;     // of the live triangles it may take
+    double slack;     // a careful pass stops at this many times the cost
+    double quantile;  // that this many edges for each triangle wanted do not exceed
+    unsigned shift;   // low bits of costs that do not order them: 23 is a factor of two
+};
+
 class Reducer {
 public:
-    Reducer(CollapseMesh& mesh, const SimplifyOptions& options) : mesh_(mesh), options_(options) {}
+    Reducer(CollapseMesh& mesh, const SimplifyOptions& options);
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
     /// `after_pass` is called after every pass.
@@ -20,15 +30,15 @@ public:
 private:
     /// One batch; returns how many triangles went.
     size_t pass(size_t target, Effort effort, const Job& job);
-    /// Fills order_ with the edges worth trying, cheapest first, and costs_ (by edge).
-    void rank(Effort effort, const Job& job);
-
     CollapseMesh& mesh_;
     SimplifyOptions options_;
+    Pace pace_;
     Adjacency adjacency_;
     Edges edges_;
     Parts parts_;
-    std::vector<uint32_t> keys_, order_, keys_spare_, order_spare_;
+    bool begun_ = false;
+    std::vector<Candidate> candidates_;
+    std::vector<uint32_t> order_;  // of candidates
     std::vector<uint8_t> used_;
     std::vector<glm::dvec3> other_points_;
 };

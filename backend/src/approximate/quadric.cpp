@@ -7,12 +7,6 @@
 namespace lodestone::approximate {
 namespace {
 
-/// Pull towards the middle of the edge, relative to the trace: decides only the directions that the
-/// planes leave open (along a flat surface or a straight ridge).
-constexpr double kPull = 1e-4;
-/// Between collapses that cost nothing, the shortest edge first: keeps flat regions well shaped.
-constexpr double kLength = 1e-8;
-
 /// L D L^T of a positive definite symmetric matrix.
 struct Factors {
     double l10, l20, l21, d0, d1, d2;
@@ -46,7 +40,7 @@ double cost_at(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point) {
     const glm::dvec3 edge = b.point - a.point;
     const double length = glm::dot(edge, edge) * (a.quadric.trace() + b.quadric.trace());
     return std::max(0.0, glm::dot(from_a, a.quadric * from_a)) +
-           std::max(0.0, glm::dot(from_b, b.quadric * from_b)) + kLength * length;
+           std::max(0.0, glm::dot(from_b, b.quadric * from_b)) + kEdgeLength * length;
 }
 
 Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared) {
@@ -59,10 +53,10 @@ Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared)
     if (!(trace > 1e-200))
         return {middle, 0};
     const glm::dvec3 linear = b.quadric * d - a.quadric * d;
-    const double pull = kPull * trace;
+    const double pull = kEdgePull * trace;
     const Factors factors(q, pull);
     // The second solve starts the pull from the first answer: what the planes decide is then exact
-    // to kPull squared.
+    // to kEdgePull squared.
     glm::dvec3 y = factors.solve(linear);
     y = factors.solve(linear + pull * y);
     // Volume: facet . y = h; the shared triangles contain the edge, so they do not enter h.

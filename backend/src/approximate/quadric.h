@@ -36,6 +36,12 @@ struct Quadric {
     double trace() const { return xx + yy + zz; }
 };
 
+/// Pull towards the middle of the edge, relative to the trace: decides only the directions that the
+/// planes leave open (along a flat surface or a straight ridge).
+inline constexpr double kEdgePull = 1e-4;
+/// Between collapses that cost nothing, the shortest edge first: keeps flat regions well shaped.
+inline constexpr double kEdgeLength = 1e-8;
+
 /// One end of an edge as the cost sees it.
 struct EdgeEnd {
     glm::dvec3 point;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/simplify.h"
 
+#include "approximate/fit.h"
 #include "approximate/pass.h"
 
 #include <algorithm>
 
 namespace lodestone::approximate {
 namespace {
+
+constexpr FitOptions kFastFit{8, 1, 1, 3};
+constexpr FitOptions kBestFit{20, 1, 3, 5};
 
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,
                      const SimplifyOptions& options) {
@@ -85,7 +89,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     }
     if (next == targets.size())
         return results;
-    CollapseMesh working = open(mesh, job, others, tracked);
+    CollapseMesh working = open(mesh, job, others);
     if (working.live == 0) {
         for (; next < targets.size() && !tracked; ++next)
             results.push_back(whole(first_triangles(mesh, targets[next])));
@@ -94,6 +98,8 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     const size_t start = working.live;
     const size_t goal = targets.back();
     Reducer reducer(working, options);
+    Adjacency adjacency;
+    const bool best = options.mode == SimplifyMode::Best;
     for (; next < targets.size(); ++next) {
         const bool reached = reducer.reduce(targets[next], job, [&] {
             if (start > goal)
@@ -102,6 +108,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
         });
         // Where it gets stuck, the mesh so far is the last result, unless it already is.
         if (reached || results.empty() || working.live < last) {
+            fit(working, mesh, adjacency, best ? kBestFit : kFastFit, job);
             results.push_back(taken(working));
             last = working.live;
         }

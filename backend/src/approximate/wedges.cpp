@@ -68,7 +68,7 @@ bool shows_faces(const CollapseMesh& mesh, const Mesh& source) {
     size_t judged = 0;
     size_t faces = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::dvec3 facet = mesh.facets[i];
+        const glm::dvec3 facet(mesh.facets[i]);
         const double area = glm::length(facet);
         if (!(area > 0))
             continue;
@@ -106,7 +106,7 @@ void make_wedges(CollapseMesh& mesh, const Mesh& source) {
     const bool uvs = !source.uvs.empty();
     const bool colors = !source.colors.empty();
     if (!normals && !uvs && !colors) {
-        mesh.wedges.clear();
+        mesh.wedges = {};
         return;
     }
     constexpr int kMostCompared = 32;  // beyond, a wedge of its own: bounded time on any input

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fit: moves the vertices of a simplified mesh to where they are nearest to the original surface.
+#pragma once
+
+#include "approximate/adjacency.h"
+
+namespace lodestone::approximate {
+
+struct FitOptions {
+    double samples = 8;  // of the original's triangles, for each vertex of the simplified mesh
+    double share = 1;    // of the original's triangles, at most
+    int sweeps = 1;      // how often each sample looks for what it is nearest to
+    int iterations = 3;  // of the solver in each sweep
+};
+
+/// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was
+/// opened from) to the surface they are nearest to, over all vertices together; those on open
+/// borders also to the outline's. `mesh` must be compact; `adjacency` is overwritten. No triangle
+/// turns over. A mesh with other poses is left as it is. source: Hoppe et al. 1993 (mesh
+/// optimization), with distances to planes.
+void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const FitOptions& options,
+         const Job& job);
+
+}  // namespace lodestone::approximate
