@@ -43,9 +43,7 @@ class Settings:
         )
 
     def view(self, camera: Any, size: tuple[int, int]) -> Any:
-        return native.View(
-            camera, size[0], size[1], self.pixel_error, POVRAY_KINDS, self.border
-        )
+        return native.View(camera, size[0], size[1], self.pixel_error, POVRAY_KINDS, self.border)
 
     def stamp(self) -> dict[str, str]:
         """What a picture's file says about how it was made: the version, the Pixel Error, and a
