@@ -169,8 +169,11 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
         add_primitives(candidates, bound, by_pictures, judge, job);
     // A composite of eight is off by a fifth of the radius, more or less.
     constexpr double kOff = 0.2;
+    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
+    // good, and comparing pictures takes long.
+    const double solids = by_pictures ? 16 : 64;
     const double dearer =
-        16.0 * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, uses));
+        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, uses));
     if (bytes > 2 * dearer && bytes_within(candidates, kOff * bound.radius, uses) > dearer &&
         !judge.refracts()) {
         if (!by_pictures)

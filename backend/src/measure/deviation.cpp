@@ -106,8 +106,8 @@ double nearest_of_color(const std::vector<Sample>& visible, const Sample& from,
 /// The radius around a point within which the visible colors of the finest mix (as light does, in a
 /// pixel that shows them all) to `color`; never
 /// (infinity) when not even all of them do.
-double mixing_radius(const std::vector<Sample>& visible, const Sample& from,
-                     const glm::dvec3& color) {
+double mixing_radius(const std::vector<Sample>& visible, const std::vector<glm::dvec3>& lights,
+                     const Sample& from, const glm::dvec3& color) {
     // Every so many of the visible points are enough for a mean.
     constexpr size_t kMostPoints = 512;
     const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
@@ -120,12 +120,13 @@ double mixing_radius(const std::vector<Sample>& visible, const Sample& from,
             near.emplace_back(glm::dot(arm, arm), visible[i].look, i);
     }
     std::sort(near.begin(), near.end());
+    const Looks::Lights wanted = Looks::lights_alike(color);
     glm::dvec3 sum(0.0);
     double count = 0;
     for (const auto& [square, look, index] : near) {
-        sum += Looks::light_of(visible[index].color);
+        sum += lights[index];
         ++count;
-        if (Looks::alike(Looks::encoded(sum / count), color))
+        if (wanted.hold(sum / count))
             return std::sqrt(square);
     }
     return std::numeric_limits<double>::infinity();
@@ -134,7 +135,8 @@ double mixing_radius(const std::vector<Sample>& visible, const Sample& from,
 /// What the samples of one mesh are compared with.
 struct Against {
     const LookScenes& other;
-    const std::vector<Sample>& visible;  // of the finest
+    const std::vector<Sample>& visible;     // of the finest
+    const std::vector<glm::dvec3>& lights;  // of these
     const LookScenes& finest;
     const Looks* palette;
     double none;            // the answer where there is nothing to find
@@ -157,7 +159,7 @@ double moved_by(const Sample& sample, uint16_t theirs, const glm::dvec3& color,
         std::min(against.none, against.other.nearest(sample.look, sample.point).distance);
     if (against.finest.has(theirs))
         return std::min(least, nearest_visible(against.visible, sample, theirs));
-    return std::min(least, mixing_radius(against.visible, sample, color));
+    return std::min(least, mixing_radius(against.visible, against.lights, sample, color));
 }
 
 /// How far the same texture slid along the surface at a sample where the other shows another color.
@@ -169,7 +171,7 @@ double slid_by(const Sample& sample, const ray::Closest& at, const glm::dvec3& c
         least = std::min(least, glm::length(there - sample.uv) * sample.metres_per_uv);
     }
     least = std::min(least, nearest_of_color(against.visible, sample, color));
-    return std::min(least, mixing_radius(against.visible, sample, color));
+    return std::min(least, mixing_radius(against.visible, against.lights, sample, color));
 }
 
 /// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
@@ -225,6 +227,9 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
     add_visible_vertices(finest, scenes_.whole(), sampler.sides(),
                          weighted_vertices(finest, options.most_vertices, options.seed),
                          ray_lift(diameter_ / 2), options.seed, job, visible_);
+    lights_.reserve(visible_.size());
+    for (const Sample& sample : visible_)
+        lights_.push_back(Looks::light_of(sample.color));
 }
 
 Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
@@ -239,10 +244,10 @@ Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
     add_vertex_samples(stand_in, scenes.whole(),
                        weighted_vertices(stand_in, options_.most_vertices, options_.seed), samples);
     const ray::Skin* const skin = surface.skin.get();
-    const Deviation there =
-        measure(visible_, {scenes, visible_, scenes_, palette_, none, stand_in, skin}, job);
-    const Deviation back =
-        measure(samples, {scenes_, visible_, scenes_, palette_, none, stand_in, skin}, job);
+    const Deviation there = measure(
+        visible_, {scenes, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
+    const Deviation back = measure(
+        samples, {scenes_, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

@@ -56,6 +56,7 @@ private:
     LookScenes scenes_;
     const Looks* palette_;
     std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
+    std::vector<glm::dvec3> lights_;      // what they shine with
     double diameter_ = 0;
 };
 

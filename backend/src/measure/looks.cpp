@@ -62,6 +62,17 @@ glm::dvec3 Looks::light_of(const glm::dvec3& color) {
     return {decode(color.x), decode(color.y), decode(color.z)};
 }
 
+Looks::Lights Looks::lights_alike(const glm::dvec3& color) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Lights out;
+    for (int i = 0; i < 3; ++i) {
+        // Encoding rises with light, and shows all that is above 1 as 1.
+        out.least[i] = color[i] - kSameLook > 0 ? decode(color[i] - kSameLook) : -kInfinity;
+        out.most[i] = color[i] + kSameLook < 1 ? decode(color[i] + kSameLook) : kInfinity;
+    }
+    return out;
+}
+
 bool Looks::alike(const glm::dvec3& a, const glm::dvec3& b) {
     const glm::dvec3 off = glm::abs(a - b);
     return std::max({off.x, off.y, off.z}) <= kSameLook;

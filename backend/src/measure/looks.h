@@ -24,6 +24,17 @@ public:
     static glm::dvec3 encoded(const glm::dvec3& light);
     static bool alike(const glm::dvec3& a, const glm::dvec3& b);
 
+    /// Lights whose encoded colors are alike one color: known without encoding each.
+    struct Lights {
+        glm::dvec3 least{0.0};
+        glm::dvec3 most{0.0};
+        bool hold(const glm::dvec3& light) const {
+            return light.x >= least.x && light.y >= least.y && light.z >= least.z &&
+                   light.x <= most.x && light.y <= most.y && light.z <= most.z;
+        }
+    };
+    static Lights lights_alike(const glm::dvec3& color);
+
     uint16_t of(const Material& material);
     /// One a triangle; a slot without a material looks like Material{}.
     std::vector<uint16_t> of(const Mesh& mesh, std::span<const Material> materials);
