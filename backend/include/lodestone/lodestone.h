@@ -455,13 +455,14 @@ LDS_API lds_status lds_model_group_by_position(lds_model* model, lds_object grou
 
 typedef struct lds_structure_options {
     uint32_t struct_size;
-    uint32_t fewest_children; /* groups of at most so many are left as they are; usual 64, least 2 */
-    uint32_t most_children;   /* of a group; 8 or more, usual 64 */
-    uint32_t orders;          /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
+    uint32_t
+        fewest_children;    /* groups of at most so many are left as they are; usual 64, least 2 */
+    uint32_t most_children; /* of a group; 8 or more, usual 64 */
+    uint32_t orders;        /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
                                  lower cost, linearly more time */
-    double similarity;        /* how much looks (color, size, shape, orientation) count beside place:
+    double similarity;      /* how much looks (color, size, shape, orientation) count beside place:
                                  0 not at all, usual 0.1 */
-    double group_cost;        /* of a group, in children, usual 8; larger makes fewer and larger
+    double group_cost;      /* of a group, in children, usual 8; larger makes fewer and larger
                                  groups */
     uint64_t seed;
     int32_t threads; /* 0 = all */
