@@ -37,6 +37,7 @@ namespace {
 constexpr int kViews = 20;
 constexpr uint64_t kTrianglesOfBox = 12;  // what primitives count as, as in build/flatten
 constexpr uint64_t kTrianglesOfEllipsoid = 80;
+constexpr uint64_t kTrianglesOfComposite = 8 * kTrianglesOfEllipsoid;
 constexpr size_t kFewest = 8;    // groups of more children are structured
 constexpr double kMerged = 0.5;  // of its parent's area: then a cluster is dissolved
 
@@ -198,6 +199,8 @@ void add_cut(Result& result, const Model& model, const View& view) {
             result.drawn += static_cast<double>(kTrianglesOfBox);
         if (cut.nodes[index].kind == Kind::Ellipsoid)
             result.drawn += static_cast<double>(kTrianglesOfEllipsoid);
+        if (cut.nodes[index].kind == Kind::Composite)
+            result.drawn += static_cast<double>(kTrianglesOfComposite);
     }
 }
 

@@ -21,7 +21,7 @@ from ..core.text import sentence
 from . import update_levels
 
 FEWEST = 8  # a collection of at most so many is not structured
-TRIANGLES_OF = {"box": 12, "ellipsoid": 80}  # what they count as beside meshes
+TRIANGLES_OF = {"box": 12, "ellipsoid": 80, "composite": 640}  # as they count beside meshes
 GROUP_COST = 20.0  # fewer and larger groups than those nobody sees
 
 
