@@ -170,7 +170,7 @@ class Many(unittest.TestCase):
         every.sort(key=lambda name: (name not in SLOW, name))
         self.assertEqual(len(every), 20)
         files = self.take(*every)
-        options = ["--jobs", "2", "--timeout", "15", "--max-memory", "700M", "--trust-scripts"]
+        options = ["--jobs", "2", "--timeout", "30", "--max-memory", "700M", "--trust-scripts"]
 
         first = self.begin(*files, *options)
         self.wait_for(lambda: self.finished() >= 4, "four pictures")
@@ -187,7 +187,7 @@ class Many(unittest.TestCase):
         self.assertEqual([report["input"] for report in reports], files)
         expected = {
             "crashes": (4, "crash", "SIGSEGV.*Blender 3.4"),
-            "hangs": (1, "timeout", "15 s of --timeout"),
+            "hangs": (1, "timeout", "30 s of --timeout"),
             "greedy": (1, "memory", r"7\d\d MB of memory.* 700 MB of --max-memory \(blender"),
             "lacks": (3, None, "library.blend"),
             "newer": (3, None, r"Blender 4\.2"),

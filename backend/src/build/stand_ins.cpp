@@ -155,11 +155,14 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
     constexpr double kCollapsed = 0.2;
     constexpr double kNear = 1.0 / 8;  // over the radius
     const double bytes = static_cast<double>(mesh.triangles.size()) * kBytesPerTriangle;
+    // Less than so many solids would cost is not worth a tenth of a second of pictures.
+    constexpr double kFewSolids = 32;
+    const bool worth_pictures = bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
     approximate::Crowd crowd;
-    if ((many || bytes_within(candidates, kNear * bound.radius, uses) > kCollapsed * bytes) &&
-        !judge.refracts())
+    if (worth_pictures &&
+        (many || bytes_within(candidates, kNear * bound.radius, uses) > kCollapsed * bytes))
         crowd = crowd_in_mesh();
-    const bool by_pictures = (!crowd.empty() || !judge.solid()) && !judge.refracts();
+    const bool by_pictures = worth_pictures && (!crowd.empty() || !judge.solid());
     if (by_pictures)
         judge.take_pictures(mesh, crowd.empty(), job);
     if (!crowd.empty())
