@@ -202,11 +202,13 @@ void Fit::sample(size_t want, const Job& job) {
     const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
     samples_.clear();
     samples_.reserve(static_cast<size_t>(static_cast<double>(count) / step) + 1);
-    size_t n = 0;
-    for (double at = 0; at < static_cast<double>(count); at += step, ++n) {
+    for (size_t n = 0;; ++n) {
+        const auto at = static_cast<size_t>(step * static_cast<double>(n));
+        if (at >= count)
+            break;
         if ((n & 0xffffu) == 0)
             job.check();
-        const Triangle& t = source_.triangles[static_cast<size_t>(at)];
+        const Triangle& t = source_.triangles[at];
         const glm::vec3 a = original(t.x);
         const glm::vec3 b = original(t.y);
         const glm::vec3 c = original(t.z);
