@@ -124,7 +124,7 @@ behind() {
     setsid nice -n 19 bash -c '
         echo 19 2>/dev/null >/proc/self/autogroup || true
         cmake --preset sanitize -DLODESTONE_TESTS=ON && ninja -C build/sanitize || exit 1
-        PYTHONPATH=tests timeout --kill-after=10 1500 /usr/bin/python3 tests/run_python.py \
+        PYTHONPATH=tests timeout --kill-after=10 2400 /usr/bin/python3 tests/run_python.py \
             --junit "$1/tidy.xml" tests/lint/test_tidy.py >"$1/tidy.log" 2>&1 || true
     ' behind "$logs" >"$logs/sanitize-build.log" 2>&1 &
     behind=$!
