@@ -14,7 +14,7 @@ using namespace lodestone::approximate;
 
 namespace {
 
-constexpr size_t kTrunk = 2 * 8 * 8;  // triangles of foliage::tree's stem
+constexpr size_t kTrunk = size_t{2} * 8 * 8;  // triangles of foliage::tree's stem
 
 double area_of(const Crowd& crowd, const std::vector<uint32_t>& order, size_t keep) {
     double sum = 0;
@@ -115,7 +115,8 @@ TEST(Crowd, LargestComeFirstWhereTheyDiffer) {
     for (int i = 0; i < 64; ++i) {
         Affine place;
         place.linear = glm::dmat3(i % 4 == 0 ? 2.5 : 1.0);
-        place.offset = {5.0 * (i % 8), 5.0 * (i / 8), 0};
+        const int row = i / 8;
+        place.offset = {5.0 * (i % 8), 5.0 * row, 0};
         append(mesh, shapes::quad(1, 1), place);
     }
     const Crowd crowd = crowd_of(mesh);
