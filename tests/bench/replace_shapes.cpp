@@ -128,8 +128,8 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         found["ours, by error"] = found["ours, by moment"] = found["oracle"] = only;
     }
     std::vector<size_t> targets;
-    for (double target = 0.8 * static_cast<double>(mesh.triangles.size()); target >= 4;
-         target *= 0.8) {
+    auto target = static_cast<double>(mesh.triangles.size());
+    while ((target *= 0.8) >= 4) {
         if (targets.empty() || static_cast<size_t>(target) < targets.back())
             targets.push_back(static_cast<size_t>(target));
     }
