@@ -165,11 +165,13 @@ class FileRun:
 
     def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
         requests = tuple(_filled_up(scene, picture) for picture in requests)
+        builds = self._builds(requests)
         request = extract_engine.Request(
             cameras=[(picture.camera, picture.size) for picture in requests],
             tick=self._tick,
             still=self._still,
-            with_poses=self._poses is None and self._builds(requests),
+            with_poses=self._poses is None and builds,
+            structured=builds,  # pictures of the originals ask for no groups
         )
         wall, cpu = time.monotonic(), time.process_time()
         try:
@@ -191,7 +193,7 @@ class FileRun:
             self.result["store"] = str(store)
             try:
                 built = {}
-                if self._builds(requests):
+                if builds:
                     part = self._build(model, store)
                     built = {"build": part} if self.job.frames else {}
                 made, used = [], set()

@@ -105,11 +105,12 @@ class _Run:
         layer = picture.layer_of(self.depsgraph)
         self._required()
         still = motion_file.read(self.store)
-        if self.settings.pixel_error > 0.0:
+        levels = self.settings.pixel_error > 0.0  # else neither they nor groups are asked for
+        if levels:
             self._read_poses(still)
         camera_object = self._required()  # as it is in this frame again
         frame = camera.Frame.of(self.scene.render)
-        extraction = scene.extract(self.depsgraph, self._tick, still)
+        extraction = scene.extract(self.depsgraph, self._tick, still, structured=levels)
         self.problems.extend(extraction.problems)
         self.users = extraction.users
         with extraction.model as model:

@@ -5,6 +5,7 @@ collections of them, and nothing is ever lost or moved."""
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import bpy
 
@@ -75,6 +76,18 @@ class AutoStructure(unittest.TestCase):
     def test_a_second_reading_finds_the_same_groups(self):
         first, second = ({g.uid for g in self.groups(self.extracted())} for _ in range(2))
         self.assertEqual(first, second)
+
+    def test_exporting_the_originals_of_many_objects_took_three_times_as_long_for_groups(self):
+        from lodestone.core.native import lodestone_native as native
+
+        self.scene.render.engine = "LODESTONE_POVRAY"
+        for pixel_error, wanted in ((0.0, 0), (1.0, 1)):
+            self.scene.lodestone.pixel_error_render = pixel_error
+            structure = native.Model.structure
+            with mock.patch.object(native.Model, "structure", autospec=True) as asked:
+                asked.side_effect = structure
+                bpy.ops.render.render()
+            self.assertEqual(asked.call_count, wanted, pixel_error)
 
     def test_makes_collections_of_what_stands_together(self):
         before = all_objects(self.yard)
