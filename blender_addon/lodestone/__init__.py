@@ -27,6 +27,7 @@ _MODULES = (
     "operators.clear_levels",
     "operators.select_object",
     "operators.linked_role",
+    "operators.copy_decisions",
     "operators.check_scene",
     "operators.problems",
     "panels",

@@ -6,6 +6,7 @@ from bpy.props import (
     CollectionProperty,
     EnumProperty,
     FloatProperty,
+    IntProperty,
     PointerProperty,
     StringProperty,
 )
@@ -16,6 +17,25 @@ ROLES = (
         "ENVIRONMENT",
         "Environment",
         "Wall, ground or sky: simplified, but never replaced by one shape",
+    ),
+)
+USES = (
+    ("AUTOMATIC", "Automatic", "The coarsest level that is good enough"),
+    (
+        "ORIGINAL",
+        "Always Original",
+        "At full detail wherever it is; what it is in is never drawn by one level for all",
+    ),
+    (
+        "LIMIT",
+        "Never Coarser Than",
+        "No level beyond this one; what it is in is never drawn by one level for all",
+    ),
+    (
+        "EXCLUDE",
+        "Exclude",
+        "At full detail wherever it is, and drawn apart from what it is in, whose levels are made "
+        "without it",
     ),
 )
 SCOPES = (
@@ -75,7 +95,7 @@ KEEP = (
 )
 
 
-def _role_changed(self, context):
+def _decided(self, context):
     self.id_data.update_tag()  # writing to a property group does not tag the depsgraph
 
 
@@ -161,7 +181,39 @@ class _Identified:
         description="What kind of thing this is",
         items=ROLES,
         default="ORDINARY",
-        update=_role_changed,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    use: EnumProperty(
+        name="Use",
+        description="Which of its levels pictures may use",
+        items=USES,
+        default="AUTOMATIC",
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    coarsest: IntProperty(
+        name="Coarsest Level",
+        description="The number of the coarsest level (LOD) that it is drawn with",
+        default=1,
+        min=1,
+        max=31,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    importance: FloatProperty(
+        name="Importance",
+        description="It and all that is in it are drawn so many times finer than Pixel Error asks "
+        "for: 2 as from half the distance. Importances of collections, instances and objects "
+        "multiply",
+        default=1.0,
+        min=1.0 / 64.0,
+        soft_min=0.25,
+        soft_max=4.0,
+        max=64.0,
+        precision=2,
+        step=10,
+        update=_decided,
         override={"LIBRARY_OVERRIDABLE"},
     )
 

@@ -172,7 +172,7 @@ class Panels(unittest.TestCase):
             if not name.startswith("LODESTONE_") or not hasattr(kind, "bl_rna"):
                 continue
             label = getattr(kind, "bl_label", "")
-            words = [word for word in label.split() if word not in {"of", "in", "the", "and"}]
+            words = [word for word in label.split() if word not in {"of", "in", "the", "and", "to"}]
             capital = all(word[0].isupper() or word[0] == "(" for word in words)
             self.assertTrue(capital or "(" in label, (name, label))
             texts = [getattr(kind, "bl_description", "") or ""]

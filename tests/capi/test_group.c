@@ -3,6 +3,8 @@
    placements that some rays do not see. */
 #include "cube.h"
 
+#include <math.h>
+
 enum { MANY = 200 };
 
 static void test_strands_become_tubes(void) {
@@ -150,6 +152,29 @@ static void test_grouping_keeps_every_occurrence(void) {
     lds_model_destroy(model);
 }
 
+static void test_decided_placements_keep_importance_and_limit(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_object pair;
+    EXPECT(lds_model_find_object(model, "pair", &pair) == LDS_OK);
+    EXPECT(lds_model_decide_placement(NULL, pair, 0, 2, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_decide_placement(model, cube, 0, 2, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_decide_placement(model, pair, 2, 2, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_decide_placement(model, pair, 0, 0, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_decide_placement(model, pair, 0, 65, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_decide_placement(model, pair, 0, NAN, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_placement found;
+    found.struct_size = sizeof found;
+    EXPECT(lds_model_child(model, pair, 0, &found) == LDS_OK);
+    EXPECT(found.importance == 1 && found.coarsest == LDS_ANY_LEVEL);
+    EXPECT(lds_model_decide_placement(model, pair, 0, 0.25, 3) == LDS_OK);
+    EXPECT(lds_model_child(model, pair, 0, &found) == LDS_OK);
+    EXPECT(found.importance == 0.25 && found.coarsest == 3);
+    EXPECT(lds_model_child(model, pair, 1, &found) == LDS_OK);
+    EXPECT(found.importance == 1 && found.coarsest == LDS_ANY_LEVEL);
+    lds_model_destroy(model);
+}
+
 static void test_hidden_placements_hide_all_below(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -272,6 +297,7 @@ int main(void) {
     test_equal_meshes_are_one_content();
     test_grouping_keeps_every_occurrence();
     test_structuring_keeps_every_occurrence();
+    test_decided_placements_keep_importance_and_limit();
     test_hidden_placements_hide_all_below();
     return failures == 0 ? 0 : 1;
 }

@@ -446,6 +446,13 @@ LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, 
    bits). Groups with something hidden in them are drawn by their children, never by stand-ins. */
 LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
                                             uint32_t ray_classes);
+/* What is decided about the placement at `position` of a group (those added count from 0, in order).
+   importance: it and all below it are drawn so many times finer, 1/64 to 64; 1: as elsewhere.
+   coarsest: the largest LOD number it is drawn with, LDS_ANY_LEVEL: any; groups around it are opened.
+   0: its original, and those of all below it. */
+#define LDS_ANY_LEVEL UINT32_MAX
+LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
+                                              double importance, uint32_t coarsest);
 /* Gives a group of more than most_children (8 or more; usual 64) groups of at most so many in their
    place, to any depth: neighbors together. Occurrences stay exactly where they are; something added
    later changes only the groups around it. Call it when the group is complete. out_added may be
@@ -528,7 +535,9 @@ typedef struct lds_placement {
     lds_object object;
     double transform[12]; /* the object's frame -> the group's */
     const char* name;
-    uint32_t hidden; /* from these ray classes (lds_ray_class bits) */
+    uint32_t hidden;   /* from these ray classes (lds_ray_class bits) */
+    uint32_t coarsest; /* as decided about it */
+    double importance;
 } lds_placement;
 /* position: below the summary's child_count. */
 LDS_API lds_status lds_model_child(const lds_model* model, lds_object group, size_t position,

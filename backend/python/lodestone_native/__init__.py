@@ -37,6 +37,7 @@ from .job import Job
 from .library import abi_version, library_path, rays_check, version
 from .measure import surface_inertia
 from .model import (
+    ANY_LEVEL,
     BuildOptions,
     MeasureOptions,
     Model,
@@ -57,6 +58,7 @@ from .structs import Object
 from .view import Camera, Light, View
 
 __all__ = [
+    "ANY_LEVEL",
     "AlphaMode",
     "Antialias",
     "BakeOp",

@@ -17,6 +17,7 @@ from .structs import Object, record, text_in
 from .view import Camera, Light, Vector
 
 
+ANY_LEVEL = 0xFFFFFFFF  # of decide_placement(): no limit
 IDENTITY_MAPPING = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
@@ -256,6 +257,14 @@ class Model(Handle):
             )
         )
 
+    def decide_placement(
+        self, group: Object, position: int, importance: float, coarsest: int = ANY_LEVEL
+    ) -> None:
+        """Of the child at `position`: how many times finer it is drawn than elsewhere, 1/64 to 64,
+        and the largest LOD number it is drawn with."""
+        decide = library().lds_model_decide_placement
+        check(decide(self.handle, group, position, importance, coarsest))
+
     def group_by_position(self, group: Object, most_children: int = 64) -> int:
         """Gives a group of more children groups of neighbors; returns how many were added."""
         added = ctypes.c_size_t()
@@ -339,10 +348,20 @@ class Model(Handle):
     def children(self, group: Object) -> Iterator[tuple[Object, Sequence[float], str, int]]:
         """Of a group, as add_placements() takes them."""
         for position in range(self.object_summary(group).child_count):
-            out = structs.Placement()
-            check(library().lds_model_child(self.handle, group, position, ctypes.byref(out)))
+            out = self._child(group, position)
             placed = Object(*out.object.key)
             yield placed, tuple(out.transform), record(out).name, out.hidden
+
+    def decided(self, group: Object) -> list[tuple[float, int]]:
+        """Importance and coarsest level of each child, as decide_placement() takes them."""
+        count = self.object_summary(group).child_count
+        found = (self._child(group, position) for position in range(count))
+        return [(child.importance, child.coarsest) for child in found]
+
+    def _child(self, group: Object, position: int) -> structs.Placement:
+        out = structs.Placement()
+        check(library().lds_model_child(self.handle, group, position, ctypes.byref(out)))
+        return out
 
     def representation(self, item: Object, lod: int) -> Any:
         """lod 0 is the finest."""

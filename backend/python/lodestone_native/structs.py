@@ -283,6 +283,8 @@ class Placement(Sized):
         ("transform", c_double * 12),
         ("name", c_char_p),
         ("hidden", c_uint32),
+        ("coarsest", c_uint32),
+        ("importance", c_double),
     ]
 
 

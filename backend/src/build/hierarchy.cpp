@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -191,6 +192,8 @@ public:
             if (object.representations.empty())
                 continue;
             ++report.objects;
+            if (object.group() && std::isinf(object.demand))
+                continue;  // always opened
             Hash wanted = build_hash_of(object, settings);
             std::optional<Bind> bind;
             if (deforming[index] != 0) {

@@ -140,6 +140,21 @@ lds_status lds_model_hide_placement(lds_model* model, lds_object group, uint32_t
     });
 }
 
+lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
+                                      double importance, uint32_t coarsest) {
+    return guard([&] {
+        require(model, "model");
+        if (!(importance >= 1 / kMostImportance && importance <= kMostImportance))
+            fail(Status::InvalidArgument, "an importance of ", importance, "; 1/64 to 64 expected");
+        std::vector<Placement>& placements = group_at(*model, group).placements;
+        if (position >= placements.size())
+            fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
+        placements[position].importance = importance;
+        placements[position].coarsest = coarsest;
+        model->summarized = false;
+    });
+}
+
 lds_status lds_model_group_by_position(lds_model* model, lds_object group, uint32_t most_children,
                                        size_t* out_added) {
     return guard([&] {
@@ -210,6 +225,8 @@ lds_status lds_model_child(const lds_model* model, lds_object group, size_t posi
         placement.transform.to_rows(out.transform);
         out.name = placement.name.c_str();
         out.hidden = placement.hidden;
+        out.coarsest = placement.coarsest;
+        out.importance = placement.importance;
         hand_out(out_placement, out, "out_placement");
     });
 }

@@ -123,7 +123,8 @@ Sorted sorted_children(const Model& model, ObjectIndex group, const std::vector<
     for (uint32_t at = 0; at < placements.size(); ++at) {
         const Traits& child = traits[placements[at].object];
         const Item item = item_of(child, placements[at]);
-        if (child.never || placements[at].hidden != 0 || !finite(item.box)) {
+        if (child.never || placements[at].hidden != 0 || placements[at].decided() ||
+            !finite(item.box)) {
             continue;
         }
         const size_t kind = child.environment ? 1 : 0;

@@ -2,6 +2,7 @@
 #include "model/model.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lodestone {
 namespace {
@@ -127,7 +128,25 @@ void summarize(Representation& representation, const Model& model, std::optional
     summary.hash = hasher.result();
 }
 
+void set_demands(Model& model, const std::vector<ObjectIndex>& order) {
+    for (const ObjectIndex index : order) {
+        Object& object = model.objects[index];
+        object.demand = 1;
+        if (!object.group() || object.representations[0].assembly().placements.empty())
+            continue;
+        object.demand = 0;
+        for (const Placement& placement : object.representations[0].assembly().placements) {
+            const double demand =
+                placement.coarsest == kAnyLevel
+                    ? placement.importance * model.objects[placement.object].demand
+                    : std::numeric_limits<double>::infinity();
+            object.demand = std::max(object.demand, demand);
+        }
+    }
+}
+
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
+    set_demands(model, order);
     for (const ObjectIndex index : order) {
         Object& object = model.objects[index];
         if (object.representations.empty())

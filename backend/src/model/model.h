@@ -34,7 +34,10 @@ std::vector<uint8_t> with_deforming(const Model& model);
 /// for all of it would be seen by rays that must not see a part. Such a group has none.
 std::vector<uint8_t> with_hidden(const Model& model);
 
-/// Fills summaries of every assembly (bound, cost, hash) and source hashes from its children.
+/// Sets what every object's demand is from what is decided about the placements below it.
+void set_demands(Model& model, const std::vector<ObjectIndex>& order);
+
+/// Fills summaries of every assembly (bound, cost, hash), demands and source hashes from its children.
 /// `order` is bottom_up's.
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
 

@@ -26,9 +26,13 @@ struct Object {
     // ever shows a level of another frame.
     bool deforms = false;
     std::shared_ptr<const Pose> pose;  // of something that deforms: what levels follow; may be null
-    Hash source_hash = 0;              // of the finest representation and of all below it
-    Hash build_hash = 0;  // of the source and settings its stand-ins were made from; 0 = none
-    Hash bind_hash = 0;   // of the poses and settings its levels were collapsed from; 0 = none
+    /// Of all that is below it, how important what is most important there is beside the object
+    /// itself; infinite where something must not be drawn coarser than some level. See
+    /// set_demands.
+    double demand = 1;
+    Hash source_hash = 0;  // of the finest representation and of all below it
+    Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none
+    Hash bind_hash = 0;    // of the poses and settings its levels were collapsed from; 0 = none
     std::optional<Attributes> attributes;
     /// Index = LOD number: 0 is the finest, errors rise strictly. Only [0] may be an assembly.
     std::vector<Representation> representations;

@@ -21,11 +21,23 @@ inline constexpr RayMask kShadowRays = 4;
 inline constexpr RayMask kRadiosityRays = 8;
 inline constexpr RayMask kAllRays = 15;
 
+/// No limit on how coarse something is drawn.
+inline constexpr uint32_t kAnyLevel = ~uint32_t{0};
+/// Importances are kept within 1 / kMostImportance ... kMostImportance.
+inline constexpr double kMostImportance = 64;
+
 struct Placement {
     ObjectIndex object = kNoObject;
-    Affine transform;    // the object's frame -> the group's frame
-    std::string name;    // the user's name for this use, e.g. "Chair.003"
-    RayMask hidden = 0;  // ray classes that do not see it, nor anything below it
+    Affine transform;       // the object's frame -> the group's frame
+    std::string name;       // the user's name for this use, e.g. "Chair.003"
+    RayMask hidden = 0;     // ray classes that do not see it, nor anything below it
+    double importance = 1;  // it and all below it are drawn this many times finer (5.5.5)
+    /// The largest LOD number it is drawn with: groups around it are opened. 0: the original, also
+    /// of all below it.
+    uint32_t coarsest = kAnyLevel;
+
+    /// Whether it is drawn otherwise than its object is elsewhere.
+    bool decided() const { return importance != 1 || coarsest != kAnyLevel; }
 };
 
 }  // namespace lodestone

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/criterion.h"
 
+#include "model/placement.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace lodestone::quality {
 
@@ -16,8 +19,16 @@ double error_on_screen(const View& view, double error, double stretch, double z)
     return pixel > 0 ? error * stretch / pixel : 0;
 }
 
-bool good_enough(const View& view, double error, double stretch, double z) {
-    return error * stretch <= view.pixel_error * pixel_size(view, z);
+double total_refinement(double factors) {
+    if (std::isinf(factors))
+        return factors;
+    return std::clamp(factors, 1 / kMostImportance, kMostImportance);
+}
+
+bool good_enough(const View& view, double error, double stretch, double z, double refine) {
+    if (std::isinf(refine))
+        return false;
+    return error * stretch * refine <= view.pixel_error * pixel_size(view, z);
 }
 
 }  // namespace lodestone::quality

@@ -14,7 +14,10 @@ double pixel_size(const View& view, double z);
 /// by `stretch`, its bound z metres from the eye.
 double error_on_screen(const View& view, double error, double stretch, double z);
 
-/// error * stretch <= T * p(z); T = 0 asks for error 0.
-bool good_enough(const View& view, double error, double stretch, double z);
+/// All that refines and coarsens together, kept within 1/64 ... 64; infinite stays so.
+double total_refinement(double factors);
+
+/// error * stretch * refine <= T * p(z); T = 0 asks for error 0.
+bool good_enough(const View& view, double error, double stretch, double z, double refine = 1);
 
 }  // namespace lodestone::quality

@@ -3,6 +3,7 @@
 
 #include "quality/criterion.h"
 
+#include <algorithm>
 #include <set>
 
 namespace lodestone::quality {
@@ -18,15 +19,18 @@ struct Pick {
 
 /// The cheapest good representation that the view can draw, or the finest drawable one, or none.
 /// Representations are ordered finest first with strictly rising errors and falling costs.
-Pick pick(const Object& object, const View& view, double enlarge, double z) {
+Pick pick(const Object& object, const View& view, const Node& node, double enlarge, double z) {
     const Representation* finest = nullptr;
-    for (size_t i = object.representations.size(); i-- > 0;) {
+    const double refine = total_refinement(node.importance * object.demand);
+    const size_t levels =
+        std::min<size_t>(object.representations.size(), node.coarsest + size_t{1});
+    for (size_t i = levels; i-- > 0;) {
         const Representation& candidate = object.representations[i];
         if (candidate.summary.kind != Kind::Assembly &&
             (view.kinds & mask_of(candidate.summary.kind)) == 0)
             continue;
         finest = &candidate;
-        if (good_enough(view, candidate.summary.error, enlarge, z))
+        if (good_enough(view, candidate.summary.error, enlarge, z, refine))
             return {finest, true};
     }
     return {finest, false};
@@ -67,7 +71,7 @@ private:
             const double enlarge = stretch(node.world);
             const double z =
                 distance(transformed(object.bound(), node.world), view_.camera.position);
-            const Pick picked = pick(object, view_, enlarge, z);
+            const Pick picked = pick(object, view_, node, enlarge, z);
             if (picked.choice == nullptr)
                 continue;
             const Summary& summary = picked.choice->summary;
@@ -92,6 +96,8 @@ private:
                 child.placement = static_cast<uint32_t>(i);
                 child.world = node.world * placements[i].transform;
                 child.hidden = static_cast<RayMask>(node.hidden | placements[i].hidden);
+                child.importance = node.importance * placements[i].importance;
+                child.coarsest = node.coarsest == 0 ? 0 : placements[i].coarsest;
                 if (child.hidden != kAllRays)  // else nothing would show it
                     stack.push_back(child);
             }

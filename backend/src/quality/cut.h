@@ -21,8 +21,10 @@ struct Node {
     uint32_t lod = 0;             // the chosen representation's LOD number; 0 of an opened group
     Kind kind = Kind::Assembly;   // of the choice
     bool opened = false;
-    double error_px = 0;  // on screen; 0 when opened
-    RayMask hidden = 0;   // ray classes that do not see it: its placements' together
+    double error_px = 0;    // on screen; 0 when opened
+    double importance = 1;  // its placements' together
+    uint32_t coarsest = kAnyLevel;
+    RayMask hidden = 0;  // ray classes that do not see it: its placements' together
     Affine world;
 };
 
@@ -39,7 +41,8 @@ struct Cut {
 
 /// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. A group
 /// that is good enough is drawn by its stand-in, unless what its children would be drawn by costs
-/// less (in bytes, those of shared representations counted each time). Throws
+/// less (in bytes, those of shared representations counted each time); it must be good enough for the
+/// most important thing below it. Throws
 /// Error(InvalidArgument) for a view without size or a model without root.
 /// cost: one visit per opened group and chosen occurrence, and at most so many more as primitives
 /// would cost what the chosen stand-ins do. Thread-safe on a const model.

@@ -154,6 +154,10 @@ Json out(const Representation& r) {
                                   {"name", placement.name}});
             if (placement.hidden != 0)
                 placements.back()["hidden"] = placement.hidden;
+            if (placement.importance != 1)
+                placements.back()["importance"] = placement.importance;
+            if (placement.coarsest != kAnyLevel)
+                placements.back()["coarsest"] = placement.coarsest;
         }
         json["placements"] = std::move(placements);
     }

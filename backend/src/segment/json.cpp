@@ -177,6 +177,15 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
                 fail(Status::BadFile, "'", placement.name, "' is hidden from ray classes ", hidden);
             placement.hidden = static_cast<RayMask>(hidden);
         }
+        if (one.contains("importance")) {
+            placement.importance = number(one, "importance");
+            if (!(placement.importance >= 1 / kMostImportance &&
+                  placement.importance <= kMostImportance))
+                fail(Status::BadFile, "'", placement.name, "' has importance ",
+                     placement.importance);
+        }
+        if (one.contains("coarsest"))
+            placement.coarsest = one.at("coarsest").get<uint32_t>();
         out->placements.push_back(std::move(placement));
     }
     return out;
@@ -341,7 +350,7 @@ Model model_of(const Json& json) {
         if (model.root >= model.objects.size())
             fail(Status::BadFile, "the root is object ", model.root, " of ", objects.size());
     }
-    bottom_up(model);  // refuses cycles and a wrong root
+    set_demands(model, bottom_up(model));  // refuses cycles and a wrong root
     return model;
 }
 

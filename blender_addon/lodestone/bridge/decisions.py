@@ -10,6 +10,7 @@ from ..core import identity
 from . import ids
 from .ids import name_of
 
+_DECISIONS = ("role", "use", "coarsest", "importance")
 _INHERITED = {"rna_type", "name"}
 
 Thing = tuple[str, Any]  # "object" or "collection", the datablock
@@ -105,16 +106,28 @@ def decided(item: Any) -> bool:
 
 
 def forget(item: Any, decisions: bool) -> bool:
-    """Removes the uid, with `decisions` the role too. True when something was there."""
+    """Removes the uid, with `decisions` these too. True when something was there."""
     settings = ids.settings_of(item)
     if settings is None:
         return False
-    names = ("uid", "role") if decisions else ("uid",)
+    names = ("uid", *_DECISIONS) if decisions else ("uid",)
     found = [name for name in names if settings.is_property_set(name)]
     for name in found:
         settings.property_unset(name)
     drop_empty(item)
     return bool(found)
+
+
+def copy(source: Any, target: Any) -> None:
+    """What is decided about an object or collection; what is not is taken back."""
+    settings = ids.settings_of(source)
+    for name in _DECISIONS:
+        if settings is not None and settings.is_property_set(name):
+            setattr(target.lodestone, name, getattr(settings, name))
+        elif ids.settings_of(target) is not None:
+            target.lodestone.property_unset(name)
+    target.update_tag()
+    drop_empty(target)
 
 
 def drop_empty(item: Any) -> None:

@@ -5,7 +5,7 @@ from array import array
 from collections import defaultdict
 from dataclasses import dataclass, field
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..core import identity
 from . import ids
@@ -101,13 +101,24 @@ def environment_objects(branch: Branch) -> set[Any]:
 def _same_but_for_rounding(a: list[Emitted], b: list[Emitted]) -> bool:
     if len(a) != len(b):
         return False
-    for (leaf, place, hidden), (other, other_place, other_hidden) in zip(a, b):
-        if leaf is not other or hidden != other_hidden:
+    for (leaf, place, *seen), (other, other_place, *other_seen) in zip(a, b):
+        if leaf is not other or seen != other_seen:
             return False
         limit = ROUNDING * max(1.0, *map(abs, place))
         if any(abs(x - y) > limit for x, y in zip(place, other_place)):
             return False
     return True
+
+
+class Aside(NamedTuple):
+    """What is in no collection's group: it changes in an animation, or the designer wants it in no
+    stand-in."""
+
+    changing: Placements
+    apart: Placements
+
+
+_ASIDE_NAMES = {"changing": "in motion", "apart": "excluded"}
 
 
 class Groups:
@@ -129,32 +140,36 @@ class Groups:
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
         rest = dict(context.entries)
-        changing = Placements()
-        placements, anew = self._members(context, branch, rest, changing)
+        aside = Aside(Placements(), Placements())
+        placements, anew = self._members(context, branch, rest, aside)
         for entry in rest.values():  # shown, but in no branch: never lose it
             extra = self._entry(entry)
             if extra:
                 self.unplaced.append(entry.name)
                 placements.extend(extra)
-        if changing:
-            uid = identity.stable_id(ids.scene_uid(branch.name), "changing")
-            name = f"{branch.name} in motion"
-            placements.add(self._intern(uid, name, False, changing, True), IDENTITY, name)
+        for what, lifted in aside._asdict().items():
+            if lifted:
+                uid = identity.stable_id(ids.scene_uid(branch.name), what)
+                name = f"{branch.name} {_ASIDE_NAMES[what]}"
+                group = self._intern(uid, name, False, lifted, what == "changing")
+                placements.add(group, IDENTITY, name)
         return self._group(branch, placements, anew)
 
     def _members(
-        self, context: Context, branch: Branch, rest: dict[Any, Entry], changing: Placements
+        self, context: Context, branch: Branch, rest: dict[Any, Entry], aside: "Aside"
     ) -> tuple[Placements, bool]:
         """What of a context is in a branch, and whether it changes in an animation. What does in
-        the scene itself goes to `changing`: a group of things that rest keeps its levels in every
-        frame. An instanced collection is drawn as it is while it changes."""
+        the scene itself goes aside: a group of things that rest keeps its levels in every frame.
+        An instanced collection is drawn as it is while it changes."""
         placements = Placements()
-        anew = False
+        anew, in_scene = False, context.collection is None
         self._above.append(branch)
         for child in branch.children:
-            group = self._group(child, *self._members(context, child, rest, changing))
+            group = self._group(child, *self._members(context, child, rest, aside))
             if group is not None:
-                placements.add(group, IDENTITY, child.name)
+                decision = ids.decision_of(child.collection)
+                into = aside.apart if decision.apart and in_scene else placements
+                into.add(group, IDENTITY, child.name, 0, decision)
         for original in branch.objects:
             entry = rest.pop(original, None)
             if entry is None:
@@ -165,8 +180,8 @@ class Groups:
                 self.parts[entry.key] = [item]
                 continue
             made, changes = self._entry(entry), self._changes(entry)
-            if changes and context.collection is None:
-                changing.extend(made)
+            if in_scene and (changes or entry.decision.apart):
+                (aside.changing if changes else aside.apart).extend(made)
                 for above in self._above:
                     if above.collection is not None:
                         self.parts[ids.key_of("collection", above.collection)] += made.objects
@@ -184,12 +199,12 @@ class Groups:
         return bool(entry.emitted or entry.hair) and motion.emits_anew(item)
 
     def _entry(self, entry: Entry) -> Placements:
-        placements = Placements()
+        placements, own = Placements(), (entry.hidden, entry.decision)
         if entry.leaf is not None:
-            placements.add(entry.leaf.object, entry.place, entry.name, entry.hidden)
+            placements.add(entry.leaf.object, entry.place, entry.name, *own)
         if entry.hair is not None:
             name = f"{entry.name} {HAIR}"
-            placements.add(entry.hair.object, entry.place, name, entry.hidden)
+            placements.add(entry.hair.object, entry.place, name, *own)
         if entry.content is not None:
             collection = entry.content.collection
             pointer = collection.as_pointer()
@@ -198,10 +213,11 @@ class Groups:
             group = self.build(entry.content, self._branches[pointer])
             if group is not None:
                 place = rows(entry.object.matrix_world @ offset(collection))
-                placements.add(group, place, entry.name, entry.hidden)
+                decision = ids.decision_of(collection).inside(entry.decision)
+                placements.add(group, place, entry.name, entry.hidden, decision)
         if entry.emitted:
             name = f"{entry.name} instances"
-            placements.add(self._emitter(entry), IDENTITY, name, entry.hidden)
+            placements.add(self._emitter(entry), IDENTITY, name, *own)
         self.parts[entry.key] += placements.objects
         return placements
 
@@ -214,8 +230,8 @@ class Groups:
                 return group
         uid = identity.stable_id(ids.uid_of("object", entry.object), "instances")
         children = Placements()
-        for leaf, place, hidden in entry.emitted:
-            children.add(leaf.object, place, leaf.data, hidden)
+        for leaf, place, hidden, decision in entry.emitted:
+            children.add(leaf.object, place, leaf.data, hidden, decision)
         environment = self._roles.is_environment(entry.object)
         anew = self._motion.emits_anew(entry.object)
         group = self._intern(uid, f"{entry.name} instances", environment, children, anew)
@@ -258,5 +274,9 @@ class Groups:
                 placements.names,
                 placements.hidden,
             )
+            for position, decision in placements.decisions.items():
+                self._model.decide_placement(
+                    group, position, decision.importance, decision.coarsest
+                )
             self._made[key] = group
         return group

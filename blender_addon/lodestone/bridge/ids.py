@@ -6,6 +6,7 @@ from typing import Any
 import bpy
 
 from ..core import identity
+from ..core.decision import UNDECIDED, Decision, decision
 from ..core.native import lodestone_native as native
 from ..core.text import readable
 
@@ -84,6 +85,14 @@ def named_id_of(material: Any | None) -> str:
 def is_environment(datablock: Any) -> bool:
     settings = settings_of(datablock)
     return settings is not None and settings.role == "ENVIRONMENT"
+
+
+def decision_of(datablock: Any) -> Decision:
+    """About how finely an object or collection is drawn."""
+    settings = settings_of(datablock)
+    if settings is None:
+        return UNDECIDED
+    return decision(settings.use, settings.coarsest, settings.importance)
 
 
 class Roles:

@@ -14,6 +14,7 @@ from typing import Any
 
 from mathutils import Matrix
 
+from ..core.decision import UNDECIDED, Decision
 from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
 from .glow import Glows
@@ -26,7 +27,7 @@ from .users import Users
 from .visibility import RayClass, Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
-Emitted = tuple[Leaf, Rows, int]  # what, where, hidden from which ray classes
+Emitted = tuple[Leaf, Rows, int, Decision]  # what, where, hidden from which ray classes
 _ORIGINAL = attrgetter("original")
 
 
@@ -39,6 +40,7 @@ class Entry:
     hair: Leaf | None = None  # of its particle systems
     content: "Context | None" = None  # of the collection it instances
     emitted: list[Emitted] | tuple = ()
+    decision = UNDECIDED
     pending = False  # shown, but no mesh: converted when nothing else shows it
 
     def __init__(
@@ -100,6 +102,7 @@ class Instances:
         self._plain: dict[tuple, Leaf] = {}  # of plain objects, by what they are made of
         self._one_slot: set[Any] = set()  # meshes
         self._keys: dict[Any, ids.Key] = {}  # by original
+        self._decisions: dict[Any, Decision] = {}  # of emitted objects, by original
 
     def walk(self, listed: Listed, environment: set[Any]) -> None:
         """`environment`: originals of the objects that an environment collection holds."""
@@ -265,10 +268,13 @@ class Instances:
         entry: Entry,
         hidden: int = 0,
     ) -> None:
-        hidden |= 0 if _is_self(entry, owner) else self._seen(owner)[0]
+        own = UNDECIDED
+        if not _is_self(entry, owner):
+            hidden |= self._seen(owner)[0]
+            own = self._decision(owner)
         if not entry.emitted:
             entry.emitted = []
-        entry.emitted.append((leaf, self._relative(context, matrix), hidden))
+        entry.emitted.append((leaf, self._relative(context, matrix), hidden, own))
 
     def _look(self, context: Context, entry: Entry, owner: Any) -> Look:
         original = owner.original
@@ -289,6 +295,12 @@ class Instances:
             seen = self._visibility
             self._hidden[original] = (seen.hidden(owner, False), seen.holdout(owner, False))
         return self._hidden[original]
+
+    def _decision(self, owner: Any) -> Decision:
+        original = owner.original
+        if original not in self._decisions:
+            self._decisions[original] = ids.decision_of(owner)
+        return self._decisions[original]
 
     def _key(self, item: Any) -> ids.Key:
         original = item.original
@@ -328,6 +340,7 @@ class Instances:
             in_scene = context.collection is None
             entry = Entry(item, self._key(item), rows(item.matrix_world))
             entry.hidden = self._visibility.hidden(item, in_scene)
+            entry.decision = ids.decision_of(item)
             entry.holdout = context.holdout or self._visibility.holdout(item, in_scene)
             if entry.holdout and not context.holdout:
                 self._visibility.name_holdout(entry.name)

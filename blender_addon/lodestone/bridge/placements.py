@@ -4,6 +4,7 @@
 from array import array
 from typing import Any
 
+from ..core.decision import UNDECIDED, Decision
 from .listed import Rows
 
 
@@ -15,17 +16,29 @@ class Placements:
         self.transforms = array("f")  # 12 each, as Rows
         self.names: list[str] = []
         self.hidden: list[int] = []  # bits of the ray classes that do not see it
+        self.decisions: dict[int, Decision] = {}  # by position, of those that have one
 
     def __len__(self) -> int:
         return len(self.objects)
 
-    def add(self, item: Any, place: Rows, name: str, hidden: int = 0) -> None:
+    def add(
+        self,
+        item: Any,
+        place: Rows,
+        name: str,
+        hidden: int = 0,
+        decision: Decision = UNDECIDED,
+    ) -> None:
+        if decision is not UNDECIDED:
+            self.decisions[len(self.objects)] = decision
         self.objects.append(item)
         self.transforms.extend(place)
         self.names.append(name)
         self.hidden.append(hidden)
 
     def extend(self, others: "Placements") -> None:
+        before = len(self.objects)
+        self.decisions.update((before + at, found) for at, found in others.decisions.items())
         self.objects += others.objects
         self.transforms += others.transforms
         self.names += others.names
@@ -35,4 +48,6 @@ class Placements:
     def key(self) -> tuple:
         """Equal for placements that are equal in everything."""
         objects = b"".join(map(bytes, self.objects))
-        return (objects, self.transforms.tobytes(), tuple(self.names), tuple(self.hidden))
+        decisions = tuple(sorted(self.decisions.items()))
+        columns = (self.transforms.tobytes(), tuple(self.names), tuple(self.hidden), decisions)
+        return (objects, *columns)

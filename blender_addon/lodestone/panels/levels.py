@@ -76,6 +76,20 @@ class LODESTONE_RENDER_PT_levels_view(EnginePanel, Panel):
             values.label(text=f"{render.without_levels:,} (Update Levels makes them)")
 
 
+def _draw_decisions(layout, context, item):
+    settings = item.lodestone
+    column = layout.column()
+    column.prop(settings, "use")
+    if settings.use == "LIMIT":
+        column.prop(settings, "coarsest", text="LOD")
+    sub = column.column()
+    sub.active = settings.use in {"AUTOMATIC", "LIMIT"}
+    sub.prop(settings, "importance")
+    column.prop(settings, "role")
+    if len(context.selected_objects) > 1 and item == context.object:
+        layout.operator("lodestone.copy_decisions", icon="COPYDOWN")
+
+
 def draw_levels(layout, context, item):
     """The role and the levels of an object or a collection; the same in both places."""
     layout.use_property_split = True
@@ -87,7 +101,7 @@ def draw_levels(layout, context, item):
         shown = "As in Library" if decided is None else decided.title()
         layout.operator_menu_enum("lodestone.linked_role", "role", text=f"Role Here: {shown}")
     else:
-        layout.column().prop(item.lodestone, "role")
+        _draw_decisions(layout, context, item)
     store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
     if store.problem:
         layout.label(text=f"Levels cannot be read: {store.problem}", icon="ERROR")

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the designer decided about how finely one placement is drawn."""
+
+from typing import NamedTuple
+
+ANY_LEVEL = 0xFFFFFFFF
+_MOST_IMPORTANCE = 64.0
+
+
+class Decision(NamedTuple):
+    """`coarsest`: the largest LOD number that it may be drawn with; 0: its original, and those of
+    all in it. `apart`: it is in no group's stand-in."""
+
+    importance: float = 1.0
+    coarsest: int = ANY_LEVEL
+    apart: bool = False
+
+    def inside(self, outer: "Decision") -> "Decision":
+        """Both at once, of one placement: what is decided about a collection and about what
+        instances it."""
+        importance = self.importance * outer.importance
+        made = Decision(
+            min(max(importance, 1.0 / _MOST_IMPORTANCE), _MOST_IMPORTANCE),
+            min(self.coarsest, outer.coarsest),
+            self.apart or outer.apart,
+        )
+        return UNDECIDED if made == UNDECIDED else made
+
+
+UNDECIDED = Decision()
+
+
+def decision(use: str, coarsest: int, importance: float) -> Decision:
+    """Of the settings of an object or collection, as properties.py names them. UNDECIDED itself
+    where they ask for nothing."""
+    limits = {"ORIGINAL": 0, "EXCLUDE": 0, "LIMIT": coarsest}
+    importance = min(max(importance, 1.0 / _MOST_IMPORTANCE), _MOST_IMPORTANCE)
+    made = Decision(importance, limits.get(use, ANY_LEVEL), use == "EXCLUDE")
+    return UNDECIDED if made == UNDECIDED else made

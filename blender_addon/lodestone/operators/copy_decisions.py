@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Gives the selected objects what was decided about the active one."""
+
+import bpy
+
+from ..bridge import decisions
+
+
+class LODESTONE_OT_copy_decisions(bpy.types.Operator):
+    bl_idname = "lodestone.copy_decisions"
+    bl_label = "Copy to Selected"
+    bl_description = "Give the other selected objects this one's Use, Importance and Role"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.object is None or len(context.selected_objects) < 2:
+            cls.poll_message_set("Select other objects too")
+            return False
+        return True
+
+    def execute(self, context):
+        linked = 0
+        for item in context.selected_objects:
+            if item.library is not None:
+                linked += 1
+            elif item != context.object:
+                decisions.copy(context.object, item)
+        if linked:
+            self.report({"WARNING"}, f"{linked} linked objects keep what their library decides")
+        return {"FINISHED"}
+
+
+_CLASSES = (LODESTONE_OT_copy_decisions,)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)
