@@ -63,3 +63,25 @@ TEST(Maths, MergedBoundContainsBoth) {
     EXPECT_GE(both.radius + 1e-9, glm::length(glm::dvec3(101, 1, 1) - both.center));
     EXPECT_EQ(merged(Bound{}, a).radius, a.radius);
 }
+
+TEST(Maths, TransformedBoxIsThatOfItsEightCornersToTheLastBit) {
+    const glm::vec3 points[] = {{-3.1f, 0.7f, -0.01f}, {1.9f, 2.3f, 57.0f}};
+    const Bound bound = bound_of(points);
+    for (int i = 0; i < 50; ++i) {
+        Affine skewed = turned(0.37 * i, glm::normalize(glm::dvec3(1, 0.1 * i, -2)));
+        skewed.linear[0] *= 1 + i;
+        skewed.linear[1] += 0.3 * skewed.linear[2];
+        skewed.linear[2] *= i % 2 == 0 ? -1 : 1e-3;
+        skewed.offset = {1e3 * i, -7.0 / 3, 1e-5};
+        Box3 corners;
+        for (int corner = 0; corner < 8; ++corner)
+            corners.add(skewed({(corner & 1) != 0 ? bound.box.high.x : bound.box.low.x,
+                                (corner & 2) != 0 ? bound.box.high.y : bound.box.low.y,
+                                (corner & 4) != 0 ? bound.box.high.z : bound.box.low.z}));
+        const Bound moved = transformed(bound, skewed);
+        EXPECT_EQ(moved.box.low, corners.low) << i;
+        EXPECT_EQ(moved.box.high, corners.high) << i;
+        EXPECT_EQ(moved.radius, bound.radius * stretch(skewed));
+    }
+    EXPECT_TRUE(transformed(Bound{}, turned(1, {0, 0, 1})).empty());
+}

@@ -32,8 +32,21 @@ bool Affine::finite() const {
     return std::all_of(rows, rows + 12, [](double value) { return std::isfinite(value); });
 }
 
+namespace {
+
+/// Whether a symmetric matrix is diagonal but for rounding.
+bool diagonal(const glm::dmat3& a) {
+    const double off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
+    const double on = a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2];
+    return off <= 1e-32 * on || off == 0;
+}
+
+}  // namespace
+
 double stretch(const Affine& transform) {
     const glm::dmat3 square = glm::transpose(transform.linear) * transform.linear;
+    if (diagonal(square))  // turned, mirrored, scaled along its own axes: most are
+        return std::sqrt(std::max({square[0][0], square[1][1], square[2][2]}));
     return std::sqrt(std::max(0.0, eigen_symmetric(square).values.x));
 }
 
@@ -42,9 +55,7 @@ Eigen eigen_symmetric(const glm::dmat3& matrix) {
     glm::dmat3 a = matrix;
     glm::dmat3 axes(1.0);
     for (int sweep = 0; sweep < 32; ++sweep) {
-        const double off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
-        const double diagonal = a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2];
-        if (off <= 1e-32 * diagonal || off == 0)
+        if (diagonal(a))
             break;
         for (int p = 0; p < 2; ++p) {
             for (int q = p + 1; q < 3; ++q) {
@@ -109,17 +120,26 @@ Bound merged(const Bound& a, const Bound& b) {
 }
 
 Bound transformed(const Bound& bound, const Affine& transform) {
+    return transformed(bound, transform, stretch(transform));
+}
+
+Bound transformed(const Bound& bound, const Affine& transform, double stretch) {
     if (bound.empty())
         return bound;
     Bound out;
     out.center = transform(bound.center);
-    out.radius = bound.radius * stretch(transform);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 point((corner & 1) ? bound.box.high.x : bound.box.low.x,
-                               (corner & 2) ? bound.box.high.y : bound.box.low.y,
-                               (corner & 4) ? bound.box.high.z : bound.box.low.z);
-        out.box.add(transform(point));
-    }
+    out.radius = bound.radius * stretch;
+    // Axis by axis, in the order in which a point is transformed: to the last bit the box of the
+    // eight corners.
+    const glm::dmat3& m = transform.linear;
+    const auto sum = [&](auto pick) {
+        const glm::dvec3 x = pick(m[0] * bound.box.low.x, m[0] * bound.box.high.x);
+        const glm::dvec3 y = pick(m[1] * bound.box.low.y, m[1] * bound.box.high.y);
+        const glm::dvec3 z = pick(m[2] * bound.box.low.z, m[2] * bound.box.high.z);
+        return ((x + y) + z) + transform.offset;
+    };
+    out.box.low = sum([](const glm::dvec3& a, const glm::dvec3& b) { return glm::min(a, b); });
+    out.box.high = sum([](const glm::dvec3& a, const glm::dvec3& b) { return glm::max(a, b); });
     return out;
 }
 

@@ -70,6 +70,8 @@ Bound bound_of(std::span<const glm::vec3> points);
 Bound merged(const Bound& a, const Bound& b);
 /// Bound of the transformed thing (conservative; the box is the box of the transformed corners).
 Bound transformed(const Bound& bound, const Affine& transform);
+/// The same where the transform's stretch is known.
+Bound transformed(const Bound& bound, const Affine& transform, double stretch);
 /// Distance from a point to the bound: the larger of sphere and box distance, 0 inside.
 double distance(const Bound& bound, const glm::dvec3& point);
 

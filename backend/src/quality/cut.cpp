@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/cut.h"
 
+#include "base/hash_set.h"
 #include "quality/criterion.h"
 
 #include <algorithm>
-#include <set>
+#include <array>
 
 namespace lodestone::quality {
 namespace {
 
 // Nothing that is drawn costs less than this: a primitive, placed once.
 constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
+
+constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
 
 struct Pick {
     const Representation* choice = nullptr;  // nothing can be drawn
@@ -52,7 +55,8 @@ public:
 
     Cut run(ObjectIndex root) {
         visit(root);
-        close_dear();
+        if (close_dear())
+            drop_unused();
         return total();
     }
 
@@ -70,7 +74,7 @@ private:
                 continue;
             const double enlarge = stretch(node.world);
             const double z =
-                distance(transformed(object.bound(), node.world), view_.camera.position);
+                distance(transformed(object.bound(), node.world, enlarge), view_.camera.position);
             const Pick picked = pick(object, view_, node, enlarge, z);
             if (picked.choice == nullptr)
                 continue;
@@ -104,8 +108,10 @@ private:
         }
     }
 
-    /// Of everything entered, keeps the stand-in or what is below, whichever costs less.
-    void close_dear() {
+    /// Of everything entered, keeps the stand-in or what is below, whichever costs less. True when
+    /// something was entered in vain.
+    bool close_dear() {
+        bool vain = false;
         std::vector<uint64_t> below(nodes_.size(), 0);
         for (size_t i = nodes_.size(); i-- > 0;) {  // children before parents
             Node& node = nodes_[i];
@@ -119,6 +125,7 @@ private:
                     node.kind = Kind::Assembly;
                     node.error_px = 0;
                 } else {
+                    vain = vain || entered_[i] != 0;
                     entered_[i] = 0;
                     bytes = own;
                 }
@@ -126,6 +133,7 @@ private:
             if (node.parent != kNoParent)
                 below[node.parent] += bytes;
         }
+        return vain;
     }
 
     const Representation& representation_of(const Node& node) const {
@@ -133,35 +141,51 @@ private:
     }
 
     /// Without what lies below closed nodes.
-    Cut total() const {
-        Cut cut;
-        std::set<Hash> distinct;
+    void drop_unused() {
         std::vector<uint32_t> moved(nodes_.size(), kNoParent);
+        uint32_t kept = 0;
         for (size_t i = 0; i < nodes_.size(); ++i) {
-            Node node = nodes_[i];
-            if (node.parent != kNoParent) {
-                if (entered_[node.parent] == 0 || moved[node.parent] == kNoParent)
+            const uint32_t parent = nodes_[i].parent;
+            if (parent != kNoParent) {
+                if (entered_[parent] == 0 || moved[parent] == kNoParent)
                     continue;
-                node.parent = moved[node.parent];
+                nodes_[i].parent = moved[parent];
             }
-            const auto index = static_cast<uint32_t>(cut.nodes.size());
-            moved[i] = index;
-            cut.nodes.push_back(node);
+            moved[i] = kept;
+            if (kept != i)
+                nodes_[kept] = nodes_[i];
+            ++kept;
+        }
+        nodes_.resize(kept);
+    }
+
+    Cut total() {
+        Cut cut;
+        HashSet distinct(nodes_.size());
+        std::array<uint64_t, kKinds> kinds{};
+        for (size_t i = 0; i < nodes_.size(); ++i) {
+            const Node& node = nodes_[i];
             if (node.opened)
                 continue;
+            const auto index = static_cast<uint32_t>(i);
             const Summary& summary = representation_of(node).summary;
             cut.chosen.push_back(index);
             cut.triangles += summary.cost.triangles;
             cut.bytes += kBytesPerOccurrence;
             // A composite is copied for each occurrence.
-            if (distinct.insert(summary.hash).second || summary.kind == Kind::Composite)
+            if (distinct.insert(summary.hash) || summary.kind == Kind::Composite)
                 cut.bytes += summary.cost.bytes;
-            ++cut.kinds[name_of(summary.kind)];
+            ++kinds[static_cast<size_t>(summary.kind)];
             if (node.error_px > cut.largest_error_px) {
                 cut.largest_error_px = node.error_px;
                 cut.largest_error_node = index;
             }
         }
+        for (size_t kind = 0; kind < kKinds; ++kind) {
+            if (kinds[kind] != 0)
+                cut.kinds[name_of(static_cast<Kind>(kind))] = kinds[kind];
+        }
+        cut.nodes = std::move(nodes_);
         return cut;
     }
 

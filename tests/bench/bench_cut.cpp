@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What choosing costs: `cmake --build build/release --target bench_cut`, then build/release/tests/bench_cut.
+// A plain of 4^10 = 1,048,576 houses in groups of four, each group with a stand-in; the Pixel Error is
+// such that about 20,000 things are chosen. Prints nanoseconds a visit and milliseconds a cut (goals:
+// 100 and 5), least / median / most of 21 cuts, once with every level's groups shared, once without.
+#include "backend/models.h"
+#include "base/clock.h"
+#include "quality/cut.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+using namespace lodestone;
+
+namespace {
+
+constexpr int kDepth = 10;
+constexpr size_t kWanted = 20000;
+constexpr int kCuts = 21;
+
+void add_box(Model& model, ObjectIndex object, double error, double half) {
+    Representation box;
+    box.summary.kind = Kind::Box;
+    box.payload = Primitive{{0, 0, 0}, glm::dmat3(1.0), {half, half, 1}};
+    box.materials = {0};
+    summarize(box, model);
+    box.summary.error = error;
+    model.objects[object].representations.push_back(std::move(box));
+}
+
+/// Groups below `depth`, made anew for each of their uses down to `own` levels below the root.
+ObjectIndex plain(Model& model, ObjectIndex house, int depth, int own,
+                  std::vector<ObjectIndex>& shared) {
+    if (depth == 0)
+        return house;
+    if (own <= 0 && shared[static_cast<size_t>(depth)] != kNoObject)
+        return shared[static_cast<size_t>(depth)];
+    const double half = 10.0 * static_cast<double>(1u << static_cast<unsigned>(depth - 1));
+    std::vector<Placement> four;
+    for (int i = 0; i < 4; ++i) {
+        Placement one;
+        one.object = plain(model, house, depth - 1, own - 1, shared);
+        one.transform = models::moved(i % 2 == 0 ? -half : half, i / 2 == 0 ? -half : half, 0);
+        one.name = std::to_string(i);
+        four.push_back(std::move(one));
+    }
+    const ObjectIndex made =
+        models::add_group(model, "group " + std::to_string(model.objects.size()), std::move(four));
+    add_box(model, made, 4.0 * static_cast<double>(depth), 2 * half);
+    if (own <= 0)
+        shared[static_cast<size_t>(depth)] = made;
+    return made;
+}
+
+View view_of(double pixel_error) {
+    View view;
+    view.camera.position = {100, 200, 30};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 0, 0.5625};
+    view.width = 1920;
+    view.height = 1080;
+    view.pixel_error = pixel_error;
+    return view;
+}
+
+void bench(const char* what, int own) {
+    Model model;
+    const ObjectIndex house = models::add_leaf(model, "house", shapes::sphere(5, 2));
+    add_box(model, house, 0.5, 5);
+    std::vector<ObjectIndex> shared(kDepth + 1, kNoObject);
+    model.root = plain(model, house, kDepth, own, shared);
+    summarize_assemblies(model, bottom_up(model));
+    double fine = 0;
+    double coarse = 1000;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (fine + coarse) / 2;
+        const size_t chosen = quality::choose(model, view_of(middle)).chosen.size();
+        (chosen > kWanted ? fine : coarse) = middle;
+    }
+    const View view = view_of(coarse);
+    const quality::Cut cut = quality::choose(model, view);
+    std::vector<double> seconds;
+    for (int i = 0; i < kCuts; ++i) {
+        const double start = cpu_seconds();
+        quality::choose(model, view);
+        seconds.push_back(cpu_seconds() - start);
+    }
+    std::sort(seconds.begin(), seconds.end());
+    const double visits = static_cast<double>(cut.nodes.size());
+    std::printf("| %s | %zu | %zu | %zu |", what, model.objects.size(), cut.nodes.size(),
+                cut.chosen.size());
+    for (const double unit : {1e9 / visits, 1e3})
+        std::printf(" %.3g / %.3g / %.3g |", unit * seconds.front(), unit * seconds[kCuts / 2],
+                    unit * seconds.back());
+    std::printf("\n");
+}
+
+}  // namespace
+
+int main() {
+    std::printf(
+        "| groups | objects | visits | chosen | ns a visit | ms a cut |\n"
+        "|---|---|---|---|---|---|\n");
+    bench("shared", 0);
+    bench("each its own", kDepth);
+    return 0;
+}
