@@ -58,10 +58,10 @@ public:
 
 private:
     size_t size_ = 64;
-    std::vector<Triangle> table_;
+    ScratchVector<Triangle> table_;
 };
 
-Grouped grouped(const Cells& cells, std::vector<uint32_t> group, size_t count) {
+Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group, size_t count) {
     Grouped out;
     out.group = std::move(group);
     out.triangles.reserve(count);
@@ -80,13 +80,13 @@ Grouped grouped(const Cells& cells, std::vector<uint32_t> group, size_t count) {
 
 /// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when none
 /// is, one above.
-std::vector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
-                             size_t& count) {
+ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
+                               size_t& count) {
     size_t few = 1;  // cells that give too few triangles, and how many
     size_t few_triangles = 0;
     size_t many = cells.count();
     size_t many_triangles = cells.triangles.size();
-    std::vector<uint32_t> best;
+    ScratchVector<uint32_t> best;
     bool best_within = false;
     count = 0;
     const auto take = [&](size_t cells_left) {
@@ -134,9 +134,9 @@ std::vector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, 
 Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wanted,
                const Job& job) {
     // Numbers without gaps for what triangles use; the last one is for all other cells.
-    std::vector<uint32_t> number(nodes, kNoCell);
+    ScratchVector<uint32_t> number(nodes, kNoCell);
     uint32_t count = 0;
-    std::vector<Triangle> triangles = start.triangles;
+    ScratchVector<Triangle> triangles = start.triangles;
     for (Triangle& t : triangles) {
         for (int i = 0; i < 3; ++i) {
             if (number[t[i]] == kNoCell)
@@ -144,7 +144,7 @@ Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wa
             t[i] = number[t[i]];
         }
     }
-    std::vector<CellQuadric> quadrics(count);
+    ScratchVector<CellQuadric> quadrics(count);
     for (size_t i = 0; i < cells.count(); ++i) {
         uint32_t& of = number[start.group[i]];
         if (of == kNoCell)
@@ -179,7 +179,7 @@ Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wa
         if (merge.count() == before)
             break;
     }
-    std::vector<uint32_t> group(cells.count());
+    ScratchVector<uint32_t> group(cells.count());
     for (size_t i = 0; i < group.size(); ++i) {
         const uint32_t of = number[start.group[i]];
         group[i] = of == count ? count : merge.whole(of);
@@ -207,7 +207,7 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     Grouped best;
     if (plan.merges) {
         size_t count = 0;
-        std::vector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count);
+        ScratchVector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count);
         best = grouped(cells, std::move(group), count);
         return best.triangles.size() > target ? merged(cells, best, tree.nodes(), target, job)
                                               : best;
@@ -217,7 +217,7 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     double too_many = 0;  // 0: none yet
     for (int i = 0; i < kGoals; ++i) {
         size_t count = 0;
-        std::vector<uint32_t> group = joined(cells, tree, goal, kNear, count);
+        ScratchVector<uint32_t> group = joined(cells, tree, goal, kNear, count);
         Grouped found = grouped(cells, std::move(group), count);
         const size_t kept = found.triangles.size();
         const bool within = kept <= target;

@@ -4,15 +4,13 @@
 
 #include "approximate/cells.h"
 
-#include <vector>
-
 namespace lodestone::approximate {
 
 /// Triangles of groups of cells, each once.
 struct Grouped {
-    std::vector<uint32_t> group;      // of each cell
-    std::vector<Triangle> triangles;  // of groups
-    std::vector<uint32_t> sources;    // the mesh's triangle each was
+    ScratchVector<uint32_t> group;      // of each cell
+    ScratchVector<Triangle> triangles;  // of groups
+    ScratchVector<uint32_t> sources;    // the mesh's triangle each was
 };
 
 /// How the work is shared: the tree leaves `begin` cells for each one wanted, merging across the

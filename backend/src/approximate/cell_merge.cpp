@@ -7,13 +7,13 @@ namespace lodestone::approximate {
 namespace {
 
 /// Every edge of the triangles once, in the order of their first appearance.
-std::vector<std::pair<uint32_t, uint32_t>> edges_of(std::span<const Triangle> triangles) {
+ScratchVector<std::pair<uint32_t, uint32_t>> edges_of(std::span<const Triangle> triangles) {
     size_t size = 64;
     while (size < triangles.size() * 3)  // two triangles an edge: half full
         size *= 2;
     constexpr uint64_t kFree = 0;  // no edge joins 0 to 0
-    std::vector<uint64_t> table(size, kFree);
-    std::vector<std::pair<uint32_t, uint32_t>> edges;
+    ScratchVector<uint64_t> table(size, kFree);
+    ScratchVector<std::pair<uint32_t, uint32_t>> edges;
     edges.reserve(triangles.size() * 2);
     for (const Triangle& t : triangles) {
         for (int i = 0; i < 3; ++i) {

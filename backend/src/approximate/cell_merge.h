@@ -4,10 +4,10 @@
 
 #include "approximate/cell_quadric.h"
 #include "base/job.h"
+#include "base/scratch.h"
 #include "model/mesh.h"
 
 #include <span>
-#include <vector>
 
 namespace lodestone::approximate {
 
@@ -38,11 +38,11 @@ private:
     };
     void judge(Pair& pair) const;
 
-    std::vector<CellQuadric> quadrics_;
-    std::vector<float> least_;
-    std::vector<uint32_t> part_of_;
-    std::vector<uint32_t> merges_;
-    std::vector<Pair> pairs_;  // a heap
+    ScratchVector<CellQuadric> quadrics_;
+    ScratchVector<float> least_;
+    ScratchVector<uint32_t> part_of_;
+    ScratchVector<uint32_t> merges_;
+    ScratchVector<Pair> pairs_;  // a heap
     size_t count_;
 };
 

@@ -22,7 +22,7 @@ CellTree::CellTree(const Cells& cells) : cells_(cells.count()) {
         return;
     parent_.assign(2 * cells_ - 1, kNoCell);
     cost_.reserve(cells_ - 1);
-    std::vector<Open> open;
+    ScratchVector<Open> open;
     open.reserve(64);
     for (size_t i = 0; i < cells_; ++i) {
         Open node{static_cast<uint32_t>(i), cells.split[i], 0, 0, cells.quadrics[i]};

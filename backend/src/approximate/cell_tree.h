@@ -5,7 +5,6 @@
 #include "approximate/cells.h"
 
 #include <span>
-#include <vector>
 
 namespace lodestone::approximate {
 
@@ -24,10 +23,10 @@ public:
     size_t nodes() const { return parent_.size(); }
 
 private:
-    std::vector<uint32_t> parent_;  // of each cell, then of each node above
-    std::vector<float> cost_;       // of joining a node above, never less than of those below it
-    std::vector<float> order_;      // the same, partly sorted
-    std::vector<uint32_t> node_;    // where each node is now
+    ScratchVector<uint32_t> parent_;  // of each cell, then of each node above
+    ScratchVector<float> cost_;       // of joining a node above, never less than of those below it
+    ScratchVector<float> order_;      // the same, partly sorted
+    ScratchVector<uint32_t> node_;    // where each node is now
     size_t cells_;
 };
 

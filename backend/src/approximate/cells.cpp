@@ -48,11 +48,11 @@ struct Key {
 
 /// The vertices along the curve; those of one code in their own order.
 template <typename Code>
-std::vector<Key<Code>> sorted(const std::vector<Four>& points) {
+ScratchVector<Key<Code>> sorted(const ScratchVector<Four>& points) {
     constexpr auto kMost = static_cast<float>((1u << static_cast<unsigned>(kSteps<Code>)) - 1);
     constexpr size_t kDigits = 3 * kSteps<Code> / kDigit;
     constexpr size_t kValues = size_t{1} << static_cast<unsigned>(kDigit);
-    std::vector<Key<Code>> keys(points.size());
+    ScratchVector<Key<Code>> keys(points.size());
     std::array<std::array<uint32_t, kValues>, kDigits> starts{};
     for (size_t i = 0; i < points.size(); ++i) {
         const Four at = points[i] * kMost;
@@ -63,7 +63,7 @@ std::vector<Key<Code>> sorted(const std::vector<Four>& points) {
         for (size_t digit = 0; digit < kDigits; ++digit)
             ++starts[digit][code >> (digit * kDigit) & (kValues - 1)];
     }
-    std::vector<Key<Code>> other(points.size());
+    ScratchVector<Key<Code>> other(points.size());
     for (size_t digit = 0; digit < kDigits; ++digit) {
         uint32_t sum = 0;
         for (uint32_t& start : starts[digit])
@@ -81,10 +81,10 @@ bool same(const Four& a, const Four& b) {
 
 /// Of each vertex the first at its position; empty when all stand apart.
 template <typename Code>
-std::vector<uint32_t> find_twins(const std::vector<Four>& points,
-                                 const std::vector<Key<Code>>& keys) {
-    std::vector<uint32_t> twins;
-    std::vector<uint32_t> run;
+ScratchVector<uint32_t> find_twins(const ScratchVector<Four>& points,
+                                   const ScratchVector<Key<Code>>& keys) {
+    ScratchVector<uint32_t> twins;
+    ScratchVector<uint32_t> run;
     for (size_t begin = 0; begin < keys.size();) {
         size_t end = begin + 1;
         while (end < keys.size() && keys[end].code == keys[begin].code)
@@ -128,12 +128,20 @@ float side_of(uint16_t slot) {
     return 1 + 0.37f * static_cast<float>(slot % 7u);
 }
 
-std::vector<Sums> sums_of(const Mesh& mesh, const std::vector<Four>& points,
-                          const std::vector<uint32_t>& twins, const Job& job) {
-    std::vector<Sums> sums(points.size(), Sums{});
+ScratchVector<Sums> sums_of(const Mesh& mesh, const ScratchVector<Four>& points,
+                            const ScratchVector<uint32_t>& twins, const Job& job) {
+    ScratchVector<Sums> sums(points.size(), Sums{});
+    constexpr size_t kAhead = 12;  // triangles whose vertices are asked for
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if ((i & 0xffffu) == 0)
             job.check();
+        if (i + kAhead < mesh.triangles.size()) {
+            const Triangle& coming = mesh.triangles[i + kAhead];
+            for (const uint32_t v : {coming.x, coming.y, coming.z}) {
+                __builtin_prefetch(&points[v]);
+                __builtin_prefetch(&sums[v], 1);
+            }
+        }
         Triangle t = mesh.triangles[i];
         if (!twins.empty())
             t = {twins[t.x], twins[t.y], twins[t.z]};
@@ -166,7 +174,7 @@ std::vector<Sums> sums_of(const Mesh& mesh, const std::vector<Four>& points,
 }
 
 /// The planes a vertex is held by: its triangles', its border's, and a little of all.
-PlaneSum planes_of(const Sums& sum) {
+[[gnu::always_inline]] inline PlaneSum planes_of(const Sums& sum) {
     PlaneSum p{sum.planes_a[0], sum.planes_a[1], sum.planes_a[2],
                sum.planes_a[3], sum.planes_b[0], sum.planes_b[1]};
     const float weight = p.xx + p.yy + p.zz + kLeastWeight;
@@ -192,7 +200,7 @@ PlaneSum planes_of(const Sums& sum) {
 
 /// How many of the lowest bits of the codes can go while `least` cells are left.
 template <typename Code>
-int spare_bits(const std::vector<Key<Code>>& keys, size_t least) {
+int spare_bits(const ScratchVector<Key<Code>>& keys, size_t least) {
     std::array<size_t, 65> splits{};
     for (size_t i = 1; i < keys.size(); ++i)
         ++splits[static_cast<size_t>(std::bit_width(keys[i].code ^ keys[i - 1].code))];
@@ -206,18 +214,24 @@ int spare_bits(const std::vector<Key<Code>>& keys, size_t least) {
 }
 
 template <typename Code>
-void fill(Cells& cells, const Mesh& mesh, const std::vector<Four>& points, size_t least,
+void fill(Cells& cells, const Mesh& mesh, const ScratchVector<Four>& points, size_t least,
           const Job& job) {
-    const std::vector<Key<Code>> keys = sorted<Code>(points);
+    const ScratchVector<Key<Code>> keys = sorted<Code>(points);
     job.check();
     cells.twins = find_twins(points, keys);
-    const std::vector<Sums> sums = sums_of(mesh, points, cells.twins, job);
     const int spare = spare_bits(keys, least);
     cells.step = std::ldexp(1.0f, (spare + 2) / 3 - kSteps<Code>);
     cells.cell.resize(points.size());
     cells.quadrics.reserve(std::min(keys.size(), 2 * least));
     cells.split.reserve(std::min(keys.size(), 2 * least));
+    // Last, so that its memory can be used again.
+    const ScratchVector<Sums> sums = sums_of(mesh, points, cells.twins, job);
+    constexpr size_t kAhead = 16;
     for (size_t i = 0; i < keys.size(); ++i) {
+        if (i + kAhead < keys.size()) {
+            __builtin_prefetch(&points[keys[i + kAhead].vertex]);
+            __builtin_prefetch(&sums[keys[i + kAhead].vertex]);
+        }
         const uint32_t vertex = keys[i].vertex;
         const Four& p = points[vertex];
         const glm::vec3 point(p[0], p[1], p[2]);
@@ -256,7 +270,7 @@ Cells divide(const Mesh& mesh, size_t least, const Job& job) {
         cells.unit = 0;
         return cells;
     }
-    std::vector<Four> points(mesh.positions.size());
+    ScratchVector<Four> points(mesh.positions.size());
     for (size_t i = 0; i < points.size(); ++i) {
         const glm::dvec3 p = (glm::dvec3(mesh.positions[i]) - cells.low) * scale;
         points[i] = Four{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
@@ -267,16 +281,19 @@ Cells divide(const Mesh& mesh, size_t least, const Job& job) {
     else
         fill<uint32_t>(cells, mesh, points, least, job);
     job.check();
-    cells.triangles.reserve(std::min(mesh.triangles.size(), 3 * cells.count()));
-    cells.sources.reserve(cells.triangles.capacity());
+    cells.triangles.resize(mesh.triangles.size());
+    cells.sources.resize(mesh.triangles.size());
+    size_t kept = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
         const Triangle of(cells.cell[t.x], cells.cell[t.y], cells.cell[t.z]);
-        if (of.x == of.y || of.y == of.z || of.z == of.x)
-            continue;
-        cells.triangles.push_back(of);
-        cells.sources.push_back(static_cast<uint32_t>(i));
+        // Without a branch: nobody can predict it.
+        cells.triangles[kept] = of;
+        cells.sources[kept] = static_cast<uint32_t>(i);
+        kept += (of.x != of.y) & (of.y != of.z) & (of.z != of.x);
     }
+    cells.triangles.resize(kept);
+    cells.sources.resize(kept);
     return cells;
 }
 

@@ -4,9 +4,8 @@
 
 #include "approximate/cell_quadric.h"
 #include "base/job.h"
+#include "base/scratch.h"
 #include "model/mesh.h"
-
-#include <vector>
 
 namespace lodestone::approximate {
 
@@ -15,15 +14,15 @@ constexpr uint32_t kNoCell = ~uint32_t{0};
 /// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in a
 /// frame whose unit is the mesh's largest extent.
 struct Cells {
-    glm::dvec3 low{0.0};          // origin of the frame, metres
-    double unit = 0;              // metres; 0: the mesh has no extent, and there are no cells
-    float step = 0;               // the longest side of a cell's box, in the frame
-    std::vector<uint32_t> twins;  // of each vertex the first at its position; empty: all differ
-    std::vector<uint32_t> cell;   // of each vertex
-    std::vector<CellQuadric> quadrics;  // of each cell
-    std::vector<uint8_t> split;       // the highest bit in which its code and the next one's differ
-    std::vector<Triangle> triangles;  // of cells, where the three differ
-    std::vector<uint32_t> sources;    // the mesh's triangle each of them was
+    glm::dvec3 low{0.0};            // origin of the frame, metres
+    double unit = 0;                // metres; 0: the mesh has no extent, and there are no cells
+    float step = 0;                 // the longest side of a cell's box, in the frame
+    ScratchVector<uint32_t> twins;  // of each vertex the first at its position; empty: all differ
+    ScratchVector<uint32_t> cell;   // of each vertex
+    ScratchVector<CellQuadric> quadrics;  // of each cell
+    ScratchVector<uint8_t> split;  // the highest bit in which its code and the next one's differ
+    ScratchVector<Triangle> triangles;  // of cells, where the three differ
+    ScratchVector<uint32_t> sources;    // the mesh's triangle each of them was
 
     size_t count() const { return quadrics.size(); }
     glm::vec3 metres(const glm::vec3& p) const { return glm::vec3(glm::dvec3(p) * unit + low); }

@@ -14,6 +14,8 @@ namespace {
 
 // Cells of the fine grid for each one that the tree leaves: enough to choose from.
 constexpr double kCellsPerLeft = 1.6;
+// Bytes it takes in all, for each vertex and each triangle.
+constexpr size_t kScratch = 40;
 
 bool finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -53,8 +55,8 @@ Mesh largest(const Mesh& mesh, size_t count) {
 
 /// Parts of the surface that went into one group, connected within it: what shares normals and
 /// texture coordinates.
-std::vector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping) {
-    std::vector<uint32_t> patch(mesh.positions.size());
+ScratchVector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping) {
+    ScratchVector<uint32_t> patch(mesh.positions.size());
     std::iota(patch.begin(), patch.end(), 0u);
     const auto root = [&](uint32_t v) {
         while (patch[v] != v) {
@@ -81,9 +83,9 @@ std::vector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const Gro
 
 /// One vertex for each group that a triangle uses.
 struct Places {
-    std::vector<uint32_t> of;  // a group's place; kNoCell where nothing uses it
-    std::vector<CellQuadric> quadrics;
-    std::vector<glm::vec3> points;  // metres
+    ScratchVector<uint32_t> of;  // a group's place; kNoCell where nothing uses it
+    ScratchVector<CellQuadric> quadrics;
+    ScratchVector<glm::vec3> points;  // metres
 };
 
 Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
@@ -97,8 +99,8 @@ Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
         }
     }
     places.quadrics.resize(count);
-    std::vector<glm::vec3> lows(count, glm::vec3(2));  // of the cells' origins, in the frame
-    std::vector<glm::vec3> highs(count, glm::vec3(-1));
+    ScratchVector<glm::vec3> lows(count, glm::vec3(2));  // of the cells' origins, in the frame
+    ScratchVector<glm::vec3> highs(count, glm::vec3(-1));
     for (size_t i = 0; i < cells.count(); ++i) {
         const uint32_t place = places.of[grouping.group[i]];
         if (place == kNoCell)
@@ -125,10 +127,11 @@ public:
     Assembly(const Mesh& mesh, const Cells& cells, const Grouped& grouping, const Places& places)
         : mesh_(mesh), places_(places) {
         const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
-        std::vector<uint32_t> patch;
+        ScratchVector<uint32_t> patch;
         if (attributes)
             patch = patches_of(mesh, cells, grouping);
-        std::vector<uint32_t> vertex_of(attributes ? patch.size() : places.points.size(), kNoCell);
+        ScratchVector<uint32_t> vertex_of(attributes ? patch.size() : places.points.size(),
+                                          kNoCell);
         out_.triangles.reserve(grouping.triangles.size());
         for (size_t i = 0; i < grouping.triangles.size(); ++i) {
             const Triangle& groups = grouping.triangles[i];
@@ -177,11 +180,11 @@ public:
 private:
     /// Normals and colors are the patch's mean, texture coordinates those of its vertex nearest to
     /// the new one: a mean of them would lie outside of a bent island.
-    void take_attributes(const std::vector<uint32_t>& patch,
-                         const std::vector<uint32_t>& vertex_of) {
+    void take_attributes(const ScratchVector<uint32_t>& patch,
+                         const ScratchVector<uint32_t>& vertex_of) {
         const size_t count = out_.positions.size();
-        std::vector<uint32_t> members(count, 0);
-        std::vector<float> nearest(count, std::numeric_limits<float>::infinity());
+        ScratchVector<uint32_t> members(count, 0);
+        ScratchVector<float> nearest(count, std::numeric_limits<float>::infinity());
         if (!mesh_.normals.empty())
             out_.normals.assign(count, glm::vec3(0));
         if (!mesh_.uvs.empty())
@@ -243,7 +246,7 @@ private:
     const Mesh& mesh_;
     const Places& places_;
     Mesh out_;
-    std::vector<uint32_t> place_;  // of each of its vertices
+    ScratchVector<uint32_t> place_;  // of each of its vertices
 };
 
 Clustered clustered(const Mesh& mesh, size_t target, bool with_quadrics, const Job& job) {
@@ -257,6 +260,7 @@ Clustered clustered(const Mesh& mesh, size_t target, bool with_quadrics, const J
     }
     if (const std::optional<Mesh> part = finite_part(mesh))
         return clustered(*part, target, with_quadrics, job);
+    Scratch scratch(kScratch * (mesh.positions.size() + mesh.triangles.size()));
     const GroupingPlan plan(mesh.triangles.size(), target);
     const double least = kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target);
     const Cells cells = divide(mesh, static_cast<size_t>(least) + 16, job);
