@@ -4,6 +4,7 @@
 
 #include "approximate/collapse_mesh.h"
 
+#include <algorithm>
 #include <span>
 
 namespace lodestone::approximate {
@@ -16,6 +17,15 @@ struct Adjacency {
         return {triangles.data() + first[vertex], triangles.data() + first[vertex + 1]};
     }
     size_t valence(uint32_t vertex) const { return first[vertex + 1] - first[vertex]; }
+
+    /// What is around a vertex some way on: worth asking memory for by who goes through them all.
+    std::span<const uint32_t> ahead(uint32_t vertex) const {
+        constexpr size_t kAhead = 48;
+        constexpr size_t kMost = 8;
+        const size_t from = std::min<size_t>(first[vertex] + kAhead, triangles.size());
+        const size_t to = std::min<size_t>(first[vertex + 1] + kAhead, triangles.size());
+        return {triangles.data() + from, std::min(to - from, kMost)};
+    }
 
     /// Reuses the arrays of the previous call.
     void build(const CollapseMesh& mesh);

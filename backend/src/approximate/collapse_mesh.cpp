@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/collapse_mesh.h"
 
+#include "approximate/curve.h"
 #include "approximate/sheets.h"
 #include "approximate/wedges.h"
 
@@ -58,16 +59,76 @@ private:
 };
 
 /// About the middle of their box, so that what went far away loses no digits.
-std::vector<glm::dvec3> scaled(const std::vector<glm::vec3>& positions, double scale) {
+std::vector<glm::dvec3> scaled(const std::vector<glm::vec3>& positions, double scale,
+                               const std::vector<uint32_t>& order) {
     Box3 box;
     for (const glm::vec3& position : positions)
         box.add(glm::dvec3(position));
     const glm::dvec3 center = box.center();
     std::vector<glm::dvec3> points;
-    points.reserve(positions.size());
-    for (const glm::vec3& position : positions)
-        points.push_back((glm::dvec3(position) - center) / scale);
+    points.reserve(order.size());
+    for (const uint32_t v : order)
+        points.push_back((glm::dvec3(positions[v]) - center) / scale);
     return points;
+}
+
+bool all_differ(const Triangle& t) {
+    return t.x != t.y && t.y != t.z && t.z != t.x;
+}
+
+/// The input's triangles of finite vertices in different places, by the first of their vertices on
+/// the curve: what lies together is read together from here on. `place` is where on the curve a
+/// vertex is, kNone for none.
+void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<uint32_t>& place) {
+    const auto corners_of = [&](const Triangle& t) {
+        return Triangle(place[t.x], place[t.y], place[t.z]);
+    };
+    const auto first_of = [](const Triangle& t) { return std::min({t.x, t.y, t.z}); };
+    const auto taken = [](const Triangle& t) {
+        return t.x != kNone && t.y != kNone && t.z != kNone && all_differ(t);
+    };
+    std::vector<uint32_t> starts(mesh.points.size() + 1, 0);
+    for (const Triangle& t : source.triangles) {
+        const Triangle corners = corners_of(t);
+        if (taken(corners))
+            ++starts[first_of(corners) + 1];
+    }
+    for (size_t v = 0; v < mesh.points.size(); ++v)
+        starts[v + 1] += starts[v];
+    const size_t count = starts.back();
+    const bool carried = mesh.has_normals || !source.uvs.empty() || !source.colors.empty();
+    mesh.triangles.resize(count);
+    if (carried)
+        mesh.wedges.resize(count);
+    if (!source.slots.empty())
+        mesh.slots.resize(count);
+    for (size_t i = 0; i < source.triangles.size(); ++i) {
+        const Triangle& t = source.triangles[i];
+        const Triangle corners = corners_of(t);
+        if (!taken(corners))
+            continue;
+        const uint32_t at = starts[first_of(corners)]++;
+        mesh.triangles[at] = corners;
+        if (carried)
+            mesh.wedges[at] = t;
+        if (!source.slots.empty())
+            mesh.slots[at] = source.slots[i];
+    }
+    mesh.live = count;
+}
+
+/// Vertices have the input's numbers as ids, copies those after them.
+void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, size_t inputs) {
+    const auto next = static_cast<uint32_t>(inputs);
+    mesh.ids = order;
+    mesh.ids.resize(mesh.points.size());
+    std::iota(mesh.ids.begin() + static_cast<std::ptrdiff_t>(order.size()), mesh.ids.end(), next);
+    mesh.merged.resize(inputs + mesh.points.size() - order.size());
+    std::iota(mesh.merged.begin(), mesh.merged.end(), 0u);
+    std::vector<uint32_t> sources = mesh.merged;
+    std::copy(mesh.sources.begin() + static_cast<std::ptrdiff_t>(order.size()), mesh.sources.end(),
+              sources.begin() + static_cast<std::ptrdiff_t>(inputs));
+    mesh.sources = std::move(sources);
 }
 
 }  // namespace
@@ -89,33 +150,24 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     const double reach = std::max({half.x, half.y, half.z});
     // A power of two: points that never move come back with the bits they had.
     mesh.scale = reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 1;
-    mesh.points.reserve(source.positions.size());
-    for (const glm::vec3& position : source.positions)
-        mesh.points.push_back((glm::dvec3(position) - mesh.center) / mesh.scale);
-    for (const std::vector<glm::vec3>& positions : others)
-        mesh.others.push_back({scaled(positions, mesh.scale), {}});
-    mesh.sources.resize(mesh.points.size());
-    std::iota(mesh.sources.begin(), mesh.sources.end(), 0u);
-    job.check();
+    std::vector<uint32_t> order;
     {
-        const std::vector<uint32_t> welded = weld(source);
-        mesh.triangles.reserve(source.triangles.size());
-        mesh.wedges.reserve(source.triangles.size());
-        for (size_t i = 0; i < source.triangles.size(); ++i) {
-            const Triangle& t = source.triangles[i];
-            if (!finite(source.positions[t.x]) || !finite(source.positions[t.y]) ||
-                !finite(source.positions[t.z]))
-                continue;
-            const Triangle corners(welded[t.x], welded[t.y], welded[t.z]);
-            if (corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
-                continue;
-            mesh.triangles.push_back(corners);
-            mesh.wedges.push_back(t);
-            if (!source.slots.empty())
-                mesh.slots.push_back(source.slots[i]);
-        }
+        std::vector<uint32_t> first;
+        order = along_curve(source.positions, first);
+        std::vector<uint32_t> place(first.size(), kNone);
+        for (uint32_t i = 0; i < order.size(); ++i)
+            place[order[i]] = i;
+        for (uint32_t v = 0; v < place.size(); ++v)
+            place[v] = place[first[v]];
+        job.check();
+        mesh.points.reserve(order.size());
+        for (const uint32_t v : order)
+            mesh.points.push_back((glm::dvec3(source.positions[v]) - mesh.center) / mesh.scale);
+        for (const std::vector<glm::vec3>& positions : others)
+            mesh.others.push_back({scaled(positions, mesh.scale, order), {}});
+        take_triangles(mesh, source, place);
+        mesh.sources = order;
     }
-    mesh.live = mesh.triangles.size();
     job.check();
     split_layers(mesh);
     job.check();
@@ -130,9 +182,7 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
         for (const Triangle& t : mesh.triangles)
             other.facets.emplace_back(CollapseMesh::facet_of(other.points, t));
     }
-    mesh.ids.resize(mesh.points.size());
-    std::iota(mesh.ids.begin(), mesh.ids.end(), 0u);
-    mesh.merged = mesh.ids;
+    number(mesh, order, source.positions.size());
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();
@@ -185,6 +235,20 @@ void compact(CollapseMesh& mesh) {
     mesh.parts.resize(count);
     for (Triangle& t : mesh.triangles)
         t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
+}
+
+void shrink(CollapseMesh& mesh) {
+    mesh.points.shrink_to_fit();
+    mesh.parts.shrink_to_fit();
+    mesh.ids.shrink_to_fit();
+    mesh.triangles.shrink_to_fit();
+    mesh.facets.shrink_to_fit();
+    mesh.wedges.shrink_to_fit();
+    mesh.slots.shrink_to_fit();
+    for (OtherPose& other : mesh.others) {
+        other.points.shrink_to_fit();
+        other.facets.shrink_to_fit();
+    }
 }
 
 Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made) {

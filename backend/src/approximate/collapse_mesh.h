@@ -67,6 +67,9 @@ CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {});
 /// Drops dead triangles and the vertices nothing uses, keeping order.
 void compact(CollapseMesh& mesh);
 
+/// Gives back the memory that dead triangles and unused vertices took before they were dropped.
+void shrink(CollapseMesh& mesh);
+
 /// Back to metres; vertices are split only where attributes differ. `vertices`, when given, gets
 /// the vertex of `mesh` that each of the result's was.
 Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr);

@@ -66,6 +66,27 @@ struct Factors {
     }
 };
 
+/// Rows of four edges to columns, four numbers at a time.
+constexpr size_t kColumns = sizeof(EdgeInput) / sizeof(float);
+static_assert(kColumns % kLanes == 0 && sizeof(EdgeInput) == kColumns * sizeof(float));
+
+inline void transpose(const EdgeInput* rows, Lanes (&columns)[kColumns]) {
+    for (size_t k = 0; k < kColumns; k += kLanes) {
+        Lanes row[kLanes];
+        for (size_t i = 0; i < kLanes; ++i)
+            std::memcpy(&row[i], reinterpret_cast<const std::byte*>(rows + i) + k * sizeof(float),
+                        sizeof(Lanes));
+        const Lanes low_01 = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);
+        const Lanes low_23 = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
+        const Lanes high_01 = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7);
+        const Lanes high_23 = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+        columns[k] = __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5);
+        columns[k + 1] = __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7);
+        columns[k + 2] = __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5);
+        columns[k + 3] = __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7);
+    }
+}
+
 inline Lanes least(const Lanes& a, const Lanes& b) {
     return b < a ? b : a;
 }
@@ -74,14 +95,14 @@ inline Lanes least(const Lanes& a, const Lanes& b) {
 
 void edge_costs(EdgeBlock& block) {
     for (size_t i = 0; i < EdgeBlock::kSize; i += kLanes) {
-        const auto in = [&](size_t k) {
-            Lanes lanes;
-            std::memcpy(&lanes, &block.in[k][i], sizeof(lanes));
-            return lanes;
-        };
-        const Vector d{in(0), in(1), in(2)};
-        const Form a{in(3), in(4), in(5), in(6), in(7), in(8)};
-        const Form b{in(9), in(10), in(11), in(12), in(13), in(14)};
+        Lanes in[kColumns];
+        transpose(block.in + i, in);
+        const Vector d = Lanes{0.5f, 0.5f, 0.5f, 0.5f} *
+                         (Vector{in[12], in[13], in[14]} - Vector{in[0], in[1], in[2]});
+        const Vector facet_a{in[3], in[4], in[5]};
+        const Vector facet_b{in[15], in[16], in[17]};
+        const Form a{in[6], in[7], in[8], in[9], in[10], in[11]};
+        const Form b{in[18], in[19], in[20], in[21], in[22], in[23]};
         const Lanes trace = (a.xx + b.xx) + (a.yy + b.yy) + (a.zz + b.zz);
         const Lanes pull = kPull * trace;
         const Factors factors(Form{a.xx + b.xx + pull, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy + pull,
@@ -89,9 +110,9 @@ void edge_costs(EdgeBlock& block) {
         const Vector linear = b * d - a * d;
         Vector y = factors.solve(linear);
         y = factors.solve(linear + pull * y);
-        const Vector facet{in(18), in(19), in(20)};
+        const Vector facet = facet_b + facet_a - Vector{in[24], in[25], in[26]};
         const Vector turned = factors.solve(facet);
-        const Lanes height = dot(Vector{in(15), in(16), in(17)}, d);
+        const Lanes height = dot(facet_b - facet_a, d);
         const Lanes way = (height - dot(facet, y)) / dot(facet, turned);
         const Lanes square = dot(d, d);
         const Lanes held_way = dot(facet, facet) > 0.01f * trace * trace ? way : kZero;
@@ -105,7 +126,7 @@ void edge_costs(EdgeBlock& block) {
         const Lanes at_ends = least(at_a, at_b);
         const Lanes at_three = least(a.of(d) + b.of(d), at_ends);
         const Lanes free = dot(y, y) <= 9 * square ? best : at_three;
-        const Lanes end = in(21);
+        const Lanes end = in[27];
         Lanes cost = end < kZero ? at_a : free;
         cost = end > kZero ? at_b : cost;
         cost = cost + 4 * kLength * square * trace;

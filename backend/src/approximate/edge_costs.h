@@ -2,20 +2,34 @@
 // Edge costs: what collapsing costs for many edges at once, in the processor's vectors.
 #pragma once
 
+#include "base/maths.h"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
 namespace lodestone::approximate {
 
+/// Of a vertex: where it is, the sum of the area vectors around it, its quadric.
+struct VertexAround {
+    glm::vec3 point{0.0f};
+    glm::vec3 facet{0.0f};
+    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+};
+
+/// An edge's two ends, the sum of the area vectors of the triangles on it, and which end is held
+/// (-1: a, 1: b, 0: none).
+struct alignas(16) EdgeInput {
+    VertexAround a;
+    VertexAround b;
+    glm::vec3 shared{0.0f};
+    float held = 0;
+};
+
 /// As best_point and cost_at of quadric.h, in single precision. What is not filled in is arbitrary.
 struct EdgeBlock {
     static constexpr size_t kSize = 64;
-    /// Half the edge (b - a) / 2, the quadrics of a and of b, the difference b - a of the area
-    /// vectors around them and their sum without the triangles on both, which end is held
-    /// (-1: a, 1: b, 0: none).
-    static constexpr size_t kInputs = 22;
-    float in[kInputs][kSize];
+    EdgeInput in[kSize];
     float cost[kSize];
 };
 

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/edges.h"
 
-#include "approximate/edge_costs.h"
+#include "approximate/neighbors.h"
 #include "base/parallel.h"
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 namespace lodestone::approximate {
 namespace {
-
-int corner_of(const Triangle& t, uint32_t vertex) {
-    return t.x == vertex ? 0 : (t.y == vertex ? 1 : 2);
-}
 
 /// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
 void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet, double weight) {
@@ -71,104 +68,48 @@ double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& 
     return std::min(1.0, static_cast<double>(std::max({kink.x, kink.y, kink.z, kink.w})));
 }
 
-/// Finds the neighbors of a vertex whose triangles form one closed fan, all turned alike: the usual
-/// case, in which no table is needed. False: any other.
-template <typename Neighbor>
-bool find_in_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex,
-                 std::vector<Neighbor>& neighbors) {
-    constexpr size_t kMost = 16;
-    const size_t count = ring.size();
-    if (count > kMost)
-        return false;
-    uint32_t to[kMost];
-    uint32_t from[kMost];
-    for (size_t i = 0; i < count; ++i) {
-        const Triangle& t = mesh.triangles[ring[i]];
-        const bool first = t.x == vertex;
-        const bool second = t.y == vertex;
-        to[i] = first ? t.y : (second ? t.z : t.x);
-        from[i] = first ? t.z : (second ? t.x : t.y);
-    }
-    uint32_t met = 0;
-    for (size_t i = 0; i < count; ++i) {
-        uint32_t at = 0;
-        uint32_t matches = 0;
-        for (uint32_t j = 0; j < count; ++j) {
-            const bool same = from[j] == to[i];
-            matches += same;
-            at = same ? j : at;
-        }
-        if (matches != 1)
-            return false;
-        met |= 1u << at;
-        neighbors.push_back({to[i], 2, ring[i], ring[at], true, false});
-    }
-    return met == (1u << count) - 1;
+Quadric quadric_of(const VertexAround& around) {
+    return {around.xx, around.xy, around.xz, around.yy, around.yz, around.zz};
 }
 
-/// Of any vertex.
-template <typename Neighbor>
-void find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex,
-              std::vector<Neighbor>& neighbors) {
-    constexpr size_t kFew = 64;
-    const size_t end = 2 * ring.size();
-    const auto other_end = [&](size_t i) {
-        const Triangle& corners = mesh.triangles[ring[i / 2]];
-        return corners[(corner_of(corners, vertex) + 1 + static_cast<int>(i & 1u)) % 3];
-    };
-    // (neighbor, index of its use): hubs are sorted, all others searched.
-    std::vector<std::pair<uint32_t, size_t>> uses;
-    if (end > kFew) {
-        for (size_t i = 0; i < end; ++i)
-            uses.emplace_back(other_end(i), i);
-        std::sort(uses.begin(), uses.end());
-    }
-    for (size_t n = 0; n < end; ++n) {
-        const size_t i = uses.empty() ? n : uses[n].second;
-        const uint32_t other = other_end(i);
-        const uint32_t t = ring[i / 2];
-        const bool leaving = (i & 1u) == 0;
-        Neighbor* known = nullptr;
-        if (!uses.empty()) {
-            if (!neighbors.empty() && neighbors.back().vertex == other)
-                known = &neighbors.back();
-        } else {
-            for (Neighbor& each : neighbors) {
-                if (each.vertex == other)
-                    known = &each;
-            }
-        }
-        if (known == nullptr) {
-            neighbors.push_back({other, 1, t, kNone, leaving, false});
-        } else if (++known->uses == 2) {
-            known->t1 = t;
-            known->leaving1 = leaving;
-        }
-    }
-}
+constexpr uint32_t kChunk = 8192;
+/// Vertices whose edges are asked what they cost before all are.
+constexpr uint32_t kSampled = 2048;
+constexpr uint32_t kRun = 8;  // of them in a row
 
-constexpr size_t kChunk = 8192;
+/// The bits by which candidates are ordered, and how many values these have.
+constexpr size_t kSteps = (kImpossible >> kKeyShift) + 1;
 
 }  // namespace
 
 void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
-                  const SimplifyOptions& options, uint32_t vertex, Chunk& chunk) {
+                  const SimplifyOptions& options, uint32_t vertex, Neighbors& neighbors,
+                  Chunk* borders) {
     const std::span<const uint32_t> ring = adjacency.around(vertex);
+    for (const uint32_t t : adjacency.ahead(vertex)) {
+        __builtin_prefetch(&mesh.triangles[t]);
+        __builtin_prefetch(&mesh.facets[t]);
+    }
     const auto add_planes = [&](const std::vector<glm::vec3>& facets, Quadric& quadric) {
         glm::vec3 sum(0.0f);
         float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
         for (const uint32_t t : ring) {
-            const glm::vec3 facet = facets[t];
-            sum += facet;
-            const float square = glm::dot(facet, facet);
+            // By the component: copies of vectors go through memory, and wait for it.
+            const float x = facets[t].x;
+            const float y = facets[t].y;
+            const float z = facets[t].z;
+            sum += glm::vec3(x, y, z);
+            const float square = x * x + y * y + z * z;
             const float weight = square > 1e-37f ? 1 / std::sqrt(square) : 0.0f;
-            const glm::vec3 scaled = weight * facet;
-            xx += facet.x * scaled.x;
-            xy += facet.x * scaled.y;
-            xz += facet.x * scaled.z;
-            yy += facet.y * scaled.y;
-            yz += facet.y * scaled.z;
-            zz += facet.z * scaled.z;
+            const float wx = weight * x;
+            const float wy = weight * y;
+            const float wz = weight * z;
+            xx += x * wx;
+            xy += x * wy;
+            xz += x * wz;
+            yy += y * wy;
+            yz += y * wz;
+            zz += z * wz;
         }
         quadric += Quadric{xx, xy, xz, yy, yz, zz};
         return sum;
@@ -176,22 +117,17 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
     Quadric quadric;
     const glm::vec3 sum = add_planes(mesh.facets, quadric);
     std::vector<Quadric> quadrics(others_.size());
-    std::vector<Neighbor>& neighbors = chunk.neighbors;
-    neighbors.clear();
-    const bool fan = find_in_fan(mesh, ring, vertex, neighbors);
-    if (!fan) {
-        neighbors.clear();
-        find_any(mesh, ring, vertex, neighbors);
-    }
+    const bool fan = neighbors.find_fan(mesh, ring, vertex);
     const bool plain = fan && mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
-    int borders = 0;
-    for (const Neighbor& n : neighbors) {
+    int open = 0;
+    std::span<const Neighbors::Neighbor> found;
+    if (!plain)
+        found = neighbors.find(mesh, ring, vertex, fan);
+    for (const Neighbors::Neighbor& n : found) {
         const bool two = n.uses == 2;
-        if (n.vertex > vertex)
-            chunk.edges.push_back({vertex, n.vertex, n.t0, two ? n.t1 : kNone});
-        if (plain)
-            continue;
-        borders += !two;
+        if (!two && n.vertex > vertex && borders != nullptr)
+            borders->borders.emplace_back(vertex, n.vertex);
+        open += !two;
         double weight = two ? 0 : options.boundary_weight;
         if (two && !mesh.slots.empty() && mesh.slots[n.t0] != mesh.slots[n.t1])
             weight = options.boundary_weight;
@@ -230,176 +166,237 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
     }
     const auto around = [](const glm::dvec3& point, const glm::vec3& facet, const Quadric& q) {
         const auto f = [](double value) { return static_cast<float>(value); };
-        return Around{glm::vec3(point), facet,   f(q.xx), f(q.xy),
-                      f(q.xz),          f(q.yy), f(q.yz), f(q.zz)};
+        return VertexAround{glm::vec3(point), facet,   f(q.xx), f(q.xy),
+                            f(q.xz),          f(q.yy), f(q.yz), f(q.zz)};
     };
     own_[vertex] = around(mesh.points[vertex], sum, quadric);
     for (size_t i = 0; i < others_.size(); ++i) {
         const glm::vec3 other_sum = add_planes(mesh.others[i].facets, quadrics[i]);
         others_[i][vertex] = around(mesh.others[i].points[vertex], other_sum, quadrics[i]);
     }
-    kinds_[vertex] = borders == 0   ? VertexKind::Free
-                     : borders == 2 ? VertexKind::Curve
-                                    : VertexKind::Fixed;
+    kinds_[vertex] = open == 0   ? VertexKind::Free
+                     : open == 2 ? VertexKind::Curve
+                                 : VertexKind::Fixed;
 }
 
 void Edges::build(const CollapseMesh& mesh, const Adjacency& adjacency,
-                  const SimplifyOptions& options, const Job& job) {
+                  const SimplifyOptions& options, bool borders, const Job& job) {
     const size_t vertices = mesh.points.size();
     own_.resize(vertices);
     others_.resize(mesh.others.size());
-    for (std::vector<Around>& other : others_)
+    for (std::vector<VertexAround>& other : others_)
         other.resize(vertices);
     kinds_.resize(vertices);
     chunks_.resize((vertices + kChunk - 1) / kChunk);
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
         Chunk& chunk = chunks_[i];
-        chunk.edges.clear();
-        chunk.edges.reserve(kChunk * 3 + kChunk / 4);
-        const size_t last = std::min(vertices, (i + 1) * kChunk);
-        for (size_t v = i * kChunk; v < last; ++v)
-            visit(mesh, adjacency, options, static_cast<uint32_t>(v), chunk);
+        chunk.first = static_cast<uint32_t>(i * kChunk);
+        chunk.last = static_cast<uint32_t>(std::min(vertices, (i + 1) * kChunk));
+        chunk.borders.clear();
+        Neighbors neighbors;
+        for (uint32_t v = chunk.first; v < chunk.last; ++v)
+            visit(mesh, adjacency, options, v, neighbors, borders ? &chunk : nullptr);
     });
 }
 
-void Edges::rank(const CollapseMesh& mesh, Effort effort, const Job& job) {
+void Edges::clear() {
+    chunks_ = {};
+    own_ = {};
+    others_ = {};
+    kinds_ = {};
+}
+
+/// What edges cost, a block of them at a time.
+class Edges::Pricing {
+public:
+    Pricing(const Edges& edges, const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort)
+        : edges_(edges), mesh_(mesh), adjacency_(adjacency), effort_(effort) {}
+
+    /// Calls take(candidate) for every edge of which `vertex` is the lower end and that may be
+    /// collapsed, at the latest in flush().
+    template <typename Take>
+    void price(uint32_t vertex, const Take& take) {
+        const std::span<const uint32_t> ring = adjacency_.around(vertex);
+        for (const uint32_t t : adjacency_.ahead(vertex))
+            __builtin_prefetch(&mesh_.triangles[t]);
+        if (neighbors_.find_fan(mesh_, ring, vertex)) {
+            for (uint32_t i = 0; i < ring.size(); ++i) {
+                if (neighbors_.corner(i) > vertex)
+                    price(vertex, neighbors_.corner(i), ring[i], ring[neighbors_.before(i)], take);
+            }
+            return;
+        }
+        for (const Neighbors::Neighbor& n : neighbors_.find(mesh_, ring, vertex, false)) {
+            if (n.vertex > vertex)
+                price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
+        }
+    }
+
+    template <typename Take>
+    void flush(const Take& take) {
+        if (count_ == 0)
+            return;
+        for (size_t i = 0; i < count_; ++i)
+            block_.in[i] = input_of(waiting_[i]);
+        edge_costs(block_);
+        for (size_t i = 0; i < count_; ++i) {
+            const uint32_t key = key_of_cost(block_.cost[i]);
+            if (key < kImpossible)
+                take(Candidate{waiting_[i].a, waiting_[i].b, key});
+        }
+        count_ = 0;
+    }
+
+private:
+    struct Waiting {
+        uint32_t a, b, t0, t1;
+    };
+    /// t1: kNone where it is not shared by exactly two triangles.
+    template <typename Take>
+    void price(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1, const Take& take) {
+        if (!edges_.allowed(a, b, t1 == kNone, effort_))
+            return;
+        if (edges_.others_.empty()) {
+            add(a, b, t0, t1);
+            if (count_ == EdgeBlock::kSize)
+                flush(take);
+            return;
+        }
+        const uint32_t shared[2] = {t0, t1};
+        const std::span<const uint32_t> on(shared, t1 == kNone ? 1 : 2);
+        const double cost = edges_.optimum(mesh_, a, b, on, effort_).cost;
+        const uint32_t key = key_of_cost(static_cast<float>(cost));
+        if (key < kImpossible)
+            take(Candidate{a, b, key});
+    }
+
+    /// Only asks for what it is priced by: that has come when a block of edges is full.
+    void add(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1) {
+        __builtin_prefetch(&edges_.own_[b]);
+        __builtin_prefetch(&mesh_.facets[t0]);
+        if (t1 != kNone)
+            __builtin_prefetch(&mesh_.facets[t1]);
+        waiting_[count_++] = {a, b, t0, t1};
+    }
+
+    EdgeInput input_of(const Waiting& edge) const {
+        glm::vec3 shared = mesh_.facets[edge.t0];
+        if (edge.t1 != kNone)
+            shared += mesh_.facets[edge.t1];
+        const bool fixed_a = edges_.kinds_[edge.a] == VertexKind::Fixed;
+        const bool fixed_b = edges_.kinds_[edge.b] == VertexKind::Fixed;
+        const bool held = fixed_a != fixed_b || (fixed_a && effort_ < Effort::Topology);
+        return {edges_.own_[edge.a], edges_.own_[edge.b], shared,
+                held ? (fixed_a ? -1.0f : 1.0f) : 0.0f};
+    }
+
+    const Edges& edges_;
+    const CollapseMesh& mesh_;
+    const Adjacency& adjacency_;
+    Effort effort_;
+    Neighbors neighbors_;
+    EdgeBlock block_{};
+    std::array<Waiting, EdgeBlock::kSize> waiting_;
+    size_t count_ = 0;
+};
+
+uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
+                       size_t count) const {
+    const auto vertices = static_cast<uint32_t>(mesh.points.size());
+    const uint32_t step = std::max(vertices / kSampled, 1u) * kRun;
+    std::vector<uint32_t> keys;
+    keys.reserve(size_t{kSampled} * 4);
+    const auto take = [&](const Candidate& candidate) { keys.push_back(candidate.key); };
+    Pricing pricing(*this, mesh, adjacency, effort);
+    uint32_t sampled = 0;
+    for (uint32_t first = 0; first < vertices; first += step) {
+        const uint32_t last = std::min(vertices, first + kRun);
+        for (uint32_t v = first; v < last; ++v)
+            pricing.price(v, take);
+        sampled += last - first;
+    }
+    pricing.flush(take);
+    const double part = static_cast<double>(sampled) / static_cast<double>(vertices);
+    const auto at = static_cast<size_t>(part * static_cast<double>(count));
+    if (at >= keys.size())
+        return kImpossible - 1;
+    const auto middle = keys.begin() + static_cast<std::ptrdiff_t>(at);
+    std::nth_element(keys.begin(), middle, keys.end());
+    return *middle;
+}
+
+void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
+                 uint32_t limit, const Job& job) {
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
-        rank(mesh, effort, chunks_[i]);
+        Chunk& chunk = chunks_[i];
+        std::vector<Candidate> taken;
+        taken.reserve(chunk.last - chunk.first);
+        std::vector<uint32_t> starts(kSteps + 1, 0);
+        const auto take = [&](const Candidate& candidate) {
+            if (candidate.key > limit)
+                return;
+            taken.push_back(candidate);
+            ++starts[(candidate.key >> kKeyShift) + 1];
+        };
+        Pricing pricing(*this, mesh, adjacency, effort);
+        for (uint32_t v = chunk.first; v < chunk.last; ++v)
+            pricing.price(v, take);
+        pricing.flush(take);
+        for (size_t k = 0; k < kSteps; ++k)
+            starts[k + 1] += starts[k];
+        chunk.candidates.resize(taken.size());
+        for (const Candidate& candidate : taken)
+            chunk.candidates[starts[candidate.key >> kKeyShift]++] = candidate;
     });
-    counts_.assign(1u << 16u, 0);
-    possible_ = 0;
-    for (const Chunk& chunk : chunks_) {
-        for (const uint32_t key : chunk.keys) {
-            ++counts_[key >> 16u];
-            possible_ += key < kImpossible;
-        }
-    }
 }
 
-void Edges::rank(const CollapseMesh& mesh, Effort effort, Chunk& chunk) const {
-    chunk.keys.resize(chunk.edges.size());
-    if (!others_.empty()) {
-        for (size_t i = 0; i < chunk.edges.size(); ++i) {
-            const Edge& edge = chunk.edges[i];
-            chunk.keys[i] = allowed(edge, effort)
-                                ? key_of_cost(static_cast<float>(optimum(mesh, edge, effort).cost))
-                                : kImpossible;
-        }
-        return;
-    }
-    EdgeBlock block;
-    for (size_t start = 0; start < chunk.edges.size(); start += EdgeBlock::kSize) {
-        const size_t count = std::min(chunk.edges.size() - start, EdgeBlock::kSize);
-        for (size_t i = 0; i < count; ++i) {
-            const Edge& edge = chunk.edges[start + i];
-            glm::vec3 shared = mesh.facets[edge.t0];
-            if (edge.t1 != kNone)
-                shared += mesh.facets[edge.t1];
-            const Around& a = own_[edge.a];
-            const Around& b = own_[edge.b];
-            const bool fixed_a = kinds_[edge.a] == VertexKind::Fixed;
-            const bool fixed_b = kinds_[edge.b] == VertexKind::Fixed;
-            // 0: free, -1 or 1: at the end that may not move.
-            const bool held = fixed_a != fixed_b || (fixed_a && effort < Effort::Topology);
-            const float end = held ? (fixed_a ? -1.0f : 1.0f) : 0.0f;
-            const float in[EdgeBlock::kInputs] = {0.5f * (b.point.x - a.point.x),
-                                                  0.5f * (b.point.y - a.point.y),
-                                                  0.5f * (b.point.z - a.point.z),
-                                                  a.xx,
-                                                  a.xy,
-                                                  a.xz,
-                                                  a.yy,
-                                                  a.yz,
-                                                  a.zz,
-                                                  b.xx,
-                                                  b.xy,
-                                                  b.xz,
-                                                  b.yy,
-                                                  b.yz,
-                                                  b.zz,
-                                                  b.facet.x - a.facet.x,
-                                                  b.facet.y - a.facet.y,
-                                                  b.facet.z - a.facet.z,
-                                                  b.facet.x + a.facet.x - shared.x,
-                                                  b.facet.y + a.facet.y - shared.y,
-                                                  b.facet.z + a.facet.z - shared.z,
-                                                  end};
-            for (size_t k = 0; k < EdgeBlock::kInputs; ++k)
-                block.in[k][i] = in[k];
-        }
-        edge_costs(block);
-        for (size_t i = 0; i < count; ++i)
-            chunk.keys[start + i] =
-                allowed(chunk.edges[start + i], effort) ? key_of_cost(block.cost[i]) : kImpossible;
-    }
-}
-
-uint32_t Edges::key_of(size_t count) const {
-    size_t sum = 0;
-    for (size_t i = 0; i < counts_.size(); ++i) {
-        sum += counts_[i];
-        if (sum > count)
-            return (static_cast<uint32_t>(i) << 16u) | 0xffffu;
-    }
-    return kImpossible - 1;
-}
-
-void Edges::take(uint32_t limit, std::vector<Candidate>& candidates) const {
-    limit = std::min(limit, kImpossible - 1);
-    candidates.clear();
-    for (const Chunk& chunk : chunks_) {
-        for (size_t i = 0; i < chunk.keys.size(); ++i) {
-            if (chunk.keys[i] <= limit)
-                candidates.push_back({chunk.edges[i], chunk.keys[i]});
-        }
-    }
-}
-
-bool Edges::allowed(const Edge& edge, Effort effort) const {
+bool Edges::allowed(uint32_t a, uint32_t b, bool border, Effort effort) const {
     if (effort >= Effort::Topology)
         return true;
-    const VertexKind a = kinds_[edge.a];
-    const VertexKind b = kinds_[edge.b];
-    if (a == VertexKind::Fixed && b == VertexKind::Fixed)
+    if (kinds_[a] == VertexKind::Fixed && kinds_[b] == VertexKind::Fixed)
         return false;
     // An inner edge between two border points: collapsing it would pinch the surface.
-    return edge.border() || a == VertexKind::Free || b == VertexKind::Free;
+    return border || kinds_[a] == VertexKind::Free || kinds_[b] == VertexKind::Free;
 }
 
 Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
-                          const std::vector<glm::vec3>& facets, const std::vector<Around>& around,
-                          const Edge& edge, Effort effort) const {
-    const EdgeEnd a{points[edge.a], around[edge.a].quadric(), glm::dvec3(around[edge.a].facet)};
-    const EdgeEnd b{points[edge.b], around[edge.b].quadric(), glm::dvec3(around[edge.b].facet)};
-    const bool fixed_a = kinds_[edge.a] == VertexKind::Fixed;
-    const bool fixed_b = kinds_[edge.b] == VertexKind::Fixed;
+                          const std::vector<glm::vec3>& facets,
+                          const std::vector<VertexAround>& around, uint32_t a, uint32_t b,
+                          std::span<const uint32_t> shared, Effort effort) const {
+    const EdgeEnd end_a{points[a], quadric_of(around[a]), glm::dvec3(around[a].facet)};
+    const EdgeEnd end_b{points[b], quadric_of(around[b]), glm::dvec3(around[b].facet)};
+    const bool fixed_a = kinds_[a] == VertexKind::Fixed;
+    const bool fixed_b = kinds_[b] == VertexKind::Fixed;
     if (fixed_a != fixed_b || (fixed_a && effort < Effort::Topology)) {
-        const glm::dvec3& point = fixed_a ? a.point : b.point;
-        return {point, cost_at(a, b, point)};
+        const glm::dvec3& point = fixed_a ? end_a.point : end_b.point;
+        return {point, cost_at(end_a, end_b, point)};
     }
-    glm::dvec3 shared(facets[edge.t0]);
-    if (edge.t1 != kNone)
-        shared += glm::dvec3(facets[edge.t1]);
-    return best_point(a, b, shared);
+    glm::dvec3 both(0.0);
+    for (const uint32_t t : shared)
+        both += glm::dvec3(facets[t]);
+    return best_point(end_a, end_b, both);
 }
 
-Optimum Edges::optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const {
-    Optimum best = optimum_in(mesh.points, mesh.facets, own_, edge, effort);
+Optimum Edges::optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                       std::span<const uint32_t> shared, Effort effort) const {
+    Optimum best = optimum_in(mesh.points, mesh.facets, own_, a, b, shared, effort);
     for (size_t i = 0; i < others_.size(); ++i) {
         const OtherPose& pose = mesh.others[i];
-        best.cost += optimum_in(pose.points, pose.facets, others_[i], edge, effort).cost;
+        best.cost += optimum_in(pose.points, pose.facets, others_[i], a, b, shared, effort).cost;
     }
     return best;
 }
 
-void Edges::other_points(const CollapseMesh& mesh, const Edge& edge, Effort effort,
+void Edges::other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                         std::span<const uint32_t> shared, Effort effort,
                          std::vector<glm::dvec3>& points) const {
     points.clear();
     for (size_t i = 0; i < others_.size(); ++i) {
         const OtherPose& pose = mesh.others[i];
-        points.push_back(optimum_in(pose.points, pose.facets, others_[i], edge, effort).point);
+        points.push_back(
+            optimum_in(pose.points, pose.facets, others_[i], a, b, shared, effort).point);
     }
 }
 

@@ -3,19 +3,16 @@
 #pragma once
 
 #include "approximate/adjacency.h"
+#include "approximate/edge_costs.h"
 #include "approximate/quadric.h"
 #include "approximate/simplify.h"
 
 namespace lodestone::approximate {
 
+class Neighbors;
+
 /// How far a vertex may move. Curve: inside an open border or a non-manifold edge chain.
 enum class VertexKind : uint8_t { Free, Curve, Fixed };
-
-struct Edge {
-    uint32_t a, b;    // a < b
-    uint32_t t0, t1;  // triangles on it; t1 == kNone: not shared by exactly two
-    bool border() const { return t1 == kNone; }
-};
 
 /// What may be done to reach the target; each step includes those before.
 enum class Effort : uint8_t {
@@ -28,74 +25,64 @@ enum class Effort : uint8_t {
 
 /// An edge that may be collapsed, and its cost as a float's bits: those of costs sort as they do.
 struct Candidate {
-    Edge edge;
+    uint32_t a, b;  // a < b
     uint32_t key;
 };
 
-/// Rebuilt from the present mesh before every pass ("memoryless"); arrays are reused. Works on
-/// several threads; the result does not depend on how many.
+/// Vertices [first, last) of the mesh, the candidates of which they are the lower ends, and what of
+/// these can be judged on a thread of its own.
+struct Chunk {
+    uint32_t first = 0;
+    uint32_t last = 0;
+    std::vector<Candidate> candidates;                   // by cost, roughly: see kKeyShift
+    std::vector<std::pair<uint32_t, uint32_t>> borders;  // edges not shared by two triangles
+    bool has(uint32_t vertex) const { return vertex - first < last - first; }
+};
+
+/// Candidates are ordered by the upper bits of their keys (steps of a quarter to an eighth), those
+/// of one step as they come: neighbors in the mesh mostly follow each other.
+inline constexpr unsigned kKeyShift = 21;
+
+/// Rebuilt from the present mesh before every pass ("memoryless"); arrays are reused. Edges are not
+/// stored: they are enumerated when they are looked at. Works on several threads; the result does
+/// not depend on how many.
 class Edges {
 public:
+    /// The surroundings of every vertex. `borders`: lists them, too.
     void build(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
-               const Job& job);
-    /// What every edge costs; of those the ends of which forbid it, infinitely much.
-    void rank(const CollapseMesh& mesh, Effort effort, const Job& job);
-    /// How many can be collapsed, and the cost that (about, not below) `count` of them do not
-    /// exceed.
-    size_t possible() const { return possible_; }
-    uint32_t key_of(size_t count) const;
-    /// The possible ones up to a cost.
-    void take(uint32_t limit, std::vector<Candidate>& candidates) const;
+               bool borders, const Job& job);
+    /// The cost that about `count` edges do not exceed, from a sample of them; what nothing exceeds
+    /// when not as many can be collapsed.
+    uint32_t key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
+                    size_t count) const;
+    /// Fills the chunks' candidates with the possible ones up to a cost.
+    void take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort, uint32_t limit,
+              const Job& job);
+    const std::vector<Chunk>& chunks() const { return chunks_; }
+    /// Gives its memory back.
+    void clear();
 
-    VertexKind kind(uint32_t vertex) const { return kinds_[vertex]; }
-    /// Calls visit(a, b) for every edge that is not shared by exactly two triangles.
-    template <typename Visit>
-    void borders(const Visit& visit) const {
-        for (const Chunk& chunk : chunks_) {
-            for (const Edge& edge : chunk.edges) {
-                if (edge.border())
-                    visit(edge.a, edge.b);
-            }
-        }
-    }
-
-    /// Where it goes; the cost is that of all poses together.
-    Optimum optimum(const CollapseMesh& mesh, const Edge& edge, Effort effort) const;
+    /// Where the edge goes; the cost is that of all poses together. `shared`: triangles on it.
+    Optimum optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                    std::span<const uint32_t> shared, Effort effort) const;
     /// Where it goes in each of the mesh's other poses.
-    void other_points(const CollapseMesh& mesh, const Edge& edge, Effort effort,
+    void other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                      std::span<const uint32_t> shared, Effort effort,
                       std::vector<glm::dvec3>& points) const;
 
 private:
-    /// Of a vertex's surroundings in one pose.
-    struct Around {
-        glm::vec3 point;  // as the ranking sees it
-        glm::vec3 facet;  // sum of the area vectors
-        float xx, xy, xz, yy, yz, zz;
-        Quadric quadric() const { return {xx, xy, xz, yy, yz, zz}; }
-    };
-    struct Neighbor {
-        uint32_t vertex, uses, t0, t1;
-        bool leaving0, leaving1;  // the triangle runs vertex -> neighbor
-    };
-    /// Vertices [first, last), and the edges of which they are the lower end.
-    struct Chunk {
-        std::vector<Edge> edges;
-        std::vector<uint32_t> keys;
-        std::vector<Neighbor> neighbors;
-    };
+    class Pricing;
     void visit(const CollapseMesh& mesh, const Adjacency& adjacency, const SimplifyOptions& options,
-               uint32_t vertex, Chunk& chunk);
-    bool allowed(const Edge& edge, Effort effort) const;
-    void rank(const CollapseMesh& mesh, Effort effort, Chunk& chunk) const;
+               uint32_t vertex, Neighbors& neighbors, Chunk* borders);
+    bool allowed(uint32_t a, uint32_t b, bool border, Effort effort) const;
     Optimum optimum_in(const std::vector<glm::dvec3>& points, const std::vector<glm::vec3>& facets,
-                       const std::vector<Around>& around, const Edge& edge, Effort effort) const;
+                       const std::vector<VertexAround>& around, uint32_t a, uint32_t b,
+                       std::span<const uint32_t> shared, Effort effort) const;
 
     std::vector<Chunk> chunks_;
-    std::vector<Around> own_;                  // by vertex
-    std::vector<std::vector<Around>> others_;  // by pose
+    std::vector<VertexAround> own_;                  // by vertex; points as the ranking sees them
+    std::vector<std::vector<VertexAround>> others_;  // by pose
     std::vector<VertexKind> kinds_;
-    std::vector<uint32_t> counts_;  // of possible edges by the upper half of their keys
-    size_t possible_ = 0;
 };
 
 }  // namespace lodestone::approximate

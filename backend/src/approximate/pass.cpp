@@ -3,8 +3,10 @@
 
 #include "approximate/edge_costs.h"
 #include "approximate/sheets.h"
+#include "base/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -17,31 +19,210 @@ constexpr int kMostSlowPasses = 64;
 /// Triangles a pass may look at for each one there is; ordinary meshes need 18 at most.
 constexpr size_t kWork = 40;
 
-/// Small passes choose with fresher costs, large ones take less time.
-constexpr Pace kFast{0.35, 2.0, 1.0 / 3, 22};
-constexpr Pace kBest{0.12, 1.0, 0.5, 22};
+/// Small passes choose with fresher costs, large ones take less time. (More than .35 ruins plates
+/// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
+constexpr Pace kFast{0.35, 2.0, 1.0 / 3};
+constexpr Pace kBest{0.12, 1.0, 0.5};
+/// Chunks go through their candidates at the same time, by so many steps of costs.
+constexpr size_t kRounds = 4;
+/// So many edges ahead memory is asked for what they need.
+constexpr size_t kLists = 12;
+constexpr size_t kTriangles = 4;
 
 bool is_slow(size_t gone, size_t wanted) {
     return static_cast<double>(gone) < kSlow * static_cast<double>(wanted);
 }
 
-/// The candidates by cost, those of almost the same one as they come: neighbors in the mesh, which
-/// the processor's caches know, mostly follow each other.
-void sort(const std::vector<Candidate>& candidates, unsigned shift, std::vector<uint32_t>& order) {
-    std::vector<uint32_t> first((kImpossible >> shift) + 2, 0);
-    for (const Candidate& candidate : candidates)
-        ++first[(candidate.key >> shift) + 1];
-    for (size_t i = 1; i < first.size(); ++i)
-        first[i] += first[i - 1];
-    order.resize(candidates.size());
-    for (uint32_t i = 0; i < candidates.size(); ++i)
-        order[first[candidates[i].key >> shift]++] = i;
+uint32_t step_of(const Candidate& candidate) {
+    return candidate.key >> kKeyShift;
+}
+
+/// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
+std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks) {
+    std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
+    size_t all = 0;
+    for (const Chunk& chunk : chunks) {
+        for (const Candidate& candidate : chunk.candidates)
+            ++counts[step_of(candidate)];
+        all += chunk.candidates.size();
+    }
+    const size_t rounds = chunks.size() > 1 ? kRounds : 1;
+    std::vector<uint32_t> ends;
+    size_t sum = 0;
+    for (uint32_t step = 0; step < counts.size(); ++step) {
+        sum += counts[step];
+        if (sum > 0 && sum * rounds >= all * (ends.size() + 1) && counts[step] > 0)
+            ends.push_back(step + 1);
+    }
+    return ends;
 }
 
 }  // namespace
 
 Reducer::Reducer(CollapseMesh& mesh, const SimplifyOptions& options)
     : mesh_(mesh), options_(options), pace_(options.mode == SimplifyMode::Best ? kBest : kFast) {}
+
+/// One batch of collapses.
+class Reducer::Batch {
+public:
+    Batch(Reducer& reducer, Effort effort, size_t start, size_t want)
+        : r_(reducer),
+          effort_(effort),
+          want_(want),
+          work_(kWork * start + 100000),
+          removable_(reducer.parts_.removable()),
+          doomed_(removable_.empty() ? 0 : reducer.mesh_.part_count, 0),
+          taken_(doomed_.size(), 0),
+          whole_(reducer.mesh_, reducer.adjacency_, reducer.edges_, effort,
+                 reducer.options_.max_turn) {
+        r_.used_.assign(r_.mesh_.points.size(), 0);
+    }
+
+    void run(const Job& job) {
+        const std::vector<Chunk>& chunks = r_.edges_.chunks();
+        std::vector<size_t> next(chunks.size(), 0);  // candidate of each chunk
+        std::vector<size_t> last(chunks.size(), 0);  // that the round goes up to
+        std::vector<std::vector<uint32_t>> left(chunks.size());
+        std::vector<size_t> gone(chunks.size(), 0);
+        uint32_t begin = 0;
+        for (const uint32_t end : rounds_of(chunks)) {
+            if (gone_ >= want_)
+                break;
+            remove_parts_below(begin << kKeyShift);
+            begin = end;
+            size_t all = 0;
+            for (size_t i = 0; i < chunks.size(); ++i) {
+                const std::vector<Candidate>& candidates = chunks[i].candidates;
+                last[i] = next[i];
+                while (last[i] < candidates.size() && step_of(candidates[last[i]]) < end)
+                    ++last[i];
+                all += last[i] - next[i];
+            }
+            const size_t rest = want_ - std::min(want_, gone_);
+            if (chunks.size() == 1) {
+                for (uint32_t k = 0; k < last[0]; ++k)
+                    left[0].push_back(k);
+            } else {
+                parallel_for(chunks.size(), [&](size_t i) {
+                    job.check();
+                    left[i].clear();
+                    const double part = static_cast<double>(last[i] - next[i]) /
+                                        static_cast<double>(std::max<size_t>(all, 1));
+                    const auto share = [&](size_t whole) {
+                        return static_cast<size_t>(part * static_cast<double>(whole));
+                    };
+                    gone[i] = within(chunks[i], next[i], last[i], share(rest),
+                                     share(work_ / kRounds), left[i]);
+                });
+                for (const size_t each : gone) {
+                    gone_ += each;
+                    collapsed_ += each;
+                }
+            }
+            across(chunks, left, job);
+            next = last;
+        }
+        if (effort_ >= Effort::Topology && is_slow(gone_, want_)) {
+            while (gone_ < want_ && next_part_ < removable_.size())
+                remove_next_part();
+        }
+        r_.mesh_.live -= collapsed_;
+        if (next_part_ > 0)
+            r_.parts_.remove(r_.mesh_, doomed_);
+    }
+
+private:
+    void remove_next_part() {
+        const Part& part = removable_[next_part_++];
+        doomed_[part.part] = 1;
+        gone_ += part.triangles - taken_[part.part];
+    }
+    void remove_parts_below(uint32_t key) {
+        const auto cost = static_cast<double>(std::bit_cast<float>(key));
+        while (next_part_ < removable_.size() && removable_[next_part_].cost < cost &&
+               gone_ < want_)
+            remove_next_part();
+    }
+    size_t collapse(Collapser& collapser, const Candidate& candidate) {
+        const uint32_t part = r_.mesh_.parts[candidate.a];
+        if (!doomed_.empty() && doomed_[part])
+            return 0;
+        const size_t went = collapser.collapse(candidate.a, candidate.b);
+        if (went == 0 || went == Collapser::kOutside)
+            return went;
+        r_.used_[candidate.a] = r_.used_[candidate.b] = 1;
+        if (!taken_.empty())
+            std::atomic_ref(taken_[part]).fetch_add(went, std::memory_order_relaxed);
+        return went;
+    }
+
+    /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most` triangles
+    /// at most; `left` gets the others.
+    size_t within(const Chunk& chunk, size_t next, size_t last, size_t most, size_t work,
+                  std::vector<uint32_t>& left) {
+        if (next == last)
+            return 0;
+        Collapser collapser(r_.mesh_, r_.adjacency_, r_.edges_, effort_, r_.options_.max_turn,
+                            &chunk);
+        size_t gone = 0;
+        for (size_t k = next; k < last; ++k) {
+            const Candidate& candidate = chunk.candidates[k];
+            if (k + kLists < last)
+                collapser.expect_lists(chunk.candidates[k + kLists]);
+            if (k + kTriangles < last) {
+                const Candidate& coming = chunk.candidates[k + kTriangles];
+                if (!r_.used_[coming.a])
+                    collapser.expect_triangles(coming);
+            }
+            if (r_.used_[candidate.a])
+                continue;
+            if (!chunk.has(candidate.b) || gone + 2 > most || collapser.work() > work) {
+                left.push_back(static_cast<uint32_t>(k));
+                continue;
+            }
+            if (r_.used_[candidate.b])
+                continue;
+            const size_t went = collapse(collapser, candidate);
+            if (went == Collapser::kOutside)
+                left.push_back(static_cast<uint32_t>(k));
+            else
+                gone += went;
+        }
+        return gone;
+    }
+
+    /// What the chunks left, one after the other.
+    void across(const std::vector<Chunk>& chunks, const std::vector<std::vector<uint32_t>>& left,
+                const Job& job) {
+        for (size_t i = 0; i < chunks.size(); ++i) {
+            for (const uint32_t k : left[i]) {
+                if ((k & 0xfffu) == 0)
+                    job.check();
+                const Candidate& candidate = chunks[i].candidates[k];
+                if (r_.used_[candidate.a] || r_.used_[candidate.b])
+                    continue;
+                remove_parts_below(candidate.key);
+                if (gone_ >= want_ || whole_.work() > work_)
+                    return;
+                const size_t went = collapse(whole_, candidate);
+                gone_ += went;
+                collapsed_ += went;
+            }
+        }
+    }
+
+    Reducer& r_;
+    Effort effort_;
+    size_t want_;
+    size_t work_;  // triangles it may look at
+    const std::vector<Part>& removable_;
+    std::vector<uint8_t> doomed_;
+    std::vector<size_t> taken_;
+    Collapser whole_;
+    size_t next_part_ = 0;
+    size_t gone_ = 0;       // triangles, with those of parts
+    size_t collapsed_ = 0;  // without
+};
 
 size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t before = mesh_.live;
@@ -51,73 +232,29 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     if (mesh_.live <= target)
         return before - mesh_.live;
     adjacency_.build(mesh_);
-    edges_.build(mesh_, adjacency_, options_, job);
+    edges_.build(mesh_, adjacency_, options_, !begun_, job);
     if (!begun_) {
-        edges_.borders([&](uint32_t a, uint32_t b) {
-            mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
-        });
+        for (const Chunk& chunk : edges_.chunks()) {
+            for (const auto& [a, b] : chunk.borders)
+                mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
+        }
     }
     begun_ = true;
     parts_.measure(mesh_, options_.part_weight);
-    edges_.rank(mesh_, effort, job);
 
     const size_t start = mesh_.live;
     const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
     const size_t want = std::min(start - target, std::max<size_t>(share, 64));
     uint32_t limit = kImpossible - 1;
-    const auto enough = static_cast<size_t>(pace_.quantile * static_cast<double>(want));
-    if (effort == Effort::Careful && enough < edges_.possible())
-        limit =
-            std::min(limit, std::bit_cast<uint32_t>(static_cast<float>(pace_.slack) *
-                                                    std::bit_cast<float>(edges_.key_of(enough))));
-    edges_.take(limit, candidates_);
-    sort(candidates_, pace_.shift, order_);
-
-    Collapser collapser(mesh_, adjacency_, effort, options_.max_turn);
-    used_.assign(mesh_.points.size(), 0);
-    const std::vector<Part>& removable = parts_.removable();
-    std::vector<uint8_t> doomed(removable.empty() ? 0 : mesh_.part_count, 0);
-    std::vector<size_t> taken(doomed.size(), 0);
-    size_t next_part = 0;
-    size_t gone = 0;
-    const auto remove_next_part = [&] {
-        const Part& part = removable[next_part++];
-        doomed[part.part] = 1;
-        gone += part.triangles - taken[part.part];
-    };
-    const size_t most_work = kWork * start + 100000;
-    for (size_t i = 0; i < order_.size() && gone < want; ++i) {
-        if ((i & 0xfffu) == 0)
-            job.check();
-        if (collapser.work() > most_work)
-            break;
-        const Candidate& candidate = candidates_[order_[i]];
-        const auto cost = static_cast<double>(std::bit_cast<float>(candidate.key));
-        while (next_part < removable.size() && removable[next_part].cost < cost && gone < want)
-            remove_next_part();
-        const Edge& edge = candidate.edge;
-        if (gone >= want || used_[edge.a] || used_[edge.b])
-            continue;
-        const uint32_t part = mesh_.parts[edge.a];
-        if (!doomed.empty() && doomed[part])
-            continue;
-        const Optimum best = edges_.optimum(mesh_, edge, effort);
-        edges_.other_points(mesh_, edge, effort, other_points_);
-        const size_t went = collapser.collapse(edge.a, edge.b, best.point, other_points_);
-        if (went == 0)
-            continue;
-        used_[edge.a] = used_[edge.b] = 1;
-        gone += went;
-        if (!taken.empty())
-            taken[part] += went;
+    if (effort == Effort::Careful) {
+        const auto enough = static_cast<size_t>(pace_.quantile * static_cast<double>(want));
+        const uint32_t key = edges_.key_of(mesh_, adjacency_, effort, enough);
+        limit = std::min(limit, std::bit_cast<uint32_t>(static_cast<float>(pace_.slack) *
+                                                        std::bit_cast<float>(key)));
     }
-    if (effort >= Effort::Topology && is_slow(gone, want)) {
-        while (gone < want && next_part < removable.size())
-            remove_next_part();
-    }
-    if (next_part > 0)
-        parts_.remove(mesh_, doomed);
-    return before - start + gone;
+    edges_.take(mesh_, adjacency_, effort, limit, job);
+    Batch(*this, effort, start, want).run(job);
+    return before - mesh_.live;
 }
 
 bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass) {
@@ -135,6 +272,10 @@ bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>&
             break;
     }
     compact(mesh_);
+    shrink(mesh_);
+    adjacency_ = {};
+    edges_.clear();
+    used_ = {};
     return mesh_.live <= target;
 }
 

@@ -16,7 +16,6 @@ struct Pace {
     double share;     // of the live triangles it may take
     double slack;     // a careful pass stops at this many times the cost
     double quantile;  // that this many edges for each triangle wanted do not exceed
-    unsigned shift;   // low bits of costs that do not order them: 23 is a factor of two
 };
 
 class Reducer {
@@ -28,8 +27,10 @@ public:
     bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass);
 
 private:
+    class Batch;
     /// One batch; returns how many triangles went.
     size_t pass(size_t target, Effort effort, const Job& job);
+
     CollapseMesh& mesh_;
     SimplifyOptions options_;
     Pace pace_;
@@ -37,10 +38,7 @@ private:
     Edges edges_;
     Parts parts_;
     bool begun_ = false;
-    std::vector<Candidate> candidates_;
-    std::vector<uint32_t> order_;  // of candidates
-    std::vector<uint8_t> used_;
-    std::vector<glm::dvec3> other_points_;
+    std::vector<uint8_t> used_;  // as an end in this pass, by vertex
 };
 
 }  // namespace lodestone::approximate

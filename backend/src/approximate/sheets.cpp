@@ -42,40 +42,83 @@ void join(std::vector<uint32_t>& parents, uint32_t a, uint32_t b) {
 
 void split_layers(CollapseMesh& mesh) {
     const size_t count = mesh.triangles.size();
-    size_t size = 16;
-    while (size < count * 2)
-        size *= 2;
-    std::vector<uint32_t> table(size, kNone);
-    std::vector<uint32_t> copies;  // of the triangle a table entry names; made on first need
+    constexpr size_t kFew = 32;
     std::unordered_map<uint64_t, uint32_t> moved;
-    for (size_t i = 0; i < count; ++i) {
-        const Triangle key = sorted(mesh.triangles[i]);
-        uint64_t hash = (key.x + (uint64_t{key.y} << 32u)) * 0x9e3779b97f4a7c15u;
-        hash = (hash ^ (hash >> 29u) ^ key.z) * 0xd6e8feb86659fd93u;
-        hash ^= hash >> 32u;
-        for (size_t at = hash & (size - 1);; at = (at + 1) & (size - 1)) {
-            const uint32_t other = table[at];
-            if (other == kNone) {
-                table[at] = static_cast<uint32_t>(i);
+    std::vector<std::pair<Triangle, uint32_t>> keys;    // of the triangles of one lowest vertex
+    std::vector<std::pair<uint32_t, uint32_t>> copies;  // of them: triangle and the first like it
+    std::unordered_map<uint32_t, uint32_t> layers;      // so far, by the first
+    for (size_t begin = 0, end = 0; begin < count; begin = end) {
+        keys.clear();
+        for (; end < count; ++end) {
+            const Triangle key = sorted(mesh.triangles[end]);
+            if (!keys.empty() && key.x != keys[0].first.x)
                 break;
+            keys.emplace_back(key, static_cast<uint32_t>(end));
+        }
+        copies.clear();
+        if (keys.size() > kFew) {
+            std::sort(keys.begin(), keys.end(), [](const auto& a, const auto& b) {
+                return std::tie(a.first.y, a.first.z, a.second) <
+                       std::tie(b.first.y, b.first.z, b.second);
+            });
+            for (size_t i = 1, first = 0; i < keys.size(); ++i) {
+                if (keys[i].first == keys[first].first)
+                    copies.emplace_back(keys[i].second, keys[first].second);
+                else
+                    first = i;
             }
-            // Only first copies are in the table, and those still have their own vertices.
-            if (sorted(mesh.triangles[other]) != key)
-                continue;
-            if (copies.empty())
-                copies.assign(count, 0);
-            const uint32_t layer = ++copies[other];
+            std::sort(copies.begin(), copies.end());
+        } else {
+            for (size_t i = 1; i < keys.size(); ++i) {
+                for (size_t first = 0; first < i; ++first) {
+                    if (keys[i].first.y != keys[first].first.y ||
+                        keys[i].first.z != keys[first].first.z)
+                        continue;
+                    copies.emplace_back(keys[i].second, keys[first].second);
+                    break;
+                }
+            }
+        }
+        for (const auto& [triangle, first] : copies) {
+            const uint32_t layer = ++layers[first];
             for (int corner = 0; corner < 3; ++corner) {
-                uint32_t& vertex = mesh.triangles[i][corner];
+                uint32_t& vertex = mesh.triangles[triangle][corner];
                 const auto [entry, fresh] = moved.try_emplace(
                     (uint64_t{layer} << 32u) | vertex, static_cast<uint32_t>(mesh.points.size()));
                 if (fresh)
                     mesh.copy_vertex(vertex);
                 vertex = entry->second;
             }
-            break;
         }
     }
+}
+
+/// One closed fan, all turned alike: nothing to split. Most vertices are that.
+bool is_closed_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
+    constexpr size_t kMost = 12;
+    const size_t count = ring.size();
+    if (count > kMost || count < 3)
+        return false;
+    uint32_t to[kMost];
+    uint32_t from[kMost];
+    for (size_t i = 0; i < count; ++i) {
+        const Triangle& t = mesh.triangles[ring[i]];
+        const bool first = t.x == vertex;
+        const bool second = t.y == vertex;
+        to[i] = first ? t.y : (second ? t.z : t.x);
+        from[i] = first ? t.z : (second ? t.x : t.y);
+    }
+    // Each triangle begins where the one before ends: the next is swapped to its place.
+    for (size_t i = 0; i + 1 < count; ++i) {
+        size_t next = i + 1;
+        while (next < count && to[next] != from[i])
+            ++next;
+        if (next == count)
+            return false;
+        to[next] = to[i + 1];
+        std::swap(from[next], from[i + 1]);
+    }
+    return from[count - 1] == to[0];
 }
 
 void split_fans(CollapseMesh& mesh) {
@@ -88,6 +131,8 @@ void split_fans(CollapseMesh& mesh) {
     const auto vertices = static_cast<uint32_t>(mesh.points.size());
     for (uint32_t v = 0; v < vertices; ++v) {
         const std::span<const uint32_t> ring = adjacency.around(v);
+        if (is_closed_fan(mesh, ring, v))
+            continue;
         parents.resize(ring.size());
         std::iota(parents.begin(), parents.end(), 0u);
         seen.clear();

@@ -8,7 +8,8 @@ namespace lodestone::approximate {
 
 /// Coinciding triangles (the two sides of a card, accidental copies): the second of each becomes
 /// part of a second layer with its own vertices, and so on. Otherwise every edge of such a sheet
-/// would be non-manifold and nothing could be collapsed.
+/// would be non-manifold and nothing could be collapsed. Triangles must be in the order of their
+/// lowest vertices.
 void split_layers(CollapseMesh& mesh);
 
 /// A vertex whose triangles form several fans that share no edge gets one copy per fan.

@@ -39,9 +39,10 @@ struct SimplifyOptions {
 /// has. Separate parts too small for a target disappear whole, smallest first. Any input is
 /// accepted: non-manifold edges are kept as curves, triangles with non-finite vertices are left
 /// out. Throws Error(InvalidArgument) as check(mesh) does, or for targets not falling, or for
-/// options out of range. The same bits on any number of threads. 200 bytes a triangle above the
-/// input. source: Lindstrom & Turk 1999 (memoryless quadrics, volume constraint), in batches; then
-/// Hoppe et al. 1993 (vertices fitted to the original).
+/// options out of range. The same bits on any number of threads. 100 bytes a triangle above the
+/// input, more where little is taken away: the fit then has many samples. source: Lindstrom & Turk
+/// 1999 (memoryless quadrics, volume constraint), in batches; then Hoppe et al. 1993 (vertices
+/// fitted to the original).
 std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
                                  const SimplifyOptions& options = {}, const Job& job = {});
 
