@@ -8,18 +8,21 @@ simplify --mode best | fast | cluster` all get the same position-welded mesh wit
 coordinates and bring it to 50, 10, 2 and 0.5 % of its triangles. mesh_eval of $LODESTONE_TOOLS is
 built in build/bench/peers; peers that are not installed are skipped with a sentence. CPU seconds
 are those from mesh in memory to mesh in memory, without files; the kinds run by turns. Numbers are
-geometric means of ratios to Blender's, over all models and targets both reached. Prints tables and
-writes JSON; no number makes it fail. An hour and a half; CGAL takes most of it (--slow-rounds).
+geometric means of ratios to Blender's, over all models and targets both reached. A mesh of a
+million triangles (one of the models, cut finer) is brought to 10 % on one and on two threads within
+one process: wall and CPU seconds, and the memory above the input. Prints tables and writes JSON; no
+number makes it fail. An hour and a half; CGAL takes most of it (--slow-rounds).
 """
 
 import argparse
 import json
 import math
 import os
-import statistics
 import subprocess
 import sys
 from pathlib import Path
+
+import benching
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("LODESTONE_BUILD") or ROOT / "build" / "release")
@@ -33,6 +36,7 @@ PEERS = {
     "peer_cgal": (("cgal_lt", "cgal_gh"), True),
     "peer_openmesh": (("om",), True),
 }
+MILLION = "bunny"  # the model that is cut
 OPENMESH_MODELS = ("bunny", "fandisk")  # slow and the worst of all: two models will do
 LABELS = {
     "blender": "Blender 3.4.1 Decimate",
@@ -71,6 +75,7 @@ GOALS = {  # as many times Blender's, at most
         "cpu": 0.12,
     },
 }
+MILLION_GOALS = {"wall": 0.6, "bytes": 100}  # seconds on two cores; above the input, a triangle
 SLOPPY_GOALS = {"mean": 0.6, "cpu": 1.3}  # of cluster, as many times simplifySloppy's
 TIMEOUT = 1800
 
@@ -233,7 +238,7 @@ def compared(found: dict, peer: str, base: str) -> dict:
         for i in range(rounds)
     ]
     if each:
-        out["cpu"] = {"min": min(each), "median": statistics.median(each), "max": max(each)}
+        out["cpu"] = benching.spread(each)
     mine = [one for (name, _, _), one in found.items() if name == peer]
     out["runs"] = len(mine)
     out["missed"] = sum(1 for one in mine if missed(one))
@@ -251,7 +256,7 @@ def cell(number: float, goal: float | None) -> str:
 def cpu_cell(cpu: dict | None, goal: float | None) -> str:
     if cpu is None:
         return "-"
-    text = " / ".join(f"{cpu[key]:.3f}" for key in ("min", "median", "max"))
+    text = benching.cell(cpu, digits=3)
     return text if goal is None else f"{text} (<= {goal:g})"
 
 
@@ -290,6 +295,40 @@ def target_table(found: dict, targets: tuple) -> list[str]:
             cells.append(f"{cell(one['mean'], None)}; {middle:.3f}" if one["pairs"] else "-")
         if any(text != "-" for text in cells):
             lines.append(f"| {label} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def million(mesh: Path, rounds: int) -> list[dict]:
+    """What bench_collapse measures on the mesh, cut until it has a million triangles."""
+    if run(["cmake", "--build", BUILD, "--target", "bench_collapse"]) is None:
+        return []
+    program = BUILD / "tests" / "bench_collapse"
+    return [
+        {"threads": threads, **one}
+        for mode in ("fast", "best")
+        for threads in (1, 2)
+        for one in records(run([program, mode, 0.1, 1, rounds, threads, mesh]))
+    ]
+
+
+def million_table(ones: list[dict]) -> list[str]:
+    """Markdown: seconds and memory of each mode on one thread and on two."""
+    wall, most = MILLION_GOALS["wall"], MILLION_GOALS["bytes"]
+    lines = [
+        f"| a million triangles to 10 % | wall s (<= {wall:g} on 2 idle cores) | CPU s "
+        f"| bytes a triangle (<= {most:g}) |",
+        "|---|---|---|---|",
+    ]
+    for mode in ("fast", "best"):
+        for threads in (1, 2):
+            part = [one for one in ones if (one["mode"], one["threads"]) == (mode, threads)]
+            if part:
+                cells = [
+                    benching.cell(benching.spread([one[key] for one in part]))
+                    for key in ("wall", "cpu")
+                ]
+                cells.append(f"{max(one['bytes'] for one in part):.0f}")
+                lines.append(f"| {mode}, {threads} threads | " + " | ".join(cells) + " |")
     return lines
 
 
@@ -337,7 +376,7 @@ def main() -> None:
     if not sources:
         print(f"bench_simplify.py: skipped, there are no models in {DATA / 'models'}")
         return
-    busy = os.getloadavg()[0]
+    busy = benching.load()
     peers = build_peers(options.folder)
     if peers is None:
         print("bench_simplify.py: nothing to measure with, skipped")
@@ -356,20 +395,20 @@ def main() -> None:
     )
     print("\n".join(table(found)), end="\n\n")
     print("\n".join(target_table(found, options.targets)), end="\n\n")
-    print(sloppy_sentence(found))
+    print(sloppy_sentence(found), end="\n\n")
+    mesh = bench.out / f"{MILLION}.ply"
+    ones = million(mesh, options.rounds) if mesh.is_file() and not options.small else []
+    if ones:
+        print("\n".join(million_table(ones)))
     data = {
-        "schema": 1,
-        "verb": "bench",
         "input": [str(source) for source in sources],
-        "cores": os.cpu_count(),
-        "load_before": busy,
-        "goals": {**GOALS, "cluster_beside_sloppy": SLOPPY_GOALS},
+        "goals": {**GOALS, "cluster_beside_sloppy": SLOPPY_GOALS, "million": MILLION_GOALS},
+        "million": ones,
         "results": [
             {"peer": peer, "model": model, **one} for (peer, model, _), one in found.items()
         ],
     }
-    options.json.write_text(json.dumps(data, indent=1) + "\n", "utf-8")
-    print(f"\n{options.json}")
+    benching.write(options.json, busy, data)
 
 
 if __name__ == "__main__":
