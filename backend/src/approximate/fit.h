@@ -11,6 +11,8 @@ struct FitOptions {
     double share = 1;    // of the original's triangles, at most
     int sweeps = 1;      // how often each sample looks for what it is nearest to
     int iterations = 3;  // of the solver in each sweep
+    /// Flips edges before solving and draws back vertices that stick out. Takes many samples.
+    bool careful = false;
 };
 
 /// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fit samples: points of an original surface, and the places of its simplified mesh nearest to them.
+#pragma once
+
+#include "approximate/adjacency.h"
+
+#include <glm/geometric.hpp>
+
+namespace lodestone::approximate {
+
+/// A sample misses the place it is nearest to by `miss` along `toward`.
+struct FitSample {
+    uint32_t triangle;
+    uint32_t source;   // triangle of the original; kNone: of its outline
+    float weights[3];  // of the triangle's corners
+    glm::vec3 toward;
+    float miss;
+    float area;
+};
+using FitSamples = std::vector<FitSample>;
+
+/// A simplified mesh with what it takes to find an original's surface on it.
+class FitPlaces {
+public:
+    /// `mesh` must be compact and have been opened from `source`.
+    FitPlaces(CollapseMesh& mesh, const Mesh& source);
+
+    /// A vertex of the original, in the mesh's frame.
+    glm::vec3 original(uint32_t vertex) const {
+        return glm::vec3((glm::dvec3(source_.positions[vertex]) - mesh_.center) / mesh_.scale);
+    }
+    /// The vertex that one of the original became; kNone when it vanished with its part.
+    uint32_t place(uint32_t vertex);
+
+    CollapseMesh& mesh() { return mesh_; }
+    const Mesh& source() const { return source_; }
+    /// The mesh's vertices; whoever moves one keeps both.
+    std::vector<glm::vec3>& points() { return points_; }
+
+private:
+    CollapseMesh& mesh_;
+    const Mesh& source_;
+    std::vector<uint32_t> place_of_;
+    std::vector<glm::vec3> points_;
+};
+
+/// Which samples lie on each triangle.
+class SamplesByTriangle {
+public:
+    SamplesByTriangle(const FitSamples& samples, size_t triangles);
+    std::span<const uint32_t> on(uint32_t triangle) const {
+        return {order_.data() + first_[triangle], order_.data() + first_[triangle + 1]};
+    }
+
+private:
+    std::vector<uint32_t> first_;
+    std::vector<uint32_t> order_;
+};
+
+/// Barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
+/// Real-Time Collision Detection, 5.1.5.
+glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+/// Appends about `want` samples of the original's surface, spread evenly over its triangles.
+void sample_surface(FitPlaces& places, const Adjacency& adjacency, size_t want, const Job& job,
+                    FitSamples& samples);
+
+/// Appends samples of the edges that were open borders at first, and the borders nearest to them.
+void sample_outline(FitPlaces& places, const Adjacency& adjacency, const Job& job,
+                    FitSamples& samples);
+
+/// Appends a sample for each vertex of the mesh: the surface nearest to it, of that which `samples`
+/// were taken from around it. Vertices that stick out are drawn back.
+void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples);
+
+/// How far each vertex of the mesh has to move (into `moves`) for the least sum of squared misses,
+/// by `iterations` of a damped block Jacobi. None moves further than its samples miss.
+void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations,
+               std::vector<glm::vec3>& moves);
+
+}  // namespace lodestone::approximate

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/fit_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::approximate {
+namespace {
+
+constexpr size_t kMostAround = 32;
+constexpr int kMostSteps = 4;
+
+struct Place {
+    float square = 1e30f;
+    uint32_t triangle = kNone;
+    glm::vec3 weights{0.0f};
+};
+
+class SurfaceSampler {
+public:
+    SurfaceSampler(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples)
+        : places_(places),
+          mesh_(places.mesh()),
+          adjacency_(adjacency),
+          points_(places.points()),
+          samples_(samples) {}
+    void sample(size_t want, const Job& job);
+
+private:
+    void take(uint32_t source, const glm::vec3& point, uint32_t from, const glm::vec3& normal,
+              float area);
+
+    FitPlaces& places_;
+    const CollapseMesh& mesh_;
+    const Adjacency& adjacency_;
+    const std::vector<glm::vec3>& points_;
+    FitSamples& samples_;
+};
+
+void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from,
+                          const glm::vec3& normal, float area) {
+    if (from == kNone)
+        return;
+    Place best;
+    uint32_t at = from;
+    bool found = false;
+    for (int step = 0; step < kMostSteps && !found; ++step) {
+        const std::span<const uint32_t> whole = adjacency_.around(at);
+        const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostAround));
+        // Mostly it lies above one of them.
+        for (const uint32_t t : ring) {
+            const Triangle& c = mesh_.triangles[t];
+            const glm::vec3& facet = mesh_.facets[t];
+            const glm::vec3 a = points_[c.x] - point;
+            const glm::vec3 b = points_[c.y] - point;
+            const glm::vec3 d = points_[c.z] - point;
+            const float x = glm::dot(facet, glm::cross(b, d));
+            const float y = glm::dot(facet, glm::cross(d, a));
+            const float z = glm::dot(facet, glm::cross(a, b));
+            const float sum = x + y + z;
+            if (!(x >= 0 && y >= 0 && z >= 0 && sum > 0))
+                continue;
+            const float agree = glm::dot(facet, normal);
+            if (!(agree > 0 && agree * agree > 0.25f * glm::dot(facet, facet)))
+                continue;
+            const float scale = 1 / sum;
+            best = {0, t, glm::vec3(x * scale, y * scale, z * scale)};
+            found = true;
+            break;
+        }
+        if (found)
+            break;
+        for (const uint32_t t : ring) {
+            const Triangle& c = mesh_.triangles[t];
+            const glm::vec3 a = points_[c.x] - point;
+            const glm::vec3 b = points_[c.y] - point;
+            const glm::vec3 d = points_[c.z] - point;
+            const glm::vec3 weights = nearest_weights(a, b, d);
+            const glm::vec3 off = weights.x * a + weights.y * b + weights.z * d;
+            const float square = glm::dot(off, off);
+            if (square < best.square)
+                best = {square, t, weights};
+        }
+        if (best.triangle == kNone)
+            return;
+        const Triangle& c = mesh_.triangles[best.triangle];
+        // Where the nearest point lies on the far side, what is beyond may be nearer.
+        const int corner = best.weights.x >= best.weights.y
+                               ? (best.weights.x >= best.weights.z ? 0 : 2)
+                               : (best.weights.y >= best.weights.z ? 1 : 2);
+        const bool within = best.weights.x > 0 && best.weights.y > 0 && best.weights.z > 0;
+        if (within || c[corner] == at)
+            break;
+        at = c[corner];
+    }
+    const Triangle& c = mesh_.triangles[best.triangle];
+    glm::vec3 toward = point - (best.weights.x * points_[c.x] + best.weights.y * points_[c.y] +
+                                best.weights.z * points_[c.z]);
+    const bool inside = best.weights.x > 0 && best.weights.y > 0 && best.weights.z > 0;
+    const glm::vec3 facet(mesh_.facets[best.triangle]);
+    const float length = glm::length(facet);
+    if (!(length > 0) || glm::dot(facet, normal) < 0.3f * length)
+        return;
+    const glm::vec3 direction = inside ? facet / length : normal;
+    const float miss = glm::dot(direction, toward);
+    toward = direction;
+    if (!std::isfinite(miss + toward.x + toward.y + toward.z))
+        return;
+    samples_.push_back({best.triangle,
+                        source,
+                        {best.weights.x, best.weights.y, best.weights.z},
+                        toward,
+                        miss,
+                        area});
+}
+
+void SurfaceSampler::sample(size_t want, const Job& job) {
+    const Mesh& source = places_.source();
+    const size_t count = source.triangles.size();
+    // Vertices and middles in turn, as many as wanted, spread evenly.
+    const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
+    for (size_t n = 0;; ++n) {
+        const auto at = static_cast<size_t>(step * static_cast<double>(n));
+        if (at >= count)
+            break;
+        if ((n & 0xffffu) == 0)
+            job.check();
+        const Triangle& t = source.triangles[at];
+        const glm::vec3 a = places_.original(t.x);
+        const glm::vec3 b = places_.original(t.y);
+        const glm::vec3 c = places_.original(t.z);
+        const uint32_t from = places_.place(t.x);
+        if (from == kNone)
+            continue;
+        const glm::vec3 facet = glm::cross(b - a, c - a);
+        const float area = glm::length(facet);
+        if (!(area > 0))
+            continue;
+        take(static_cast<uint32_t>(at), (a + b + c) * (1.0f / 3), from, facet / area, 0.75f * area);
+        const auto corner = static_cast<int>(n % 3);
+        take(static_cast<uint32_t>(at), corner == 0 ? a : (corner == 1 ? b : c),
+             places_.place(t[corner]), facet / area, 0.25f * area);
+    }
+}
+
+}  // namespace
+
+FitPlaces::FitPlaces(CollapseMesh& mesh, const Mesh& source) : mesh_(mesh), source_(source) {
+    place_of_.assign(mesh.merged.size(), kNone);
+    for (uint32_t v = 0; v < mesh.ids.size(); ++v)
+        place_of_[mesh.ids[v]] = v;
+    points_.reserve(mesh.points.size());
+    for (const glm::dvec3& point : mesh.points)
+        points_.emplace_back(point);
+}
+
+uint32_t FitPlaces::place(uint32_t vertex) {
+    std::vector<uint32_t>& merged = mesh_.merged;
+    uint32_t root = vertex;
+    while (merged[root] != root) {
+        merged[root] = merged[merged[root]];
+        root = merged[root];
+    }
+    return place_of_[root];
+}
+
+SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles) {
+    first_.assign(triangles + 1, 0);
+    for (const FitSample& sample : samples)
+        ++first_[sample.triangle + 1];
+    for (size_t t = 1; t < first_.size(); ++t)
+        first_[t] += first_[t - 1];
+    order_.resize(samples.size());
+    std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+    for (uint32_t i = 0; i < samples.size(); ++i)
+        order_[next[samples[i].triangle]++] = i;
+}
+
+glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::vec3 ab = b - a;
+    const glm::vec3 ac = c - a;
+    const float d1 = -glm::dot(ab, a);
+    const float d2 = -glm::dot(ac, a);
+    if (d1 <= 0 && d2 <= 0)
+        return {1, 0, 0};
+    const float d3 = -glm::dot(ab, b);
+    const float d4 = -glm::dot(ac, b);
+    if (d3 >= 0 && d4 <= d3)
+        return {0, 1, 0};
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        const float t = d1 / (d1 - d3);
+        return {1 - t, t, 0};
+    }
+    const float d5 = -glm::dot(ab, c);
+    const float d6 = -glm::dot(ac, c);
+    if (d6 >= 0 && d5 <= d6)
+        return {0, 0, 1};
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        const float t = d2 / (d2 - d6);
+        return {1 - t, 0, t};
+    }
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const float t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1 - t, t};
+    }
+    const float sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
+
+void sample_surface(FitPlaces& places, const Adjacency& adjacency, size_t want, const Job& job,
+                    FitSamples& samples) {
+    SurfaceSampler(places, adjacency, samples).sample(want, job);
+}
+
+}  // namespace lodestone::approximate
