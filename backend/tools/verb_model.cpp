@@ -164,6 +164,7 @@ int run_simplify(const Arguments& arguments) {
     set_target(arguments, options);
     options.mode = mode_of(arguments);
     options.measure = arguments.has("measure") ? 1 : 0;
+    options.keep_topology = arguments.has("keep-topology") ? 1 : 0;
     options.seed = arguments.count("seed", options.seed);
     options.threads = threads_of(arguments);
     const ModelHandle model = read_model(input);

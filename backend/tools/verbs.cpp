@@ -40,6 +40,7 @@ const std::vector<Verb>& verbs() {
           {"height", "PIXELS",
            "the picture's height (default 360); the model's without --distance"},
           {"angle-deg", "A", "with --distance: field of view over the height (default 29.4)"},
+          {"keep-topology", "", "keep parts, holes and handles, even where that misses the target"},
           {"measure", "", "measure the distance to the original"},
           kJson,
           kThreads,

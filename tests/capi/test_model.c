@@ -389,6 +389,11 @@ static void test_simplifying_a_flat_grid_costs_no_shape(void) {
         EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
         EXPECT(report.triangles > 0 && report.error >= 0 && report.error <= 0.01);
     }
+    options.keep_topology = 1;
+    options.mode = LDS_SIMPLIFY_CLUSTER;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    options.mode = LDS_SIMPLIFY_BEST;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
     lds_totals totals = {sizeof totals, 0, 0, 0, 0, 0};
     EXPECT(lds_model_totals(model, &totals) == LDS_OK);
     EXPECT(totals.triangles_placed == report.triangles);

@@ -650,6 +650,8 @@ typedef struct lds_simplify_options {
                          largest side); 0: not used */
     double height_px; /* with pixels: more than 0 */
     int32_t mode;     /* lds_simplify_mode */
+    int32_t keep_topology; /* 1: parts, holes and handles stay, even where a target is then missed;
+                              not with LDS_SIMPLIFY_CLUSTER */
 } lds_simplify_options;
 LDS_API lds_simplify_options lds_simplify_options_default(void);
 

@@ -376,6 +376,7 @@ class SimplifyOptions(Sized):
         ("pixels", c_double),
         ("height_px", c_double),
         ("mode", c_int32),
+        ("keep_topology", c_int32),
     ]
 
 

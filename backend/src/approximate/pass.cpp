@@ -240,7 +240,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         }
     }
     begun_ = true;
-    parts_.measure(mesh_, options_.part_weight);
+    if (!options_.keep_topology)
+        parts_.measure(mesh_, options_.part_weight);
 
     const size_t start = mesh_.live;
     const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
@@ -258,6 +259,7 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
 }
 
 bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass) {
+    const Effort last = options_.keep_topology ? Effort::Rough : Effort::Anything;
     Effort effort = Effort::Careful;
     int slow_passes = 0;
     while (mesh_.live > target) {
@@ -266,7 +268,7 @@ bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>&
         after_pass();
         if (!is_slow(gone, wanted))
             continue;
-        if (effort < Effort::Anything)
+        if (effort < last)
             effort = static_cast<Effort>(static_cast<int>(effort) + 1);
         else if (gone == 0 || ++slow_passes > kMostSlowPasses)
             break;

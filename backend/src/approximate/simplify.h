@@ -30,6 +30,9 @@ struct SimplifyOptions {
     /// Removing a separate part of the mesh costs this many times what squeezing it to a point
     /// would. Larger keeps screws and leaves longer, at the cost of the large parts' shape.
     double part_weight = 4;
+    /// Every part, hole, handle and border stays: no edge becomes non-manifold. Targets below what
+    /// that allows are missed. Otherwise the small ones close or vanish where a target needs it.
+    bool keep_topology = false;
 };
 
 /// Simplifies in one pass and returns the mesh at each of `targets` (triangle counts, strictly

@@ -53,10 +53,11 @@ private:
     double start_;
 };
 
-approximate::SimplifyOptions options_of(ReductionMode mode) {
+approximate::SimplifyOptions options_of(const Reduction& wanted) {
     approximate::SimplifyOptions options;
-    options.mode = mode == ReductionMode::Best ? approximate::SimplifyMode::Best
-                                               : approximate::SimplifyMode::Fast;
+    options.mode = wanted.mode == ReductionMode::Best ? approximate::SimplifyMode::Best
+                                                      : approximate::SimplifyMode::Fast;
+    options.keep_topology = wanted.keep_topology;
     return options;
 }
 
@@ -81,7 +82,7 @@ Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const
         out.mesh = std::make_shared<Mesh>(
             wanted.mode == ReductionMode::Cluster
                 ? clustered(mesh, count, job)
-                : approximate::simplify(mesh, count, options_of(wanted.mode), job));
+                : approximate::simplify(mesh, count, options_of(wanted), job));
     }
     if (wanted.measure)
         out.deviation = deviation_of(reference_of(mesh, skin, wanted, job), *out.mesh, skin, job);
@@ -102,7 +103,7 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const
     std::vector<Mesh> levels;
     if (!targets.empty() && wanted.mode != ReductionMode::Cluster) {
         const Stopwatch watch(cpu_s);
-        levels = approximate::simplify_chain(mesh, targets, options_of(wanted.mode), job);
+        levels = approximate::simplify_chain(mesh, targets, options_of(wanted), job);
     }
     const measure::DeviationReference reference = reference_of(mesh, skin, wanted, job);
     Reduced best{std::make_shared<Mesh>(mesh), measure::Deviation{0, 0}};
@@ -166,6 +167,8 @@ void check_targets(const Reduction& wanted) {
     if (wanted.mode != ReductionMode::Fast && wanted.mode != ReductionMode::Best &&
         wanted.mode != ReductionMode::Cluster)
         fail(Status::InvalidArgument, "mode is ", static_cast<int>(wanted.mode), ", not 0, 1 or 2");
+    if (wanted.keep_topology && wanted.mode == ReductionMode::Cluster)
+        fail(Status::InvalidArgument, "mode cluster does not keep the topology; fast and best do");
 }
 
 }  // namespace

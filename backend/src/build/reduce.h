@@ -26,6 +26,7 @@ struct Reduction {
     bool measure = false;  // measure the error of the result (always with `error` and `pixels`)
     uint64_t seed = 1;
     ReductionMode mode = ReductionMode::Fast;
+    bool keep_topology = false;  // parts, holes and handles stay, at the price of the count
 };
 
 struct ReductionReport {

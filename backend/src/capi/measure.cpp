@@ -124,6 +124,7 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
         wanted.measure = given.measure != 0;
         wanted.seed = given.seed;
         wanted.mode = static_cast<build::ReductionMode>(given.mode);
+        wanted.keep_topology = given.keep_topology != 0;
         const build::ReductionReport done = build::reduce(model->model, wanted, job_of(job));
         model->summarized = false;
         lds_simplify_report out{};
