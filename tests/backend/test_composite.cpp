@@ -10,9 +10,16 @@
 
 using namespace lodestone;
 using approximate::Clustered;
-using approximate::composites;
 
 namespace {
+
+std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed) {
+    measure::VisibleOptions options;
+    options.rays = 16384;
+    const Attributes wanted =
+        measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, options).attributes;
+    return approximate::composites(mesh, skin, wanted, {seed});
+}
 
 class Composites : public testing::Test {
 protected:

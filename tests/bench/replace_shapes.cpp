@@ -139,7 +139,8 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     errors.reserve(levels.size());
     for (const Mesh& level : levels)
         errors.push_back(reference.of(level).error);
-    for (const approximate::Clustered& level : approximate::composites(mesh, nullptr, 1)) {
+    for (const approximate::Clustered& level :
+         approximate::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
         const Mesh solid = tessellate(level.composite, 3);
         const std::string name = "composite " + std::to_string(count);

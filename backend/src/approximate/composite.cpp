@@ -1,247 +1,351 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/composite.h"
 
-#include "measure/principal_axes.h"
+#include "approximate/clusters.h"
+#include "approximate/stand_in_material.h"
+#include "approximate/standing.h"
 #include "measure/visible.h"
 #include "measure/visible_sampler.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
 namespace lodestone::approximate {
 namespace {
 
-constexpr uint32_t kRays = 8192;
+constexpr uint32_t kSamples = 8192;
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
-constexpr size_t kFewestSamples = 16;  // of a cluster
-// Black and white are as far apart as points at this many radii of gyration.
-constexpr double kColorDistance = 0.5;
-constexpr int kMeans = 12;  // rounds of 2-means
-constexpr int kScalings = 3;
-constexpr double kMostScale = 2;
+constexpr int kRounds = 4;
+// What solids show grows with less than the square of their size: they hide more of each other.
+constexpr double kGrowth = 0.7;
+// Of one round; more than this is no correction.
+constexpr double kMostStep = 1.5;
+constexpr int kSubdivisions = 3;
 
-/// A visible point with all that clusters are told apart by.
-struct Sample {
-    glm::dvec3 point{0.0};
-    glm::dvec3 normal{0.0};
-    ray::Shown shown;
-};
+Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::VisiblePoint& at) {
+    Sample out;
+    out.point = at.point;
+    out.triangle = at.triangle;
+    const glm::dvec3 normal = area_vector(mesh, at.triangle);
+    const double length = glm::length(normal);
+    out.normal = length > 0 ? normal / length : glm::dvec3(0, 0, 1);
+    if (skin)
+        out.shown = skin->at(mesh, at.triangle, at.u, at.v);
+    return out;
+}
 
-struct Sampled {
-    std::vector<Sample> samples;
-    double area = 0;  // visible, of one
-};
-
-Sampled sampled(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
-                uint64_t seed) {
-    Sampled out;
+/// Of what can be seen.
+Samples seen(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin, uint64_t seed) {
+    Samples out;
     const measure::VisibleSampler sampler(mesh, scene, seed);
     if (sampler.empty())
         return out;
     uint32_t hits = 0;
     std::array<measure::VisiblePoint, 2> points;
-    for (uint32_t ray = 0; ray < kRays; ++ray) {
+    for (uint32_t ray = 0; ray < kSamples; ++ray) {
         const int count = sampler.cast(ray, points);
         hits += count > 0 ? 1 : 0;
-        for (int i = 0; i < count; ++i) {
-            const measure::VisiblePoint& at = points[static_cast<size_t>(i)];
-            Sample sample;
-            sample.point = at.point;
-            const glm::dvec3 normal = area_vector(mesh, at.triangle);
-            const double length = glm::length(normal);
-            sample.normal = length > 0 ? normal / length : glm::dvec3(0, 0, 1);
-            if (skin)
-                sample.shown = skin->at(mesh, at.triangle, at.u, at.v);
-            out.samples.push_back(sample);
-        }
+        for (int i = 0; i < count; ++i)
+            out.points.push_back(sample_at(mesh, skin, points[static_cast<size_t>(i)]));
     }
-    if (!out.samples.empty())
+    if (!out.points.empty())
         out.area =
-            sampler.reference_area() * hits / kRays / static_cast<double>(out.samples.size());
+            sampler.reference_area() * hits / kSamples / static_cast<double>(out.points.size());
     return out;
 }
 
-/// Of the samples of a cluster, of which each stands for `area`.
-Attributes attributes_of(const std::vector<Sample>& samples, const std::vector<uint32_t>& cluster,
-                         double area) {
-    Attributes out;
-    const auto count = static_cast<double>(cluster.size());
-    measure::NormalMoments normals;
-    out.color = glm::dvec3(0.0);
-    out.roughness = out.metallic = out.specular = 0;
-    for (const uint32_t i : cluster) {
-        const Sample& sample = samples[i];
-        out.centroid += sample.point / count;
-        out.color += sample.shown.color / count;
-        out.emission += sample.shown.emission / count;
-        out.roughness += sample.shown.roughness / count;
-        out.metallic += sample.shown.metallic / count;
-        out.specular += sample.shown.specular / count;
-        normals.add(sample.normal, 1);
+/// Of all there is, hidden or not, but what is transparent.
+Samples all_of(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin, uint64_t seed) {
+    Samples out;
+    const measure::VisibleSampler sampler(mesh, scene, seed);
+    if (sampler.empty())
+        return out;
+    const measure::Sobol numbers(measure::scramble(seed) + 3);
+    for (uint32_t i = 0; i < kSamples; ++i) {
+        const measure::VisiblePoint at = sampler.on_surface(numbers.point(i));
+        if (scene.shows(at.triangle, at.u, at.v))
+            out.points.push_back(sample_at(mesh, skin, at));
     }
-    for (const uint32_t i : cluster) {
-        const glm::dvec3 arm = samples[i].point - out.centroid;
-        out.moments += area * glm::outerProduct(arm, arm);
-    }
-    out.visible_area = out.surface_area = area * count;
-    out.axes = measure::principal_axes(out.moments, normals);
-    out.normal_moment = normals.in_frame(out.axes);
+    out.area = sampler.possible_area() / kSamples;
     return out;
-}
-
-struct Cluster {
-    uint32_t number = 0;
-    std::vector<uint32_t> samples;
-    Attributes attributes;
-
-    double spread() const {
-        return attributes.moments[0][0] + attributes.moments[1][1] + attributes.moments[2][2];
-    }
-};
-
-/// In two by place and color; the first half stays, the second comes back. Nothing when one of them
-/// would be too small.
-std::optional<std::vector<uint32_t>> split(Cluster& cluster, const std::vector<Sample>& samples) {
-    const double unit =
-        kColorDistance * std::sqrt(cluster.spread() / cluster.attributes.visible_area);
-    struct Mean {
-        glm::dvec3 point{0.0};
-        glm::dvec3 color{0.0};
-    };
-    const glm::dvec3 reach =
-        cluster.attributes.axes[0] * std::sqrt(cluster.spread() / cluster.attributes.visible_area);
-    std::array<Mean, 2> means;
-    for (size_t side = 0; side < 2; ++side)
-        means[side] = {cluster.attributes.centroid + (side == 0 ? -0.5 : 0.5) * reach,
-                       cluster.attributes.color};
-    std::vector<uint8_t> sides(cluster.samples.size(), 0);
-    std::array<size_t, 2> counts{};
-    for (int round = 0; round < kMeans; ++round) {
-        std::array<Mean, 2> sums;
-        counts = {};
-        for (size_t i = 0; i < sides.size(); ++i) {
-            const Sample& sample = samples[cluster.samples[i]];
-            std::array<double, 2> off{};
-            for (size_t side = 0; side < 2; ++side) {
-                const glm::dvec3 arm = sample.point - means[side].point;
-                const glm::dvec3 shade = unit * (sample.shown.color - means[side].color);
-                off[side] = glm::dot(arm, arm) + glm::dot(shade, shade);
-            }
-            const size_t side = off[1] < off[0] ? 1 : 0;
-            sides[i] = static_cast<uint8_t>(side);
-            sums[side].point += sample.point;
-            sums[side].color += sample.shown.color;
-            ++counts[side];
-        }
-        if (std::min(counts[0], counts[1]) < kFewestSamples)
-            return std::nullopt;
-        for (size_t side = 0; side < 2; ++side) {
-            const auto count = static_cast<double>(counts[side]);
-            means[side] = {sums[side].point / count, sums[side].color / count};
-        }
-    }
-    std::vector<uint32_t> first;
-    std::vector<uint32_t> second;
-    for (size_t i = 0; i < sides.size(); ++i)
-        (sides[i] == 0 ? first : second).push_back(cluster.samples[i]);
-    cluster.samples = std::move(first);
-    return second;
 }
 
 /// A cluster is a patch of surface: neither sparse nor in two heaps by what it is part of, so what
 /// refuses one kind of solid gets the other, or the ball of its area.
-Solid solid_of(const Cluster& cluster) {
+Solid solid_of(const Attributes& attributes) {
     Solid out;
-    const bool preferred = boxlike(cluster.attributes);
+    const bool preferred = boxlike(attributes);
     for (const bool box : {preferred, !preferred}) {
-        const auto found =
-            box ? fit_box(cluster.attributes, Bound{}) : fit_ellipsoid(cluster.attributes, Bound{});
+        const auto found = box ? fit_box(attributes, Bound{}) : fit_ellipsoid(attributes, Bound{});
         if (!found)
             continue;
         out.box = box;
         out.primitive = *found;
         return out;
     }
-    const double square = cluster.attributes.visible_area / (4 * std::numbers::pi);
-    out.primitive = {cluster.attributes.centroid, cluster.attributes.axes,
-                     glm::dvec3(std::sqrt(square))};
+    const double square = attributes.visible_area / (4 * std::numbers::pi);
+    out.primitive = {attributes.centroid, attributes.axes, glm::dvec3(std::sqrt(square))};
     return out;
 }
 
-/// All parts alike, until the whole shows the area wanted.
-void scale_to(Composite& composite, double area, uint64_t seed, const Job& job) {
-    double scale = 1;
-    for (int i = 0; i < kScalings; ++i) {
-        const Mesh mesh = tessellate(composite, 3);
-        measure::VisibleOptions options;
-        options.rays = kRays;
-        options.seed = seed;
-        const double now =
-            measure::measure_visible(mesh, ray::Scene(mesh), nullptr, options, {}, job)
-                .attributes.visible_area;
-        if (!(now > 0))
-            return;
-        const double step =
-            std::clamp(std::sqrt(area / now), 1 / kMostScale / scale, kMostScale / scale);
-        for (Solid& solid : composite.solids)
-            solid.primitive.half_size *= step;
-        scale *= step;
+/// What of it can be seen, by rays; clear solids count as much as they cover.
+Attributes measured(const Clustered& level, const CompositeOptions& options, const Job& job) {
+    // Flat triangles have less area than what they lie on.
+    static const double kSwell = [] {
+        const Mesh ball = tessellate_ellipsoid({}, kSubdivisions);
+        double area = 0;
+        for (size_t i = 0; i < ball.triangles.size(); ++i)
+            area += 0.5 * glm::length(area_vector(ball, i));
+        return std::sqrt(4 * std::numbers::pi / area);
+    }();
+    Composite swollen = level.composite;
+    for (Solid& solid : swollen.solids)
+        solid.primitive.half_size *= solid.box ? 1 : kSwell;
+    const Mesh mesh = tessellate(swollen, kSubdivisions);
+    std::vector<Material> materials;
+    bool clear = false;
+    for (const double opacity : level.opacities) {
+        clear = clear || opacity < 1;
+        materials.push_back(clear_material(Material{}, opacity));
     }
+    image::TexelCache texels;
+    const ray::SkinPtr skin =
+        clear ? std::make_shared<const ray::Skin>(materials, texels) : nullptr;
+    measure::VisibleOptions visible;
+    visible.rays = options.rays;
+    visible.seed = options.seed;
+    return measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, visible, {}, job)
+        .attributes;
+}
+
+glm::dmat3 power(const glm::dmat3& symmetric, double exponent, double least) {
+    const Eigen eigen = eigen_symmetric(symmetric);
+    glm::dmat3 along(0.0);
+    for (int i = 0; i < 3; ++i)
+        along[i][i] = std::pow(std::max(eigen.values[i], least), exponent);
+    return eigen.axes * along * glm::transpose(eigen.axes);
+}
+
+/// What takes points of one covariance to another, turning nothing.
+glm::dmat3 map_between(const glm::dmat3& from, const glm::dmat3& to) {
+    const double least = 1e-9 * (to[0][0] + to[1][1] + to[2][2]);
+    const glm::dmat3 root = power(to, 0.5, least);
+    return root * power(root * from * root, -0.5, least * least) * root;
+}
+
+/// Moves, stretches and scales all solids until what can be seen of them is what is wanted.
+void match_whole(Clustered& level, const Attributes& wanted, double floor,
+                 const CompositeOptions& options, const Job& job) {
+    for (int round = 0; round < kRounds; ++round) {
+        const Attributes now = measured(level, options, job);
+        if (now.empty())
+            return;
+        glm::dmat3 map =
+            map_between(now.moments / now.visible_area, wanted.moments / wanted.visible_area);
+        // What is flat or has no extent at all cannot be told how to stretch.
+        const Eigen stretches = eigen_symmetric(map);
+        if (!options.shape ||
+            !(stretches.values.z > 1 / kMostStep && stretches.values.x < kMostStep))
+            map = glm::dmat3(1.0);
+        const double scale = std::clamp(std::pow(wanted.visible_area / now.visible_area, kGrowth) /
+                                            std::cbrt(glm::determinant(map)),
+                                        1 / kMostStep, kMostStep);
+        for (Solid& solid : level.composite.solids) {
+            Primitive& primitive = solid.primitive;
+            if (options.shape)
+                primitive.center = wanted.centroid + map * (primitive.center - now.centroid);
+            for (int i = 0; i < 3; ++i)
+                primitive.half_size[i] *= scale * glm::length(map * primitive.axes[i]);
+            primitive = kept_above(primitive, solid.box, floor);
+        }
+    }
+}
+
+double lowest(const Mesh& mesh) {
+    return bound_of(mesh.positions).box.low.z;
+}
+
+/// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that is
+/// nearest where it has none.
+std::vector<uint32_t> clusters_of(const Mesh& mesh, const Clusters& clusters) {
+    std::vector<std::map<uint32_t, uint32_t>> votes(mesh.triangles.size());
+    for (uint32_t i = 0; i < clusters.all().size(); ++i) {
+        for (const uint32_t sample : clusters.all()[i].samples)
+            ++votes[clusters.samples().points[sample].triangle][i];
+    }
+    std::vector<uint32_t> out(mesh.triangles.size(), 0);
+    for (size_t t = 0; t < out.size(); ++t) {
+        uint32_t most = 0;
+        for (const auto& [cluster, count] : votes[t]) {
+            if (count > most)
+                out[t] = cluster;
+            most = std::max(most, count);
+        }
+        if (most > 0)
+            continue;
+        glm::dvec3 middle(0.0);
+        for (int corner = 0; corner < 3; ++corner)
+            middle += glm::dvec3(mesh.positions[mesh.triangles[t][corner]]) / 3.0;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (uint32_t i = 0; i < clusters.all().size(); ++i) {
+            const glm::dvec3 arm = middle - clusters.all()[i].attributes.centroid;
+            if (glm::dot(arm, arm) < nearest) {
+                nearest = glm::dot(arm, arm);
+                out[t] = i;
+            }
+        }
+    }
+    return out;
+}
+
+/// What can be seen of each cluster where the others are taken away.
+class Alone {
+public:
+    Alone(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed)
+        : mesh_(mesh), skin_(skin), seed_(seed) {}
+
+    const Attributes& of(const Cluster& cluster, uint32_t index,
+                         const std::vector<uint32_t>& cluster_of, const Job& job) {
+        const auto [known, fresh] = known_.try_emplace(cluster.number);
+        if (!fresh)
+            return known->second;
+        std::vector<uint8_t> keep(cluster_of.size(), 0);
+        for (size_t t = 0; t < keep.size(); ++t)
+            keep[t] = cluster_of[t] == index ? 1 : 0;
+        const Mesh part = subset(mesh_, keep);
+        measure::VisibleOptions options;
+        options.rays = 2048;
+        options.seed = seed_;
+        if (!part.empty())
+            known->second =
+                measure::measure_visible(part, ray::Scene(part, skin_), skin_, options, {}, job)
+                    .attributes;
+        return known->second;
+    }
+
+private:
+    const Mesh& mesh_;
+    const ray::SkinPtr& skin_;
+    uint64_t seed_;
+    std::map<uint32_t, Attributes> known_;
+};
+
+/// A clear solid while its size is still looked for.
+struct Shelled {
+    Solid solid;
+    double density = 0;  // of the unscaled shell; 0: a solid
+};
+
+Shelled shelled(const Attributes& attributes) {
+    constexpr double kSolid = 0.9;  // what covers more of its shell is one
+    Shelled out;
+    const bool box = boxlike(attributes);
+    const auto shell = box ? shell_box(attributes) : shell_ellipsoid(attributes);
+    if (!shell || shell->opacity >= kSolid) {
+        out.solid = solid_of(attributes);
+        return out;
+    }
+    out.solid.box = box;
+    out.solid.primitive = shell->primitive;
+    out.density = shell->opacity;
+    return out;
 }
 
 }  // namespace
 
-std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed,
+std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                  const Attributes& wanted, const CompositeOptions& options,
                                   const Job& job) {
     std::vector<Clustered> out;
-    const Sampled found = sampled(mesh, ray::Scene(mesh, skin), skin, seed);
-    if (found.samples.size() < kFewestSamples || !(found.area > 0))
+    Samples samples = seen(mesh, ray::Scene(mesh, skin), skin, options.seed);
+    if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
         return out;
-    std::vector<Cluster> clusters(1);
-    for (uint32_t i = 0; i < found.samples.size(); ++i)
-        clusters[0].samples.push_back(i);
-    clusters[0].attributes = attributes_of(found.samples, clusters[0].samples, found.area);
-    const double all = clusters[0].attributes.visible_area;
-    uint32_t numbers = 1;
-    std::vector<uint8_t> whole;  // clusters that cannot be split
-    whole.push_back(0);
+    Clusters clusters(std::move(samples));
     for (const size_t count : kCounts) {
-        while (clusters.size() < count) {
-            job.check();
-            size_t largest = clusters.size();
-            for (size_t i = 0; i < clusters.size(); ++i) {
-                if (whole[i] == 0 && (largest == clusters.size() ||
-                                      clusters[i].spread() > clusters[largest].spread()))
-                    largest = i;
-            }
-            if (largest == clusters.size())
-                break;
-            std::optional<std::vector<uint32_t>> second = split(clusters[largest], found.samples);
-            if (!second) {
-                whole[largest] = 1;
-                continue;
-            }
-            Cluster other;
-            other.samples = std::move(*second);
-            for (Cluster* cluster : {&clusters[largest], &other}) {
-                cluster->number = numbers++;
-                cluster->attributes = attributes_of(found.samples, cluster->samples, found.area);
-            }
-            clusters.push_back(std::move(other));
-            whole.push_back(0);
-        }
-        if (clusters.size() < 2 || (!out.empty() && out.back().clusters.size() == clusters.size()))
+        clusters.split_to(count, job);
+        const size_t parts = clusters.all().size();
+        if (parts < 2 || (!out.empty() && out.back().clusters.size() == parts))
             break;
         Clustered level;
-        for (const Cluster& cluster : clusters) {
-            level.composite.solids.push_back(solid_of(cluster));
+        for (const Cluster& cluster : clusters.all()) {
+            level.composite.solids.push_back(solid_of(cluster.attributes));
             level.composite.solids.back().slot = static_cast<uint16_t>(level.clusters.size());
             level.attributes.push_back(cluster.attributes);
             level.clusters.push_back(cluster.number);
+            level.opacities.push_back(1);
         }
-        scale_to(level.composite, all, seed, job);
+        match_whole(level, wanted, lowest(mesh), options, job);
+        out.push_back(std::move(level));
+    }
+    return out;
+}
+
+std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                        const Attributes& wanted, const CompositeOptions& options,
+                                        const Job& job) {
+    // A shell through the middle of a cluster's surface leaves gaps between clusters; one around it
+    // is this much larger (a ball's outside and its variances: sqrt(5 / 3)).
+    constexpr double kAround = 1.29;
+    constexpr double kMostOpaque = 0.98;
+    std::vector<Clustered> out;
+    const ray::Scene scene(mesh, skin);
+    Samples samples = all_of(mesh, scene, skin, options.seed);
+    if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
+        return out;
+    Clusters clusters(std::move(samples));
+    Alone alone(mesh, skin, options.seed);
+    const double floor = lowest(mesh);
+    for (const size_t count : kCounts) {
+        clusters.split_to(count, job);
+        const size_t parts = clusters.all().size();
+        if (parts < 2 || (!out.empty() && out.back().clusters.size() == parts))
+            break;
+        const std::vector<uint32_t> cluster_of = clusters_of(mesh, clusters);
+        Clustered level;
+        std::vector<Shelled> shells;
+        bool clear = false;
+        for (uint32_t i = 0; i < parts; ++i) {
+            const Cluster& cluster = clusters.all()[i];
+            const Attributes& attributes = alone.of(cluster, i, cluster_of, job);
+            if (attributes.empty())
+                continue;
+            shells.push_back(shelled(attributes));
+            shells.back().solid.slot = static_cast<uint16_t>(level.clusters.size());
+            clear = clear || shells.back().density > 0;
+            level.attributes.push_back(attributes);
+            level.clusters.push_back(cluster.number);
+        }
+        if (!clear)
+            return out;
+        double scale = kAround;
+        for (int round = 0; round < kRounds; ++round) {
+            level.composite.solids.clear();
+            level.opacities.clear();
+            for (const Shelled& shell : shells) {
+                Solid solid = shell.solid;
+                double opacity = 1;
+                if (shell.density > 0) {
+                    solid.primitive.half_size *= scale;
+                    opacity = std::min(kMostOpaque, shell.density / (scale * scale));
+                }
+                solid.primitive = kept_above(solid.primitive, solid.box, floor);
+                level.composite.solids.push_back(solid);
+                level.opacities.push_back(opacity);
+            }
+            if (round + 1 == kRounds)
+                break;
+            const double now = measured(level, options, job).visible_area;
+            if (!(now > 0))
+                break;
+            scale = std::clamp(scale * wanted.visible_area / now, 1.0, kMostStep);
+        }
         out.push_back(std::move(level));
     }
     return out;

@@ -16,14 +16,32 @@ struct Clustered {
     Composite composite;
     std::vector<Attributes> attributes;  // of the clusters, in the order of the solids
     std::vector<uint32_t> clusters;      // levels share what has the same number
+    std::vector<double> opacities;       // of the solids, 1: not clear (see surface_alpha)
+};
+
+struct CompositeOptions {
+    uint64_t seed = 1;
+    uint32_t rays = 8192;  // that each round of matching casts
+    bool shape = true;     // match centroid and variances of the whole, not its area alone
 };
 
 /// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:
 /// one cluster of each level is split into two for the next part. Clusters are split where they are
-/// largest (area times variance), in two by place and color (2-means). As a whole each level shows
-/// as much area as the mesh: parts hide parts of each other, so all are scaled alike. Empty where
+/// largest (area times variance), in two by place and color (2-means). Parts hide parts of each
+/// other, so each level is matched again as a whole, by rays: visible area, centroid and variances
+/// are the mesh's (`wanted`). No solid reaches below the lowest point of the mesh. Empty where
 /// nothing can be seen. The same bits on any number of threads.
-std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed,
+std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                  const Attributes& wanted, const CompositeOptions& options,
                                   const Job& job = {});
+
+/// Likewise of what has much air between its parts (foliage, crowds): clusters of all of its surface,
+/// hidden or not, each as opaque as it is alone, in a shell that its surface fills. All shells are
+/// scaled alike until the whole shows as much as the mesh. What is solid stays so. Nothing where
+/// nothing is clear.
+/// source: 4.3.3, 4.36, 4.37 for each cluster
+std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                        const Attributes& wanted, const CompositeOptions& options,
+                                        const Job& job = {});
 
 }  // namespace lodestone::approximate

@@ -274,6 +274,17 @@ std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bou
     return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
 }
 
+std::optional<Clear> shell_box(const Attributes& attributes) {
+    const auto found = matched(attributes, Bound{}, match_box, box_shell, kBoxReach);
+    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+}
+
+std::optional<Clear> shell_ellipsoid(const Attributes& attributes) {
+    const auto found =
+        matched(attributes, Bound{}, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+}
+
 double surface_alpha(double opacity) {
     return 1 - std::sqrt(1 - std::clamp(opacity, 0.0, 1.0));
 }

@@ -40,6 +40,11 @@ struct Clear {
 std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
 std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
 
+/// The same whatever it covers: opacity may be more than 1, where no shell is dense enough. Nothing
+/// where there is no extent to match.
+std::optional<Clear> shell_box(const Attributes& attributes);
+std::optional<Clear> shell_ellipsoid(const Attributes& attributes);
+
 /// What each crossing of a shell must cover so that two of them cover `opacity`.
 double surface_alpha(double opacity);
 

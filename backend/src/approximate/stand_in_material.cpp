@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/stand_in_material.h"
 
+#include "approximate/replace.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,14 @@ Material mean_material(const Attributes& attributes) {
     out.metallic = within(attributes.metallic, 1, usual.metallic);
     out.specular = within(attributes.specular, 1, usual.specular);
     return out;
+}
+
+Material clear_material(Material material, double opacity) {
+    if (opacity < 1) {
+        material.alpha_mode = AlphaMode::Blend;
+        material.alpha = surface_alpha(opacity);
+    }
+    return material;
 }
 
 }  // namespace lodestone::approximate

@@ -10,4 +10,7 @@ namespace lodestone::approximate {
 /// Means by visible area, kept within what a material may hold; "stand-in" as its name.
 Material mean_material(const Attributes& attributes);
 
+/// Of a solid that covers `opacity` of what is behind it, both its surfaces together; unchanged at 1.
+Material clear_material(Material material, double opacity);
+
 }  // namespace lodestone::approximate

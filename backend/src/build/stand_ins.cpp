@@ -98,11 +98,7 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
         Candidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
-        candidate.materials = {material};
-        if (opacity < 1) {
-            candidate.materials[0].alpha_mode = AlphaMode::Blend;
-            candidate.materials[0].alpha = approximate::surface_alpha(opacity);
-        }
+        candidate.materials = {approximate::clear_material(material, opacity)};
         if (by_pictures)
             judge.compare_pictures(candidate, {}, job);
         else
@@ -121,15 +117,26 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
         add(Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
 }
 
-void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, uint64_t seed,
+/// `airy`: clear ones too.
+void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy, uint64_t seed,
                     Judge& judge, const Job& job) {
-    for (const approximate::Clustered& level :
-         approximate::composites(mesh, judge.skin(), seed, job)) {
+    // Between leaves one sees far into a crown: a solid with the same variances would be too small.
+    approximate::CompositeOptions options{seed};
+    options.shape = !airy;
+    std::vector<approximate::Clustered> levels =
+        approximate::composites(mesh, judge.skin(), judge.attributes(), options, job);
+    if (airy) {
+        for (approximate::Clustered& level :
+             approximate::clear_composites(mesh, judge.skin(), judge.attributes(), options, job))
+            levels.push_back(std::move(level));
+    }
+    for (const approximate::Clustered& level : levels) {
         Candidate candidate;
         candidate.kind = Kind::Composite;
         candidate.composite = std::make_shared<const Composite>(level.composite);
-        for (const Attributes& attributes : level.attributes)
-            candidate.materials.push_back(approximate::mean_material(attributes));
+        for (size_t i = 0; i < level.attributes.size(); ++i)
+            candidate.materials.push_back(approximate::clear_material(
+                approximate::mean_material(level.attributes[i]), level.opacities[i]));
         judge.compare_pictures(candidate, {}, job);
         candidates.push_back(std::move(candidate));
     }
@@ -181,7 +188,7 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
         !judge.refracts()) {
         if (!by_pictures)
             judge.take_pictures(mesh, true, job);
-        add_composites(candidates, mesh, seed, judge, job);
+        add_composites(candidates, mesh, by_pictures, seed, judge, job);
     }
 }
 

@@ -25,8 +25,8 @@ struct Agreement {
 /// The error of what is not solid (foliage, fences, crowds, things one can see through): where single
 /// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
 /// how bright it is does. Orthographic pictures along 13 axes, both ways, of a diffuse surface under
-/// a uniform sky (half of the light) and a sun that stands obliquely beside the viewer, with shadows;
-/// both meshes are sampled by the same rays. Larger pixels are means of smaller ones; differences
+/// a uniform sky (half of the light; nothing hides it, as in POV-Ray's ambient) and a sun that stands
+/// obliquely beside the viewer, with shadows; both meshes are sampled by the same rays. Larger pixels are means of smaller ones; differences
 /// are those of pictures without sampling noise.
 class AgreementReference {
 public:

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/standing.h"
+
+#include "approximate/replace.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::approximate {
+namespace {
+
+// Heights above the floor over the height of the whole: less is a rounding.
+constexpr double kSame = 1e-9;
+constexpr int kRounds = 8;
+
+double area_of(const Primitive& primitive, bool box) {
+    return (box ? box_shell(primitive.half_size) : ellipsoid_shell(primitive.half_size)).area;
+}
+
+/// Stretched along Z and across it; axes stay as they are.
+void stretch(Primitive& primitive, double along, double across) {
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3& axis = primitive.axes[i];
+        primitive.half_size[i] *=
+            glm::length(glm::dvec3(across * axis.x, across * axis.y, along * axis.z));
+    }
+}
+
+}  // namespace
+
+Reach reach_of(const Primitive& primitive, bool box) {
+    double sum = 0;
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double part = std::abs(primitive.axes[i].z) * primitive.half_size[i];
+        sum += part;
+        squares += part * part;
+    }
+    const double half = box ? sum : std::sqrt(squares);
+    return {primitive.center.z - half, primitive.center.z + half};
+}
+
+Primitive standing_on(const Primitive& primitive, bool box, double floor) {
+    // Flat things must not become high, or high ones flat.
+    constexpr double kMost = 4;
+    const Reach before = reach_of(primitive, box);
+    const double height = before.high - before.low;
+    if (!(before.high - floor > kSame * height) || !(std::abs(before.low - floor) > kSame * height))
+        return primitive;
+    const double area = area_of(primitive, box);
+    Primitive out = primitive;
+    for (int round = 0; round < kRounds; ++round) {
+        const Reach now = reach_of(out, box);
+        const double along = (before.high - floor) / (now.high - now.low);
+        stretch(out, std::clamp(along, 1 / kMost, kMost), 1);
+        const double across = std::sqrt(area / area_of(out, box));
+        stretch(out, 1, std::clamp(across, 1 / kMost, kMost));
+    }
+    out.center.z += floor - reach_of(out, box).low;
+    return out;
+}
+
+Primitive kept_above(const Primitive& primitive, bool box, double floor) {
+    const Reach reach = reach_of(primitive, box);
+    if (!(reach.low < floor))
+        return primitive;
+    Primitive out = standing_on(primitive, box, floor);
+    out.center.z += std::max(0.0, floor - reach_of(out, box).low);
+    return out;
+}
+
+}  // namespace lodestone::approximate
