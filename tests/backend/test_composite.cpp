@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards composites: as much surface as the original, nested, matched cluster by cluster.
 #include "approximate/composite.h"
+#include "approximate/stand_in_material.h"
 #include "backend/foliage.h"
 #include "measure/visible.h"
 #include "ray/scene.h"
@@ -30,11 +31,40 @@ protected:
     }
 };
 
+Attributes attributes_of(const Mesh& mesh, uint64_t seed) {
+    measure::VisibleOptions options;
+    options.rays = 32768;
+    options.seed = seed;
+    return measure::measure_visible(mesh, {}, options).attributes;
+}
+
 double visible_area(const Mesh& mesh, uint64_t seed) {
     measure::VisibleOptions options;
     options.rays = 16384;
     options.seed = seed;
     return measure::measure_visible(mesh, {}, options).attributes.visible_area;
+}
+
+/// Quads of .3 x .2 every way in a ball of radius 2.
+Mesh leaves_in_a_ball(int count) {
+    Random random(5);
+    const auto unit = [&] {
+        glm::dvec3 v(1);
+        do
+            v = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
+        while (glm::dot(v, v) > 1 || glm::dot(v, v) < 1e-4);
+        return v;
+    };
+    Mesh mesh;
+    for (int i = 0; i < count; ++i) {
+        Affine place;
+        const glm::dvec3 x = glm::normalize(unit());
+        const glm::dvec3 z = glm::normalize(glm::cross(x, unit()));
+        place.linear = glm::dmat3(x, glm::cross(z, x), z);
+        place.offset = 2.0 * unit();
+        append(mesh, shapes::quad(0.3f, 0.2f), place);
+    }
+    return mesh;
 }
 
 Mesh balls(const std::vector<glm::dvec3>& centers, double radius) {
@@ -129,6 +159,80 @@ TEST_F(Composites, ColorsKeepApartWhatPlacesWouldJoin) {
             EXPECT_LT(mixed, 0.2) << level.composite.solids.size();
         }
     }
+}
+
+TEST_F(Composites, TheWholeIsMatchedInAreaCentroidAndTensor) {
+    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
+    for (const double x : {-0.9, 0.9}) {
+        for (const double y : {-0.4, 0.4})
+            append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
+    }
+    Mesh tree = shapes::box({-0.2, -0.2, 0}, {0.2, 0.2, 3});
+    append(tree, shapes::sphere(2, 3), {glm::dmat3(1.0), {0, 0, 4.5}});
+    for (const Mesh& mesh : {table, tree}) {
+        const Attributes wanted = attributes_of(mesh, 3);
+        const double trace = wanted.moments[0][0] + wanted.moments[1][1] + wanted.moments[2][2];
+        for (const Clustered& level : approximate::composites(mesh, nullptr, wanted, {1, 16384})) {
+            SCOPED_TRACE(level.composite.solids.size());
+            const Attributes got = attributes_of(tessellate(level.composite, 4), 4);
+            EXPECT_NEAR(got.visible_area / wanted.visible_area, 1, 0.015);
+            EXPECT_LT(glm::length(got.centroid - wanted.centroid),
+                      0.01 * wanted.radius_of_gyration());
+            const double trace_got = got.moments[0][0] + got.moments[1][1] + got.moments[2][2];
+            double square = 0;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 miss = got.moments[i] / trace_got - wanted.moments[i] / trace;
+                square += glm::dot(miss, miss);
+            }
+            EXPECT_LT(std::sqrt(square), 0.01);
+        }
+    }
+}
+
+TEST_F(Composites, NoSolidReachesBelowTheGround) {
+    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
+    for (const double x : {-0.9, 0.9})
+        append(table, shapes::box({x - 0.03, -0.43, 0}, {x + 0.03, 0.43, 0.7}), {});
+    for (const Clustered& level : composites(table, nullptr, 1))
+        EXPECT_GE(bound_of(level.composite).box.low.z, -1e-6);
+    const Mesh leaves = leaves_in_a_ball(300);
+    const double low = bound_of(leaves.positions).box.low.z;
+    for (const Clustered& level :
+         approximate::clear_composites(leaves, nullptr, {}, attributes_of(leaves, 1), {}))
+        EXPECT_GE(bound_of(level.composite).box.low.z, low - 1e-6);
+}
+
+TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
+    const Mesh leaves = leaves_in_a_ball(300);
+    const Attributes wanted = attributes_of(leaves, 1);
+    const std::vector<Clustered> levels =
+        approximate::clear_composites(leaves, nullptr, {}, wanted, {});
+    ASSERT_FALSE(levels.empty());
+    for (const Clustered& level : levels) {
+        ASSERT_EQ(level.opacities.size(), level.composite.solids.size());
+        std::vector<Material> materials;
+        size_t clear = 0;
+        for (const double opacity : level.opacities) {
+            EXPECT_GT(opacity, 0);
+            EXPECT_LE(opacity, 1);
+            clear += opacity < 1 ? 1 : 0;
+            materials.push_back(approximate::clear_material(Material{}, opacity));
+        }
+        EXPECT_GT(clear, level.opacities.size() / 2);
+        measure::VisibleOptions options;
+        options.rays = 16384;
+        const double area =
+            measure::measure_visible(tessellate(level.composite, 3), materials, options)
+                .attributes.visible_area;
+        EXPECT_NEAR(area / wanted.visible_area, 1, 0.05) << level.opacities.size();
+    }
+}
+
+TEST_F(Composites, SolidThingsAreNeverClear) {
+    Mesh two = shapes::box({-1, -1, 0}, {1, 1, 2});
+    append(two, shapes::box({-1, -1, 0}, {1, 1, 2}), {glm::dmat3(1.0), {5, 0, 0}});
+    EXPECT_TRUE(approximate::clear_composites(two, nullptr, {}, attributes_of(two, 1), {}).empty());
+    EXPECT_TRUE(approximate::clear_composites(Mesh{}, nullptr, {}, Attributes{}, {}).empty());
 }
 
 TEST_F(Composites, BoundAndTrianglesAreThoseOfTheSolids) {

@@ -15,7 +15,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
+#include <span>
 
 namespace lodestone::approximate {
 namespace {
@@ -27,7 +27,7 @@ constexpr int kRounds = 4;
 constexpr double kGrowth = 0.7;
 // Of one round; more than this is no correction.
 constexpr double kMostStep = 1.5;
-constexpr int kSubdivisions = 3;
+constexpr int kSubdivisions = 2;
 
 Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::VisiblePoint& at) {
     Sample out;
@@ -243,12 +243,13 @@ struct Shelled {
     double density = 0;  // of the unscaled shell; 0: a solid
 };
 
-Shelled shelled(const Attributes& attributes) {
+/// `airy`: made of many parts, so that even what looks dense is none.
+Shelled shelled(const Attributes& attributes, bool airy) {
     constexpr double kSolid = 0.9;  // what covers more of its shell is one
     Shelled out;
     const bool box = boxlike(attributes);
     const auto shell = box ? shell_box(attributes) : shell_ellipsoid(attributes);
-    if (!shell || shell->opacity >= kSolid) {
+    if (!shell || (!airy && shell->opacity >= kSolid)) {
         out.solid = solid_of(attributes);
         return out;
     }
@@ -256,6 +257,18 @@ Shelled shelled(const Attributes& attributes) {
     out.solid.primitive = shell->primitive;
     out.density = shell->opacity;
     return out;
+}
+
+/// Whether no single part makes up much of the cluster.
+bool made_of_many(const Cluster& cluster, const Samples& samples, std::span<const uint32_t> parts) {
+    constexpr size_t kFewest = 8;
+    if (parts.empty())
+        return false;
+    std::map<uint32_t, size_t> counts;
+    size_t most = 0;
+    for (const uint32_t sample : cluster.samples)
+        most = std::max(most, ++counts[parts[samples.points[sample].triangle]]);
+    return most * kFewest <= cluster.samples.size();
 }
 
 }  // namespace
@@ -288,11 +301,14 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
 }
 
 std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
-                                        const Attributes& wanted, const CompositeOptions& options,
-                                        const Job& job) {
+                                        std::span<const uint32_t> parts, const Attributes& wanted,
+                                        const CompositeOptions& options, const Job& job) {
     // A shell through the middle of a cluster's surface leaves gaps between clusters; one around it
     // is this much larger (a ball's outside and its variances: sqrt(5 / 3)).
-    constexpr double kAround = 1.29;
+    constexpr double kAround = 1.2;
+    // What all shells together cover grows slowly with what each does.
+    constexpr double kDepth = 2.5;
+    constexpr double kMostDepth = 6;
     constexpr double kMostOpaque = 0.98;
     std::vector<Clustered> out;
     const ray::Scene scene(mesh, skin);
@@ -304,19 +320,19 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
     const double floor = lowest(mesh);
     for (const size_t count : kCounts) {
         clusters.split_to(count, job);
-        const size_t parts = clusters.all().size();
-        if (parts < 2 || (!out.empty() && out.back().clusters.size() == parts))
+        const size_t solids = clusters.all().size();
+        if (solids < 2 || (!out.empty() && out.back().clusters.size() == solids))
             break;
         const std::vector<uint32_t> cluster_of = clusters_of(mesh, clusters);
         Clustered level;
         std::vector<Shelled> shells;
         bool clear = false;
-        for (uint32_t i = 0; i < parts; ++i) {
+        for (uint32_t i = 0; i < solids; ++i) {
             const Cluster& cluster = clusters.all()[i];
             const Attributes& attributes = alone.of(cluster, i, cluster_of, job);
             if (attributes.empty())
                 continue;
-            shells.push_back(shelled(attributes));
+            shells.push_back(shelled(attributes, made_of_many(cluster, clusters.samples(), parts)));
             shells.back().solid.slot = static_cast<uint16_t>(level.clusters.size());
             clear = clear || shells.back().density > 0;
             level.attributes.push_back(attributes);
@@ -324,7 +340,7 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
         }
         if (!clear)
             return out;
-        double scale = kAround;
+        double depth = 1;  // of all shells, over that of the clusters alone
         for (int round = 0; round < kRounds; ++round) {
             level.composite.solids.clear();
             level.opacities.clear();
@@ -332,8 +348,9 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
                 Solid solid = shell.solid;
                 double opacity = 1;
                 if (shell.density > 0) {
-                    solid.primitive.half_size *= scale;
-                    opacity = std::min(kMostOpaque, shell.density / (scale * scale));
+                    solid.primitive.half_size *= kAround;
+                    opacity = std::min(kMostOpaque, shell.density / (kAround * kAround));
+                    opacity = 1 - std::pow(1 - opacity, depth);
                 }
                 solid.primitive = kept_above(solid.primitive, solid.box, floor);
                 level.composite.solids.push_back(solid);
@@ -344,7 +361,8 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
             const double now = measured(level, options, job).visible_area;
             if (!(now > 0))
                 break;
-            scale = std::clamp(scale * wanted.visible_area / now, 1.0, kMostStep);
+            depth = std::clamp(depth * std::pow(wanted.visible_area / now, kDepth), 1 / kMostDepth,
+                               kMostDepth);
         }
         out.push_back(std::move(level));
     }

@@ -3,6 +3,8 @@
 
 #include "approximate/replace.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +38,22 @@ Material clear_material(Material material, double opacity) {
         material.alpha = surface_alpha(opacity);
     }
     return material;
+}
+
+void brighten(Material& material, const glm::dvec3& factor) {
+    material.base_color =
+        glm::clamp(material.base_color * factor, glm::dvec3(0.0), glm::dvec3(1.0));
+    if (material.base_color_texture) {
+        // One factor for all pictures of the same hues: POV-Ray then needs one picture for them.
+        const double mean = (factor.x + factor.y + factor.z) / 3;
+        material.base_color_texture.scale *= mean;
+        material.base_color_texture.offset *= mean;
+    }
+    if (material.other) {
+        auto other = std::make_shared<Material>(*material.other);
+        brighten(*other, factor);
+        material.other = std::move(other);
+    }
 }
 
 }  // namespace lodestone::approximate

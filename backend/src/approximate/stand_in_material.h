@@ -13,4 +13,8 @@ Material mean_material(const Attributes& attributes);
 /// Of a solid that covers `opacity` of what is behind it, both its surfaces together; unchanged at 1.
 Material clear_material(Material material, double opacity);
 
+/// Scatters `factor` times as much light, by color, kept within 0...1; of a textured color all
+/// channels alike, by the mean. What glows, and highlights, stay.
+void brighten(Material& material, const glm::dvec3& factor);
+
 }  // namespace lodestone::approximate

@@ -11,7 +11,7 @@ namespace {
 
 // Heights above the floor over the height of the whole: less is a rounding.
 constexpr double kSame = 1e-9;
-constexpr int kRounds = 8;
+constexpr int kRounds = 30;
 
 double area_of(const Primitive& primitive, bool box) {
     return (box ? box_shell(primitive.half_size) : ellipsoid_shell(primitive.half_size)).area;
@@ -53,9 +53,12 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
         const Reach now = reach_of(out, box);
         const double along = (before.high - floor) / (now.high - now.low);
         stretch(out, std::clamp(along, 1 / kMost, kMost), 1);
-        const double across = std::sqrt(area / area_of(out, box));
+        // Between what a width does to tops (squared) and to sides.
+        const double across = std::pow(area / area_of(out, box), 0.7);
         stretch(out, 1, std::clamp(across, 1 / kMost, kMost));
     }
+    // Where both cannot be had, the area counts: it is what is seen.
+    out.half_size *= std::sqrt(area / area_of(out, box));
     out.center.z += floor - reach_of(out, box).low;
     return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/judge.h"
 
+#include "approximate/stand_in_material.h"
 #include "measure/opacity.h"
 #include "measure/visible.h"
 
@@ -130,12 +131,8 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
         for (const uint16_t slot : slots) {
             if (slot >= candidate.materials.size())
                 continue;
-            // Light that is scattered once is in proportion to the color. What glows stays as it is.
-            Material& material = candidate.materials[slot];
-            if (material.base_color_texture || material.other)
-                continue;
-            material.base_color =
-                glm::clamp(material.base_color * agreement.light, glm::dvec3(0.0), glm::dvec3(1.0));
+            // Light that is scattered once is in proportion to the color.
+            approximate::brighten(candidate.materials[slot], agreement.light);
             changed = true;
         }
         if (!changed)
@@ -143,6 +140,31 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
         agreement = agreement_of(candidate, job);
     }
     set_error(candidate, {agreement.error, agreement.error});
+    candidate.pictured = true;
+}
+
+void Judge::match_brightness(Candidate& candidate, const Mesh& finest, const Job& job) {
+    constexpr double kAlikeBright = 0.01;
+    constexpr double kMost = 2;
+    // What is nearer than this is used where the whole is 24 pixels large or more, and looks alike.
+    constexpr double kNear = 1.0 / 12;
+    if (candidate.pictured || environment_ || refracts() || candidate.error < kNear * size_)
+        return;
+    if (!pictures_)
+        take_pictures(finest, true, job);
+    // What glows takes part in the light but not in the correction: a second round is nearer.
+    const bool glows =
+        std::any_of(candidate.materials.begin(), candidate.materials.end(),
+                    [](const Material& material) { return material.emission != glm::dvec3(0.0); });
+    for (int round = 0; round < (glows ? 2 : 1); ++round) {
+        const glm::dvec3 light = agreement_of(candidate, job).light;
+        const glm::dvec3 off = glm::abs(light - 1.0);
+        if (!(std::max({off.x, off.y, off.z}) > kAlikeBright))
+            return;
+        for (Material& material : candidate.materials)
+            approximate::brighten(material,
+                                  glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
+    }
 }
 
 std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,

@@ -48,9 +48,11 @@ public:
     /// that will be far from the finest.
     void take_pictures(const Mesh& finest, bool coarse, const Job& job);
     /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures. It
-    /// is made as bright as the finest by its plain colors, of a mesh by those of the slots `tinted`;
-    /// what is textured keeps its color.
+    /// is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
     void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
+    /// Makes any other candidate that is far enough off as bright as the finest, by the colors of
+    /// all its slots. Errors stay: shades that much alike are one look to them.
+    void match_brightness(Candidate& candidate, const Mesh& finest, const Job& job);
 
     /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
     std::vector<double> visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,

@@ -6,6 +6,7 @@
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
 #include "approximate/stand_in_material.h"
+#include "approximate/standing.h"
 #include "build/flatten.h"
 #include "build/judge.h"
 #include "build/prune.h"
@@ -105,29 +106,41 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
             judge.measure_primitive(candidate, job);
         candidates.push_back(std::move(candidate));
     };
+    // Nothing sinks into the plane that its original stands on. What floats above it may be the
+    // better one (a tree's crown), or not (a table's top): the error decides.
+    const double floor = bound.box.low.z;
+    const auto add_standing = [&](Kind kind, const Primitive& primitive) {
+        const bool is_box = kind == Kind::Box;
+        const approximate::Reach reach = approximate::reach_of(primitive, is_box);
+        add(kind, approximate::kept_above(primitive, is_box, floor), 1);
+        constexpr double kStands = 0.01;  // over its height
+        if (reach.low - floor > kStands * (reach.high - reach.low))
+            add(kind, approximate::standing_on(primitive, is_box, floor), 1);
+    };
     if (const auto box = approximate::fit_box(judge.attributes(), bound))
-        add(Kind::Box, *box, 1);
+        add_standing(Kind::Box, *box);
     if (const auto ellipsoid = approximate::fit_ellipsoid(judge.attributes(), bound))
-        add(Kind::Ellipsoid, *ellipsoid, 1);
+        add_standing(Kind::Ellipsoid, *ellipsoid);
     if (!by_pictures)
         return;
     if (const auto box = approximate::fit_clear_box(judge.attributes(), bound))
-        add(Kind::Box, box->primitive, box->opacity);
+        add(Kind::Box, approximate::kept_above(box->primitive, true, floor), box->opacity);
     if (const auto ellipsoid = approximate::fit_clear_ellipsoid(judge.attributes(), bound))
-        add(Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
+        add(Kind::Ellipsoid, approximate::kept_above(ellipsoid->primitive, false, floor),
+            ellipsoid->opacity);
 }
 
-/// `airy`: clear ones too.
-void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy, uint64_t seed,
-                    Judge& judge, const Job& job) {
+/// `airy`: clear ones too, of these parts.
+void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
+                    const approximate::Crowd& crowd, uint64_t seed, Judge& judge, const Job& job) {
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
     options.shape = !airy;
     std::vector<approximate::Clustered> levels =
         approximate::composites(mesh, judge.skin(), judge.attributes(), options, job);
     if (airy) {
-        for (approximate::Clustered& level :
-             approximate::clear_composites(mesh, judge.skin(), judge.attributes(), options, job))
+        for (approximate::Clustered& level : approximate::clear_composites(
+                 mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
             levels.push_back(std::move(level));
     }
     for (const approximate::Clustered& level : levels) {
@@ -188,7 +201,7 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
         !judge.refracts()) {
         if (!by_pictures)
             judge.take_pictures(mesh, true, job);
-        add_composites(candidates, mesh, by_pictures, seed, judge, job);
+        add_composites(candidates, mesh, by_pictures, crowd, seed, judge, job);
     }
 }
 
@@ -328,6 +341,8 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
             out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, false, uses,
             finest.summary.bound, materials, settings, seed_of(object, settings), judge, job);
     keep_useful(out.candidates, finest.summary.cost.bytes, uses);
+    for (Candidate& candidate : out.candidates)
+        judge.match_brightness(candidate, *mesh, job);
     return out;
 }
 
@@ -393,6 +408,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         useful = {out.candidates.back()};
     }
     out.candidates = std::move(useful);
+    for (Candidate& candidate : out.candidates)
+        judge.match_brightness(candidate, reference.mesh, job);
     return out;
 }
 

@@ -22,6 +22,7 @@ struct Candidate {
     Primitive primitive;               // of a box or ellipsoid
     std::shared_ptr<const Composite> composite;
     std::vector<Material> materials;  // by slot
+    bool pictured = false;            // compared by pictures, and as bright as they are
 };
 
 struct StandIns {
