@@ -28,6 +28,18 @@ double share(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
 
+/// What all channels are multiplied by, where that is all that is done to them and about 1 (a picture
+/// cannot hold more than 1); else 1.
+double even_scale(const Texture& texture) {
+    constexpr double kMost = 2;
+    const glm::dvec3& scale = texture.scale;
+    const bool even = std::abs(scale.x - scale.y) <= 1e-9 * std::abs(scale.x) &&
+                      std::abs(scale.x - scale.z) <= 1e-9 * std::abs(scale.x);
+    return even && texture.offset == glm::dvec3(0.0) && scale.x >= 1 / kMost && scale.x <= kMost
+               ? scale.x
+               : 1;
+}
+
 /// Inside of texture{...} or of an entry of a texture_map.
 using Body = std::string;
 
@@ -220,9 +232,11 @@ private:
         }
         const bool image = shown(material.base_color_texture);
         const bool lamp = shown(material.emission_texture);
-        // What the paint leaves of a picture's brightness is left to the finish: a picture is baked
-        // for every distinct hue only.
-        const double brightness = image ? std::max({paint.x, paint.y, paint.z}) : 1;
+        // What the paint leaves of a picture's brightness, and what its own scale does, is left to
+        // the finish: a picture is baked for every distinct hue only.
+        const double scale = image ? even_scale(material.base_color_texture) : 1;
+        const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
+        const double brightness = scale * painted;
         Finish finish = finish_of(look, glm::dot(base * paint, kLuma));
         finish.ambient *= brightness;
         finish.diffuse *= brightness;
@@ -230,10 +244,9 @@ private:
         Body pigment_text = "pigment{";
         if (image) {
             Texture texture = material.base_color_texture;
-            if (brightness > 0) {
-                texture.scale *= paint / brightness;
-                texture.offset *= paint / brightness;
-            }
+            if (painted > 0)
+                texture.offset *= paint / painted;
+            texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
             pigment_text += pigment(texture, Content::Color);
         } else {
             append_rgb(pigment_text, base * paint);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the brightness of stand-ins: collapsed meshes, textured leaves and solids scatter as much
+// light as what they stand for, by other rays than they were matched with.
+#include "approximate/stand_in_material.h"
+#include "backend/foliage.h"
+#include "backend/models.h"
+#include "base/files.h"
+#include "build/hierarchy.h"
+#include "measure/agreement.h"
+#include "ray/scene.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Brightness : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+    }
+};
+
+ray::SkinPtr skin_of(const Model& model, const Representation& level, image::TexelCache& texels) {
+    std::vector<Material> materials;
+    for (const uint32_t index : level.materials)
+        materials.push_back(model.materials[index]);
+    return std::make_shared<const ray::Skin>(materials, texels);
+}
+
+Mesh drawn(const Representation& level) {
+    switch (level.summary.kind) {
+        case Kind::Mesh:
+            return level.mesh();
+        case Kind::Composite:
+            return tessellate(level.composite(), 3);
+        case Kind::Box:
+            return tessellate_box(level.primitive());
+        default:
+            return tessellate_ellipsoid(level.primitive(), 4);
+    }
+}
+
+/// Builds an object alone and compares all its levels that are off by a twelfth of the radius.
+void expect_as_bright(Model& model, const std::string& name, size_t fewest_levels) {
+    const fs::path folder = own_scratch() / name;
+    fs::remove_all(folder);
+    fs::create_directories(folder.parent_path());
+    Problems problems;
+    build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    const Object& object = model.objects[model.root];
+    const Representation& finest = object.representations[0];
+    image::TexelCache texels;
+    const measure::AgreementReference truth(finest.mesh(), skin_of(model, finest, texels), 99, 90);
+    size_t compared = 0;
+    for (size_t i = 1; i < object.representations.size(); ++i) {
+        const Representation& level = object.representations[i];
+        if (level.summary.error < object.bound().radius / 12)
+            continue;
+        const glm::dvec3 light = truth.of(drawn(level), skin_of(model, level, texels)).light;
+        EXPECT_NEAR((light.x + light.y + light.z) / 3, 1, 0.03) << name << " level " << i;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(light[c], 1, 0.06) << name << " level " << i << " channel " << c;
+        ++compared;
+    }
+    EXPECT_GE(compared, fewest_levels);
+}
+
+/// Shelves (slot 0) with books (slot 1) on them, open to the front.
+Mesh bookcase() {
+    Random random(2);
+    Mesh mesh;
+    for (int shelf = 0; shelf < 5; ++shelf)
+        append(mesh, shapes::box({0, 0, 0.5 * shelf}, {1.6, 0.4, 0.5 * shelf + 0.04}), {});
+    for (const double x : {0.0, 1.56})
+        append(mesh, shapes::box({x, 0, 0}, {x + 0.04, 0.4, 2.04}), {});
+    mesh.slots.assign(mesh.triangles.size(), 0);
+    for (int shelf = 0; shelf < 4; ++shelf) {
+        double x = 0.06;
+        while (x < 1.5) {
+            const double wide = 0.02 + 0.03 * random.uniform();
+            const double low = 0.5 * shelf + 0.04;
+            const double high = low + 0.25 + 0.17 * random.uniform();
+            append(mesh, shapes::box({x, 0.05, low}, {x + wide, 0.3, high}), {}, 1);
+            x += wide + 0.003;
+        }
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TEST_F(Brightness, ABookcaseStaysAsBrightWhenItIsCollapsed) {
+    Model model;
+    model.root = models::add_leaf(model, "case", bookcase(), models::colored("a", {0.3, 0.2, 0.1}));
+    Representation& finest = model.objects[model.root].representations[0];
+    finest.materials.push_back(static_cast<uint32_t>(model.materials.size()));
+    model.materials.push_back(models::colored("book", {0.5, 0.1, 0.1}));
+    summarize(finest, model);
+    expect_as_bright(model, "bookcase", 2);
+}
+
+TEST_F(Brightness, TexturedLeavesStayAsBrightWhenTheyArePruned) {
+    const PicturePtr picture = foliage::picture(
+        16, [](double x, double y) { return glm::dvec4(0.2 + 0.2 * x, 0.3 + 0.4 * y, 0.1, 1); });
+    Material leaf;
+    leaf.base_color = glm::dvec3(picture->mean);
+    leaf.base_color_texture = foliage::texture(picture);
+    Model model;
+    model.root = models::add_leaf(model, "tree", foliage::tree(300),
+                                  models::colored("bark", {0.2, 0.1, 0.05}));
+    Representation& finest = model.objects[model.root].representations[0];
+    finest.materials.push_back(static_cast<uint32_t>(model.materials.size()));
+    model.materials.push_back(leaf);
+    summarize(finest, model);
+    expect_as_bright(model, "textured tree", 2);
+}
+
+TEST_F(Brightness, ATextureIsBrightenedByItsScaleAndMixturesBothWays) {
+    Material inner;
+    inner.base_color = {0.5, 0.5, 0.9};
+    Material material;
+    material.base_color = {0.4, 0.2, 0.1};
+    material.base_color_texture = foliage::texture(foliage::left_half());
+    material.other = std::make_shared<Material>(inner);
+    material.emission = {3, 3, 3};
+    approximate::brighten(material, {1.2, 1.1, 1.3});
+    EXPECT_NEAR(material.base_color.x, 0.48, 1e-12);
+    EXPECT_NEAR(material.base_color_texture.scale.x, 1.2, 1e-12);
+    EXPECT_EQ(material.base_color_texture.scale.x, material.base_color_texture.scale.z);
+    EXPECT_NEAR(material.other->base_color.x, 0.6, 1e-12);
+    EXPECT_EQ(material.other->base_color.z, 1);  // a color reflects no more than there is
+    EXPECT_EQ(material.emission, glm::dvec3(3));
+    EXPECT_EQ(inner.base_color.x, 0.5) << "what others share stays";
+}
