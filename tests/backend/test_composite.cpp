@@ -228,6 +228,21 @@ TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
     }
 }
 
+TEST_F(Composites, ATrunkOfFewLongTrianglesDrawsNoLeavesDown) {
+    Mesh tree = shapes::box({-0.1, -0.1, -6}, {0.1, 0.1, -1});
+    append(tree, leaves_in_a_ball(300), {});
+    for (const Clustered& level :
+         approximate::clear_composites(tree, nullptr, {}, attributes_of(tree, 1), {})) {
+        for (const Solid& solid : level.composite.solids) {
+            const Bound bound =
+                solid.box ? bound_of_box(solid.primitive) : bound_of_ellipsoid(solid.primitive);
+            if (bound.box.low.z < -3.5) {
+                EXPECT_LT(bound.box.size().x, 1) << level.composite.solids.size();
+            }
+        }
+    }
+}
+
 TEST_F(Composites, SolidThingsAreNeverClear) {
     Mesh two = shapes::box({-1, -1, 0}, {1, 1, 2});
     append(two, shapes::box({-1, -1, 0}, {1, 1, 2}), {glm::dmat3(1.0), {5, 0, 0}});

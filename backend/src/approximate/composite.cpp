@@ -172,6 +172,54 @@ double lowest(const Mesh& mesh) {
     return bound_of(mesh.positions).box.low.z;
 }
 
+/// No edge longer than `longest`, as far as 65,536 triangles go: what spans several clusters (a trunk
+/// of two triangles) belongs to each in part. `source`: of each triangle, where it was.
+Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
+    constexpr size_t kMost = size_t{1} << 16u;
+    Mesh out = mesh;
+    if (out.slots.empty())
+        out.slots.assign(out.triangles.size(), 0);
+    source.resize(out.triangles.size());
+    for (uint32_t i = 0; i < source.size(); ++i)
+        source[i] = i;
+    const auto middle = [&](auto& list, uint32_t a, uint32_t b) {
+        if (!list.empty())
+            list.push_back(0.5f * (list[a] + list[b]));
+    };
+    for (size_t i = 0; i < out.triangles.size();) {
+        const Triangle t = out.triangles[i];
+        int edge = 0;
+        double length = 0;
+        for (int corner = 0; corner < 3; ++corner) {
+            const double now = glm::length(glm::dvec3(out.positions[t[corner]]) -
+                                           glm::dvec3(out.positions[t[(corner + 1) % 3]]));
+            if (now > length) {
+                length = now;
+                edge = corner;
+            }
+        }
+        if (!(length > longest) || !std::isfinite(length) || out.triangles.size() >= kMost) {
+            ++i;
+            continue;
+        }
+        const uint32_t a = t[edge];
+        const uint32_t b = t[(edge + 1) % 3];
+        const uint32_t c = t[(edge + 2) % 3];
+        const auto between = static_cast<uint32_t>(out.positions.size());
+        middle(out.positions, a, b);
+        middle(out.normals, a, b);
+        middle(out.uvs, a, b);
+        middle(out.colors, a, b);
+        out.triangles[i] = Triangle(a, between, c);
+        out.triangles.emplace_back(between, b, c);
+        const uint16_t slot = out.slots[i];
+        const uint32_t from = source[i];
+        out.slots.push_back(slot);
+        source.push_back(from);
+    }
+    return out;
+}
+
 /// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that is
 /// nearest where it has none.
 std::vector<uint32_t> clusters_of(const Mesh& mesh, const Clusters& clusters) {
@@ -300,7 +348,7 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
     return out;
 }
 
-std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
+std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& skin,
                                         std::span<const uint32_t> parts, const Attributes& wanted,
                                         const CompositeOptions& options, const Job& job) {
     // A shell through the middle of a cluster's surface leaves gaps between clusters; one around it
@@ -310,7 +358,15 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
     constexpr double kDepth = 2.5;
     constexpr double kMostDepth = 6;
     constexpr double kMostOpaque = 0.98;
+    constexpr double kLongest = 1.0 / 8;  // over the radius
     std::vector<Clustered> out;
+    std::vector<uint32_t> source;
+    const Mesh mesh = divided(whole, kLongest * bound_of(whole.positions).radius, source);
+    std::vector<uint32_t> part_of;
+    for (const uint32_t triangle : source) {
+        if (!parts.empty())
+            part_of.push_back(parts[triangle]);
+    }
     const ray::Scene scene(mesh, skin);
     Samples samples = all_of(mesh, scene, skin, options.seed);
     if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
@@ -332,7 +388,8 @@ std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& sk
             const Attributes& attributes = alone.of(cluster, i, cluster_of, job);
             if (attributes.empty())
                 continue;
-            shells.push_back(shelled(attributes, made_of_many(cluster, clusters.samples(), parts)));
+            shells.push_back(
+                shelled(attributes, made_of_many(cluster, clusters.samples(), part_of)));
             shells.back().solid.slot = static_cast<uint16_t>(level.clusters.size());
             clear = clear || shells.back().density > 0;
             level.attributes.push_back(attributes);
