@@ -4,6 +4,7 @@
 #include "approximate/standing.h"
 #include "base/random.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -55,6 +56,19 @@ TEST(Standing, TiltedOnesTouchTheFloorToo) {
         const Primitive after = standing_on(before, box, 0);
         EXPECT_NEAR(reach_of(after, box).low, 0, 1e-9);
         EXPECT_NEAR(area_of(after, box) / area_of(before, box), 1, 1e-9) << i;
+    }
+}
+
+TEST(Standing, TiltedThingsMostlyBelowTheFloorKeepTheirShape) {
+    for (const double angle : {0.1, 0.5, 0.9, 1.4}) {
+        for (const double middle : {-0.9, -0.5, 0.0}) {
+            const Primitive before{{0, 0, middle}, tilted(angle), {1.2, 0.5, 0.05}};
+            for (const bool box : {true, false}) {
+                const Primitive after = kept_above(before, box, 0);
+                EXPECT_GE(reach_of(after, box).low, -1e-9);
+                EXPECT_LT(std::max({after.half_size.x, after.half_size.y, after.half_size.z}), 3);
+            }
+        }
     }
 }
 

@@ -41,21 +41,30 @@ Reach reach_of(const Primitive& primitive, bool box) {
 }
 
 Primitive standing_on(const Primitive& primitive, bool box, double floor) {
-    // Flat things must not become high, or high ones flat.
-    constexpr double kMost = 4;
+    // What would have to become another thing (tilted and far below the floor) is moved instead.
+    constexpr double kMost = 2;
     const Reach before = reach_of(primitive, box);
     const double height = before.high - before.low;
     if (!(before.high - floor > kSame * height) || !(std::abs(before.low - floor) > kSame * height))
         return primitive;
     const double area = area_of(primitive, box);
     Primitive out = primitive;
+    double whole_along = 1;
+    double whole_across = 1;
     for (int round = 0; round < kRounds; ++round) {
         const Reach now = reach_of(out, box);
         const double along = (before.high - floor) / (now.high - now.low);
-        stretch(out, std::clamp(along, 1 / kMost, kMost), 1);
+        stretch(out, along, 1);
         // Between what a width does to tops (squared) and to sides.
         const double across = std::pow(area / area_of(out, box), 0.7);
-        stretch(out, 1, std::clamp(across, 1 / kMost, kMost));
+        stretch(out, 1, across);
+        whole_along *= along;
+        whole_across *= across;
+        if (!(std::max(whole_along, whole_across) <= kMost &&
+              std::min(whole_along, whole_across) >= 1 / kMost)) {
+            out = primitive;
+            break;
+        }
     }
     // Where both cannot be had, the area counts: it is what is seen.
     out.half_size *= std::sqrt(area / area_of(out, box));
