@@ -96,16 +96,22 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
     return flat;
 }
 
-double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job) {
+double error_for_triangles(const Model& model, ObjectIndex group, uint64_t wanted, uint64_t most,
+                           const Job& job) {
+    // What is larger than this part of the size is not fine: what is measured against it would look
+    // as far off. And what saves little is not worth an error: a roof of boxes stays one.
+    constexpr int kLastFine = -5;
+    constexpr int kLast = 2;
     const double size = model.objects[group].bound().radius;
+    const auto triangles_at = [&](double error) {
+        return triangles_of(model, quality::choose_below(model, group, view_within(error), job));
+    };
+    uint64_t enough = std::max(wanted, triangles_at(std::ldexp(size, kLastFine)) * 5 / 4);
+    if (enough > most)
+        enough = std::max(most, triangles_at(std::ldexp(size, kLast)));
     double error = 0;
-    for (int power = -12; power < 3; ++power) {
-        const double next = std::ldexp(size, power);
-        const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
-        if (triangles_of(model, cut) <= most)
-            break;
-        error = next;
-    }
+    for (int power = -12; triangles_at(error) > enough && power <= kLast; ++power)
+        error = std::ldexp(size, power);
     return error;
 }
 

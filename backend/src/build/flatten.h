@@ -19,9 +19,11 @@ struct Flat {
 Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
              const Job& job);
 
-/// The finest error (from a rising series) at which flattening gives at most `most` triangles; the
-/// coarsest of the series when none does.
-double error_for_triangles(const Model& model, ObjectIndex group, uint64_t most, const Job& job);
+/// The finest error (from a rising series) at which flattening gives at most `wanted` triangles, or
+/// little more than at an error that is still fine (1/32 of the size); larger errors only where
+/// those would be more than `most`.
+double error_for_triangles(const Model& model, ObjectIndex group, uint64_t wanted, uint64_t most,
+                           const Job& job);
 
 /// What a group must know of the rest of the model; made once for a build.
 struct Surroundings {

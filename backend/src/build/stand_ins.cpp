@@ -358,7 +358,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const bool environment = surroundings.environment[group] != 0;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
-    const double fine = error_for_triangles(model, group, budget, job);
+    const double fine = error_for_triangles(model, group, budget, settings.group_triangles, job);
     const Flat reference = flatten(model, group, fine, source, job);
     if (reference.mesh.empty())
         return out;
