@@ -2,7 +2,6 @@
 #include "measure/agreement.h"
 
 #include "base/parallel.h"
-#include "measure/convex_bound.h"
 #include "measure/sobol.h"
 #include "measure/visible_sampler.h"
 
@@ -14,9 +13,9 @@ namespace {
 
 // Samples along a side of the pixels that are tried, where they divide that of the picture.
 constexpr std::array<int, 11> kPixelSides{2, 3, 5, 6, 9, 10, 15, 18, 30, 45, 90};
-// Of the light on a surface that faces the sun: more than half of all light, for the sun shines
-// aslant and throws shadows.
-constexpr double kSky = 0.35;
+// Of the light on a surface that faces the sun, as on a clear day. Nothing shades the sky: pictures
+// show it so, as one ambient light.
+constexpr double kSky = 0.25;
 // Bounds of the finest and of larger stand-ins: pictures show this much around.
 constexpr double kMargin = 1.1;
 

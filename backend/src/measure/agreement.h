@@ -14,7 +14,7 @@ namespace lodestone::measure {
 /// (0...1) is at most this, ...
 inline constexpr double kMostCoverageOff = 0.10;
 /// ... and that of light, over the mean light of the finest's, at most this.
-inline constexpr double kMostLightOff = 0.20;
+inline constexpr double kMostLightOff = 0.25;
 
 struct Agreement {
     double error = 0;       // the smallest pixel size at which pictures agree, metres
@@ -25,9 +25,9 @@ struct Agreement {
 /// The error of what is not solid (foliage, fences, crowds, things one can see through): where single
 /// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
 /// how bright it is does. Orthographic pictures along 13 axes, both ways, of a diffuse surface under
-/// a uniform sky (half of the light; nothing hides it, as in POV-Ray's ambient) and a sun that stands
-/// obliquely beside the viewer, with shadows; both meshes are sampled by the same rays. Larger pixels are means of smaller ones; differences
-/// are those of pictures without sampling noise.
+/// an even sky (a quarter of the light) and a sun that stands obliquely beside the viewer, with
+/// shadows; both meshes are sampled by the same rays. Larger pixels are means of smaller ones;
+/// differences are those of pictures without sampling noise.
 class AgreementReference {
 public:
     /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
