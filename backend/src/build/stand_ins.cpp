@@ -206,9 +206,11 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
 }
 
 /// What no ray from outside reaches is left out (of the occurrences too); everything stays when
-/// nothing would.
+/// nothing would, and where there is glass, which ends rays but hides nothing.
 Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const ray::SkinPtr& skin,
                     uint64_t seed, const Job& job) {
+    if (skin->transmits())
+        return mesh;
     const ray::Scene scene(mesh, skin);
     const std::vector<uint8_t> seen =
         measure::seen_from_outside(mesh, scene, kRaysPerTriangle, seed, job);

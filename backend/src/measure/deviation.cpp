@@ -224,9 +224,13 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
     if (sampler.empty())
         return;
     add_visible_points(finest, sampler, surface, options.samples, job, visible_);
-    add_visible_vertices(finest, scenes_.whole(), sampler.sides(),
-                         weighted_vertices(finest, options.most_vertices, options.seed),
-                         ray_lift(diameter_ / 2), options.seed, job, visible_);
+    const std::vector<WeightedVertex> vertices =
+        weighted_vertices(finest, options.most_vertices, options.seed);
+    if (surface.skin && surface.skin->transmits())
+        add_vertex_samples(finest, scenes_.whole(), vertices, visible_);
+    else
+        add_visible_vertices(finest, scenes_.whole(), sampler.sides(), vertices,
+                             ray_lift(diameter_ / 2), options.seed, job, visible_);
     lights_.reserve(visible_.size());
     for (const Sample& sample : visible_)
         lights_.push_back(Looks::light_of(sample.color));

@@ -180,13 +180,24 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
     std::vector<VisiblePoint> points;
     uint64_t rays = 0;
     uint64_t hits = 0;
+    // Behind glass everything can be seen.
+    const bool through = surface.skin && surface.skin->transmits();
+    const auto cast = [&](uint32_t ray, Found& out_of_ray) {
+        if (!through) {
+            out_of_ray.count = sampler.cast(ray, out_of_ray.points);
+            return;
+        }
+        const VisiblePoint point = sampler.on_surface(ray);
+        out_of_ray.points[0] = point;
+        out_of_ray.count = surface.skin->alpha(mesh, point.triangle, point.u, point.v) > 0 ? 1 : 0;
+    };
     while (points.size() < count && rays < most) {
         const size_t batch = std::min<uint64_t>(most - rays, std::max<uint32_t>(count / 2, 1));
         found.assign(batch, {});
         parallel_for((batch + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
             for (size_t i = block * kBlock; i < std::min(batch, (block + 1) * kBlock); ++i)
-                found[i].count = sampler.cast(static_cast<uint32_t>(rays + i), found[i].points);
+                cast(static_cast<uint32_t>(rays + i), found[i]);
         });
         for (const Found& ray : found) {
             hits += ray.count > 0 ? 1 : 0;
@@ -197,8 +208,8 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
     }
     if (points.empty())
         return;
-    const double visible =
-        sampler.reference_area() * static_cast<double>(hits) / static_cast<double>(rays);
+    const double visible = (through ? sampler.possible_area() : sampler.reference_area()) *
+                           static_cast<double>(hits) / static_cast<double>(rays);
     if (points.size() > count)
         points.resize(count);
     // Along the list of triangles, neighbors are near each other and so are their answers.

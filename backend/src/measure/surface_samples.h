@@ -55,7 +55,8 @@ void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
                         const std::vector<WeightedVertex>& vertices,
                         std::vector<SurfaceSample>& out);
 
-/// Points that rays from outside hit, sharing the visible area of one side equally.
+/// Points that rays from outside hit, sharing the visible area of one side equally. Of something
+/// with glass all points: rays end at glass, but eyes do not.
 void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const Surface& surface,
                         uint32_t count, const Job& job, std::vector<SurfaceSample>& out);
 

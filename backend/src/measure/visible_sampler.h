@@ -62,6 +62,7 @@ public:
     bool hits(const std::array<double, 4>& u) const;
     /// A point uniform in possible_area(), seen or not.
     VisiblePoint on_surface(const std::array<double, 4>& u) const;
+    VisiblePoint on_surface(uint32_t ray) const { return on_surface(numbers_.point(ray)); }
 
 private:
     int cast_line(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
