@@ -23,6 +23,9 @@ constexpr double kLeastRelativeError = 1e-7;
 // than the layer is thick hides it, which shows from as far as the layer is wide: environment
 // counts as this many times wider than it is off.
 constexpr double kLayerWidth = 16;
+// A thing is flat where it is, in the standard deviations of its surface, this much thinner than
+// wide.
+constexpr double kFlat = 0.05;
 // Below this mean opacity nothing solid stands for it: it would hide what shines through.
 constexpr double kLeastOpacity = 0.9;
 constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
@@ -65,6 +68,15 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     attributes_ =
         measure::measure_visible(finest, ray::Scene(finest, skin_), skin_, options, {}, job)
             .attributes;
+}
+
+void Judge::count_layers() {
+    const auto variance = [&](int axis) {
+        const glm::dvec3& along = attributes_.axes[axis];
+        return glm::dot(along, attributes_.moments * along);
+    };
+    if (!attributes_.empty() && variance(2) < kFlat * kFlat * variance(1))
+        layer_ = true;
 }
 
 bool Judge::solid() const {
@@ -186,7 +198,7 @@ std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint
 
 void Judge::set_error(Candidate& candidate, const measure::Deviation& deviation) const {
     const auto counted = [&](double error) {
-        return counted_error(error, environment_, size_) + child_error_;
+        return counted_error(error, environment_ || layer_, size_) + child_error_;
     };
     candidate.error = counted(deviation.error);
     candidate.max_error = std::max(candidate.error, counted(deviation.max));

@@ -28,6 +28,10 @@ public:
     /// Measures the finest by rays, which attributes(), solid() and shows_as_much() need.
     void measure_finest(const Mesh& finest, const Job& job);
 
+    /// Errors of a flat thing (road, carpet, wall) count as those of environment from here on: others
+    /// lie on it in thin layers, or it lies on others. After measure_finest().
+    void count_layers();
+
     const Attributes& attributes() const { return attributes_; }
     /// Whether something solid may stand for it.
     bool solid() const;
@@ -67,6 +71,7 @@ private:
     double size_;
     double child_error_;
     bool environment_;
+    bool layer_ = false;
     uint64_t seed_;
     uint64_t rays_;
     ray::SkinPtr skin_;

@@ -334,6 +334,7 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
     Judge judge(*mesh, materials, texels, settings, object.role == Role::Environment,
                 seed_of(object, settings), 0, job);
     judge.measure_finest(*mesh, job);
+    judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
@@ -368,6 +369,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
     judge.measure_finest(reference.mesh, job);
+    judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
