@@ -1,250 +1,331 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stand-ins beside what they stand for: a sheet of pictures 64, 32, 16, 8 and 4 pixels high.
+"""Stand-ins beside what they stand for: twelve groups, 64, 32, 16, 8 and 4 pixels large.
 
-    /usr/bin/python3 tests/bench/sheet_replace.py OUT.png [--build build/release]
+    /usr/bin/python3 tests/bench/sheet_replace.py [--only tree,crowd] [--png OUT.png]
 
-A tree of 2,800 leaf quads, a crowd of 80 figures and a bookcase, made here. Each pair of rows is
-the 16-sample picture at full detail, and the level that Pixel Error 1 picks with the samples of
-final pictures; all are enlarged to the same height. Prints what was picked, its brightness over
-that of the full picture, and what both cost POV-Ray.
+A group's longest side has so many pixels. Each picture, by POV-Ray, shows many copies of it beside
+each other, each turned in its own way and lying differently on the pixels. What is right is full
+detail with 16 samples a pixel. Compared with it, with one sample a pixel: what Pixel Error 1 picks,
+the whole group simplified as one mesh (Decimate's job, by our fast mode) to the memory that is
+picked, and full detail; and what is picked once more with as many samples as full detail could pay
+with the CPU seconds of tracing that it takes for one (two for every other pixel and the like, four
+at most). Errors are mean absolute differences of display-encoded values over a middle grey, for
+each pixel that what is right covers. Light is the sum of linear light, both with 16 samples.
 """
 
 import argparse
-import json
 import math
-import random
-import subprocess
+import statistics
 import sys
 import tempfile
 from array import array
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy
+from sheet_groups import GROUPS
+from sheet_materials import materials
+from sheet_measure import parts_of, samples, seen
+from sheet_shapes import Filler
+
 ROOT = Path(__file__).resolve().parents[2]
-HEIGHTS = (64, 32, 16, 8, 4)
-CELL = 128  # pixels of an enlarged picture
-GAP = 2
-FILL = 0.8  # of the picture is the object
+COPIES = {64: 2, 32: 4, 16: 6, 8: 8, 4: 12}  # along a side
+GAP = 1.17  # between copies, over their diameter; no whole number of pixels
+LEAST_TRIANGLES = 4
+TRIANGLE_BYTES, PLACED_BYTES = 245, 1500  # as representation.h has them
+FEWEST_PARTS = 8  # of a pruned mesh
+MOST_SAMPLES = 4
+MOST_OFF = 0.03  # of the light
+CELL = 64  # pixels of an enlarged picture of the sheet
+GOLDEN = 2.399963
 
 
-class Obj:
-    """Text of a Wavefront file, Z up."""
+@dataclass
+class Row:
+    """What one group shows at one size."""
 
-    def __init__(self) -> None:
-        self.lines = ["mtllib colors.mtl"]
+    name: str
+    size: int
+    kinds: dict[str, int] = field(default_factory=dict)  # of one copy
+    main: str = ""
+    triangles: int = 0
+    full_triangles: int = 0
+    bytes: int = 0
+    light: float = 0
+    errors: dict[str, float] = field(default_factory=dict)  # picked, paid, decimated, full
+    cpu: float = 0  # of tracing, over that of full detail
+    pictures: dict = field(default_factory=dict)  # right, sharp
+
+
+class Shots:
+    """Pictures of many copies of one object of a model."""
+
+    def __init__(self, native, folder: Path, workers: ThreadPoolExecutor) -> None:
+        self.native, self.folder, self.workers = native, folder, workers
         self.count = 0
 
-    def begin(self, name: str, material: str) -> None:
-        self.lines += [f"o {name}", f"usemtl {material}"]
+    def prepare(self, model, item, radius: float, center, size: int, longest: float):
+        """Fills `model` with copies around the origin; returns the view without its Pixel Error."""
+        native, many = self.native, COPIES[size]
+        turn, rise = 0.5, 0.3  # of the camera
+        towards = (
+            math.cos(rise) * math.cos(turn),
+            math.cos(rise) * math.sin(turn),
+            math.sin(rise),
+        )
+        right = (-math.sin(turn), math.cos(turn), 0.0)
+        up = tuple(
+            towards[(i + 1) % 3] * right[(i + 2) % 3] - towards[(i + 2) % 3] * right[(i + 1) % 3]
+            for i in range(3)
+        )
+        cell = 2 * radius * GAP
+        scene = model.add_group("copies", "copies")
+        for row in range(many):
+            for column in range(many):
+                angle = GOLDEN * (row * many + column)
+                c, s = math.cos(angle), math.sin(angle)
+                a, b = (k - (many - 1) / 2 for k in (column, row))
+                place = [cell * (a * r + b * u) for r, u in zip(right, up)]
+                middle = (c * center[0] - s * center[1], s * center[0] + c * center[1], center[2])
+                x, y, z = (p - m for p, m in zip(place, middle))
+                model.add_placement(scene, item, (c, -s, 0, x, s, c, 0, y, 0, 0, 1, z), f"{angle}")
+        model.set_root(scene)
+        metre = size / longest
+        pixels = max(8, round(cell * many * metre))
+        width = pixels / metre
+        camera = native.Camera(
+            "sheet",
+            True,
+            tuple(4 * width * t for t in towards),
+            tuple(-t for t in towards),
+            tuple(width * r for r in right),
+            tuple(width * u for u in up),
+            0.01,
+        )
+        return camera, pixels
 
-    def use(self, material: str) -> None:
-        self.lines.append(f"usemtl {material}")
+    def light_up(self, model) -> None:
+        """A sun beside the viewer, high enough for shadows, and a sky."""
+        native = self.native
+        model.add_light(
+            native.Light("sun", native.LightKind.SUN, power=3.0, direction=(-0.45, -0.75, -0.65))
+        )
+        model.set_world((0.3, 0.3, 0.32), transparent=True)
 
-    def faces(self, points: list, faces: list) -> None:
-        self.lines += [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in points]
-        for face in faces:
-            self.lines.append("f " + " ".join(str(self.count + i + 1) for i in face))
-        self.count += len(points)
+    def take(self, cut, sharp: bool) -> Future:
+        """Renders later: (linear premultiplied pixels, CPU seconds of tracing). `sharp`:
+        each pixel the mean of 16 samples; otherwise four of one sample where one belongs."""
+        native = self.native
+        self.count += 1
+        folder = self.folder / f"{self.count}"
+        folder.mkdir()
+        view = cut.view
+        if not sharp:
+            cut.view = replace(view, width=2 * view.width, height=2 * view.height)
+        antialias = native.Antialias.REFERENCE if sharp else native.Antialias.OFF
+        options = native.PovrayOptions(antialias=antialias, threads=1)
+        native.povray_export(cut, str(folder), options)
+        cut.view = view
 
-    def box(self, low: tuple, high: tuple) -> None:
-        points = [
-            (x, y, z)
-            for z in (low[2], high[2])
-            for x, y in ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]))
-        ]
-        sides = [(i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4) for i in range(4)]
-        self.faces(points, [(3, 2, 1, 0), (4, 5, 6, 7), *sides])
+        def render() -> tuple:
+            report = native.povray_run(str(folder), "picture.exr", options)
+            image = native.image_read(str(folder / "picture.exr"))
+            pixels = numpy.frombuffer(image.pixels, numpy.float32)
+            return pixels.reshape(image.height, image.width, 4), report.trace_cpu_s
 
-    def ball(self, center: tuple, radii: tuple, rows: int = 10) -> None:
-        points, faces, around = [], [], 2 * rows
-        for j in range(rows + 1):
-            polar = math.pi * j / rows
-            for i in range(around):
-                turn = 2 * math.pi * i / around
-                unit = (
-                    math.sin(polar) * math.cos(turn),
-                    math.sin(polar) * math.sin(turn),
-                    math.cos(polar),
+        return self.workers.submit(render)
+
+
+class Sheet:
+    def __init__(self, native, folder: Path, stores: Path, workers: ThreadPoolExecutor) -> None:
+        self.native, self.folder, self.stores = native, folder, stores
+        self.shots = Shots(native, folder, workers)
+
+    def model_of(self, item):
+        model = self.native.Model()
+        root = Filler(self.native, model, materials(self.native, model)).put(item)
+        model.set_root(root)
+        return model, root
+
+    def rows_of(self, name: str) -> list[tuple[Row, dict[str, Future]]]:
+        """One a size; their pictures are still to come."""
+        native, group = self.native, GROUPS[name]()
+        joined = group.joined()
+        sides = list(zip(*joined.points))
+        longest = max(max(side) - min(side) for side in sides)
+        store = self.stores / name.replace(" ", "_")
+        out = []
+        for size in COPIES:
+            model, root = self.model_of(group)
+            model.build(str(store))
+            summary = model.object_summary(root)
+            camera, pixels = self.shots.prepare(
+                model, root, summary.radius, summary.center, size, longest
+            )
+            self.shots.light_up(model)
+            row, copies = Row(name, size), COPIES[size] ** 2
+            full = native.Cut(model, native.View(camera, pixels, pixels, 0.0))
+            picked = native.Cut(model, native.View(camera, pixels, pixels, 1.0))
+            row.full_triangles = full.summary().triangles // copies
+            jobs = {
+                "right": self.shots.take(full, True),
+                "sharp": self.shots.take(picked, True),
+                "full": self.shots.take(full, False),
+                "picked": self.shots.take(picked, False),
+            }
+            self.describe(row, model, picked, copies, store, "glass" in joined.slots)
+            if row.main != "original":
+                whole, mesh = self.model_of(joined)
+                budget = max(LEAST_TRIANGLES, (row.bytes - PLACED_BYTES) // TRIANGLE_BYTES)
+                whole.simplify(native.SimplifyOptions(triangles=budget))
+                camera, pixels = self.shots.prepare(
+                    whole, mesh, summary.radius, summary.center, size, longest
                 )
-                points.append(tuple(c + r * u for c, r, u in zip(center, radii, unit)))
-        for j in range(rows):
-            for i in range(around):
-                a, b = j * around + i, j * around + (i + 1) % around
-                faces.append((a, a + around, b + around, b))
-        self.faces(points, faces)
+                self.shots.light_up(whole)
+                cut = native.Cut(whole, native.View(camera, pixels, pixels, 0.0))
+                jobs["decimated"] = self.shots.take(cut, False)
+            out.append((row, jobs))
+        return out
+
+    def describe(self, row: Row, model, cut, copies: int, store: Path, glass: bool) -> None:
+        """What one copy is drawn by, and what that costs when nothing else uses it. Nothing with
+        glass is judged by pictures."""
+        native, shown, distinct = self.native, {}, set()
+        for (item, lod), number in cut.counts().items():
+            made = model.representation(item, lod)
+            kind = native.Kind(made.kind).name.lower()
+            if lod == 0:
+                kind = "original"
+            elif kind == "mesh":
+                # What pictures have judged has no other, larger error.
+                kind = "collapsed"
+                if made.max_error == made.error and not glass:
+                    parts = parts_of(store / "r" / f"{made.hash:016x}.glb")
+                    kind = "pruned" if parts >= FEWEST_PARTS else "collapsed"
+            elif made.max_error == made.error and kind != "composite":
+                kind = f"{kind} by pictures"
+            each = number / copies
+            row.kinds[kind] = row.kinds.get(kind, 0) + round(each)
+            row.triangles += round(made.triangles * each)
+            row.bytes += round(PLACED_BYTES * each)
+            if made.hash not in distinct or kind == "composite":
+                row.bytes += made.bytes * (round(each) if kind == "composite" else 1)
+            distinct.add(made.hash)
+            area = each * model.object_summary(item).radius ** 2
+            shown[kind] = shown.get(kind, 0) + area
+        row.main = max(shown, key=lambda kind: shown[kind])
+
+    def finish(self, row: Row, jobs: dict[str, Future]) -> None:
+        done = {kind: job.result() for kind, job in jobs.items()}
+        right, sharp = done["right"][0], done["sharp"][0]
+        row.pictures = {"right": right, "sharp": sharp}
+        covered = numpy.count_nonzero(right[:, :, 3] > 1 / 255)
+        row.light = float(sharp[:, :, :3].sum() / right[:, :, :3].sum())
+        row.cpu = done["sharp"][1] / max(done["right"][1], 1e-9)
+        wanted = seen(right)
+
+        def off(picture) -> float:
+            return float(numpy.abs(seen(picture) - wanted).mean(axis=2).sum() / covered)
+
+        for kind in ("picked", "decimated", "full"):
+            if kind in done:
+                row.errors[kind] = statistics.mean(off(p) for p in samples(done[kind][0], 1))
+        # Between whole numbers of samples some pixels have one more.
+        afforded = min(MOST_SAMPLES, max(1.0, 1 / max(row.cpu, 1e-9)))
+        low = min(int(afforded), MOST_SAMPLES - 1)
+        few, more = (
+            statistics.mean(off(p) for p in samples(done["picked"][0], n)) for n in (low, low + 1)
+        )
+        row.errors["paid"] = few + (afforded - low) * (more - few)
 
 
-def tree() -> Obj:
-    rng, out = random.Random(5), Obj()
-    out.begin("tree", "bark")
-    rings = [(0.16 * (1 - j / 20), 5.0 * j / 16) for j in range(17)]
-    points = [
-        (r * math.cos(math.pi * i / 6), r * math.sin(math.pi * i / 6), z)
-        for r, z in rings
-        for i in range(12)
-    ]
-    corners = [(j * 12 + i, j * 12 + (i + 1) % 12) for j in range(16) for i in range(12)]
-    out.faces(points, [(a, b, b + 12, a + 12) for a, b in corners])
-    out.use("leaf")
-
-    def unit() -> list:
-        v = [rng.gauss(0, 1) for _ in range(3)]
-        return [x / math.hypot(*v) for x in v]
-
-    for _ in range(2800):
-        radius, way = 1.8 * rng.random() ** 0.45, unit()
-        place = [c + radius * x for c, x in zip((0, 0, 4.2), way)]
-        u, w = unit(), unit()
-        along = sum(a * b for a, b in zip(u, w))
-        w = [b - along * a for a, b in zip(u, w)]
-        size = math.hypot(*w)
-        ends = ((u, 0.15), (w, 0.1 / size), (u, -0.15), (w, -0.1 / size))
-        leaf = [tuple(p + s * x for p, x in zip(place, way)) for way, s in ends]
-        out.faces(leaf, [(0, 1, 2, 3)])
-    return out
-
-
-def crowd() -> Obj:
-    rng, out = random.Random(8), Obj()
-    for number in range(80):
-        x, y = 1.1 * (number % 10) + rng.uniform(-0.3, 0.3), 1.1 * (number // 10)
-        y += rng.uniform(-0.3, 0.3)
-        tall = rng.uniform(0.9, 1.1)
-        out.begin(f"figure {number}", rng.choice(("red", "blue", "green")))
-        out.ball((x, y, 1.05 * tall), (0.25, 0.2, 0.42 * tall))
-        out.use("dark")
-        for side in (-0.12, 0.12):
-            out.ball((x + side, y, 0.4 * tall), (0.1, 0.12, 0.4 * tall), 8)
-        out.use("skin")
-        out.ball((x, y, 1.62 * tall), (0.12, 0.13, 0.16), 8)
-    return out
-
-
-def bookcase() -> Obj:
-    rng, out = random.Random(2), Obj()
-    out.begin("case", "bark")
-    for shelf in range(5):
-        out.box((0, 0, 0.5 * shelf), (1.6, 0.4, 0.5 * shelf + 0.04))
-    for x in (0, 1.56):
-        out.box((x, 0, 0), (x + 0.04, 0.4, 2.04))
-    number = 0
-    for shelf in range(4):
-        x = 0.06
-        while x < 1.5:
-            wide = rng.uniform(0.02, 0.05)
-            out.begin(f"book {number}", rng.choice(("red", "blue", "green", "skin")))
-            low = 0.5 * shelf + 0.04
-            out.box((x, 0.05, low), (x + wide, 0.3, low + rng.uniform(0.25, 0.42)))
-            x += wide + 0.003
-            number += 1
-    return out
-
-
-MODELS = {"tree": tree, "crowd": crowd, "bookcase": bookcase}
-COLORS = {
-    "bark": (0.2, 0.1, 0.05),
-    "leaf": (0.1, 0.35, 0.05),
-    "red": (0.6, 0.08, 0.05),
-    "blue": (0.06, 0.12, 0.5),
-    "green": (0.1, 0.4, 0.12),
-    "dark": (0.03, 0.03, 0.04),
-    "skin": (0.6, 0.4, 0.3),
-}
-VIEWS = {"tree": (3.2, 6.0), "crowd": (0.9, 11.5), "bookcase": (1.0, 2.3)}  # middle, extent
-CENTERS = {"tree": (0, 0), "crowd": (5, 4), "bookcase": (0.8, 0.2)}
-
-
-def run(command: list, **more) -> subprocess.CompletedProcess:
-    done = subprocess.run([str(part) for part in command], capture_output=True, **more)
-    if done.returncode != 0:
-        sys.exit(f"sheet_replace.py: {done.stderr.decode(errors='replace').strip()}")
-    return done
-
-
-def picture(command: Path, store: Path, name: str, height: int, detail: float, out: Path) -> dict:
-    """Renders so that the model is `height` pixels high; returns the report."""
-    middle, extent = VIEWS[name]
-    x, y = CENTERS[name]
-    far = extent / FILL / (2 * math.tan(math.radians(10)))
-    side = round(height / FILL)
-    eye = (x + 0.45 * far, y - 0.85 * far, middle + 0.28 * far)
-    report = out.with_suffix(".json")
-    run(
-        [command, "povray", store, "--out", out, "--pixel-error", detail]
-        + ["--size", f"{side}x{side}", "--angle-deg", 20, "--json", report]
-        + [f"--eye={eye[0]},{eye[1]},{eye[2]}", f"--look-at={x},{y},{middle}"]
-        + ["--antialias", "reference" if detail == 0 else "final"]
+def line_of(row: Row) -> str:
+    kinds = ", ".join(f"{n} {kind}" for kind, n in row.kinds.items())
+    errors = [row.errors.get(kind) for kind in ("picked", "paid", "decimated", "full")]
+    told = ["" if error is None else f"{100 * error:.2f}" for error in errors]
+    return (
+        f"| {row.name} | {row.size} | {kinds} | {row.full_triangles:,} -> {row.triangles:,} "
+        f"| {row.bytes / 1000:,.0f} | {row.light:.3f} | {' | '.join(told)} | {row.cpu:.2f} |"
     )
-    return json.loads(report.read_text("utf-8"))
 
 
-def enlarged(image, side: int) -> list[array]:
-    """Rows of a square picture as large as a cell, without mixing pixels."""
-    rows = []
-    for y in range(side):
-        row = array("f")
-        source = y * image.height // side * image.width
-        for x in range(side):
-            at = 4 * (source + x * image.width // side)
-            row.extend(image.pixels[at : at + 3])
-            row.append(1.0)
-        rows.append(row)
-    return rows
+def verdict(rows: list[Row]) -> None:
+    print("\n| kind | picked | light, mean (worst) | / decimated | / plain full | |")
+    print("|---|---|---|---|---|---|")
+    for kind in sorted({row.main for row in rows} - {"original"}):
+        own = [row for row in rows if row.main == kind]
+        light = sum(row.light for row in own) / len(own)
+        worst = max((row.light for row in own), key=lambda x: abs(x - 1))
+        ratios = [
+            statistics.geometric_mean(r.errors[ours] / r.errors[theirs] for r in own)
+            for ours, theirs in (("picked", "decimated"), ("paid", "full"))
+        ]
+        good = abs(light - 1) <= MOST_OFF and all(ratio <= 1 for ratio in ratios)
+        print(
+            f"| {kind} | {len(own)} | {light:.3f} ({worst:.3f}) | {ratios[0]:.3f} "
+            f"| {ratios[1]:.3f} | {'holds' if good else 'does not hold'} |"
+        )
 
 
-def brightness(image, empty: float = 0.0) -> float:
-    return sum(sum(image.pixels[c::4]) for c in range(3)) - empty
+def draw(native, rows: list[Row], out: Path) -> None:
+    """A line a group; at each size what is right and what is picked, side by side."""
+    lines = []
+    for name in dict.fromkeys(row.name for row in rows):
+        cells = []
+        for row in (row for row in rows if row.name == name):
+            for picture in (row.pictures["right"], row.pictures["sharp"]):
+                shown = len(picture) // COPIES[row.size]
+                at = numpy.arange(CELL) * shown // CELL
+                # The first copy is the lowest on the left.
+                cell = picture[len(picture) - shown + at][:, at].copy()
+                cell[:, :, :3] += 1 - cell[:, :, 3:]
+                cell[:, :, 3] = 1
+                cells.append(cell)
+        lines.append(numpy.concatenate(cells, axis=1))
+    sheet = numpy.concatenate(lines).astype(numpy.float32)
+    height, width, _ = sheet.shape
+    pixels = array("f", sheet.tobytes())
+    native.image_write_png(str(out), native.Image(width, height, pixels))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("out", type=Path)
+    parser.add_argument("--png", type=Path, help="the sheet of pictures")
+    parser.add_argument("--only", default=",".join(GROUPS), help="names of groups, by commas")
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
+    parser.add_argument("--stores", type=Path, help="kept from run to run")
     options = parser.parse_args()
-    command = options.build.resolve() / "lodestone"
     sys.path.insert(0, str(options.build.resolve() / "stage" / "addons" / "lodestone"))
     import lodestone_native as native
 
-    width = len(HEIGHTS) * (CELL + GAP) - GAP
-    rows: list[array] = []
-    with tempfile.TemporaryDirectory() as folder_name:
-        folder = Path(folder_name)
-        text = "".join(f"newmtl {n}\nKd {c[0]} {c[1]} {c[2]}\n" for n, c in COLORS.items())
-        (folder / "colors.mtl").write_text(text, "utf-8")
-        for name, make in MODELS.items():
-            source, store = folder / f"{name}.obj", folder / name
-            source.write_text("\n".join(make().lines) + "\n", "utf-8")
-            run([command, "build", source, store])
-            pairs: list[list] = [[], []]
-            for height in HEIGHTS:
-                reports = []
-                for kind, detail in enumerate((0, 1)):
-                    out = folder / f"{name}_{height}_{detail}.png"
-                    reports.append(picture(command, store, name, height, detail, out))
-                    pairs[kind].append(native.image_read(str(out)))
-                kinds = {k: n for k, n in reports[1]["cut"]["kinds"].items() if n}
-                full, ours = brightness(pairs[0][-1]), brightness(pairs[1][-1])
-                print(
-                    f"| {name} | {height} | "
-                    + ", ".join(f"{n} {k}" for k, n in kinds.items())
-                    + f" | {reports[0]['cut']['triangles']:,} / {reports[1]['cut']['triangles']:,}"
-                    + f" | {reports[0]['cut']['bytes'] / 1e6:.2f} /"
-                    + f" {reports[1]['cut']['bytes'] / 1e6:.3f} | {ours / full:.3f} |"
-                )
-            for images in pairs:
-                cells = [enlarged(image, CELL) for image in images]
-                for y in range(CELL):
-                    row = array("f")
-                    for cell in cells:
-                        row.extend(cell[y])
-                        if cell is not cells[-1]:
-                            row.extend((1.0, 1.0, 1.0, 1.0) * GAP)
-                    rows.append(row)
-                rows += [array("f", (1.0,) * 4 * width)] * GAP
-    pixels = array("f")
-    for row in rows[:-GAP]:
-        pixels.extend(row)
-    sheet = type(pairs[0][0])(width, len(rows) - GAP, pixels)
-    native.image_write_png(str(options.out), sheet)
+    rows: list[Row] = []
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(2) as workers:
+        folder = Path(name)
+        stores = options.stores or folder / "stores"
+        stores.mkdir(parents=True, exist_ok=True)
+        (folder / "pictures").mkdir()
+        sheet = Sheet(native, folder / "pictures", stores, workers)
+        print(
+            "| group | px | picked | triangles | kB | light | picked | paid | decimated | full "
+            "| CPU |\n|---|---|---|---|---|---|---|---|---|---|---|"
+        )
+        waiting: list = []
+
+        def tell() -> None:
+            for row, jobs in waiting:
+                sheet.finish(row, jobs)
+                rows.append(row)
+                print(line_of(row), flush=True)
+
+        for name in options.only.split(","):
+            coming = sheet.rows_of(name)  # while those before are drawn
+            tell()
+            waiting = coming
+        tell()
+        verdict(rows)
+        if options.png:
+            draw(native, rows, options.png)
 
 
 if __name__ == "__main__":
