@@ -22,6 +22,7 @@ _MODULES = (
     "properties",
     "preferences",
     "engine",
+    "operators.session",
     "operators.update_levels",
     "operators.auto_structure",
     "operators.clear_levels",

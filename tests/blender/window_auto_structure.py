@@ -37,9 +37,9 @@ def make():
 
 
 def running():
-    from lodestone.operators import auto_structure
+    from lodestone.operators import session
 
-    return auto_structure._running
+    return session.current()
 
 
 def is_idle():

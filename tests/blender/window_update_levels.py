@@ -49,9 +49,9 @@ def stored():
 
 
 def running():
-    from lodestone.operators import update_levels
+    from lodestone.operators import session
 
-    return update_levels._running
+    return session.current()
 
 
 def is_idle():
@@ -106,7 +106,7 @@ def escape_while_reading_changes_nothing():
 
 
 def is_building():
-    return running() is not None and running().building()
+    return running() is not None and running().working()
 
 
 def escape_while_building_changes_nothing():

@@ -2,7 +2,7 @@
 """Auto-Structure: groups what stands flat in a collection into new collections below it.
 
 In the window: the scene is read by a render job, a thread measures what the groups are worth, a
-dialog tells it, and only OK changes the file. Esc stops each.
+dialog tells it, and only OK changes the file.
 """
 
 import contextlib
@@ -15,10 +15,10 @@ import bpy
 
 from .. import extract_engine
 from ..bridge import structure
-from ..core import motion_file, progress, store_path, work
+from ..core import motion_file, progress, store_path
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
-from . import update_levels
+from . import session as sessions
 
 FEWEST = 8  # a collection of at most so many is not structured
 TRIANGLES_OF = {"box": 12, "ellipsoid": 80, "composite": 640}  # as they count beside meshes
@@ -29,8 +29,11 @@ class NothingToGroup(Exception):
     """The collection has no groups that could be made."""
 
 
-FAILURES = (*update_levels.FAILURES, extract_engine.CameraMissing, NothingToGroup)
-_running = None  # the one session in the window
+class Gone(Exception):
+    """The collection is no more."""
+
+
+FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing, NothingToGroup, Gone)
 
 
 @dataclass
@@ -110,8 +113,8 @@ def refusal(collection):
     return ""
 
 
-class _Session:
-    """One run in the window, and what has to be put back."""
+class _Session(sessions.Session):
+    """One run in the window."""
 
     def __init__(self, context):
         self.collection = context.collection.name
@@ -119,41 +122,22 @@ class _Session:
         self._store = store_path.store_folder(bpy.data.filepath)
         still = motion_file.read(self._store)
         cameras = [("", None)] if context.scene.camera is not None else []
-        self.request = extract_engine.Request(cameras, still=still, structured=False)
+        super().__init__(extract_engine.Request(cameras, still=still, structured=False))
         self._pixel_error = max(0.01, context.scene.lodestone.pixel_error_render)
-        self._work = work.Work()
-        self._outcome = {}
-        self._thread = None
         self._group = None
-        self._reading = update_levels.start_reading(context, self.request)
 
-    def waits_for_reading(self, collection):
-        """True while the render job runs; afterwards measuring has started."""
-        if self._thread is not None:
-            return False
-        if bpy.app.is_job_running("RENDER"):
-            return True
-        self._reading.close()
-        if self._work.stopping:
-            raise work.Stopped
-        if self.request.error is not None:
-            raise self.request.error
-        extraction = self.request.extraction
-        if extraction is None:
-            raise work.Stopped
-        self._group = group_in(extraction, collection)
-        self._thread = work.start(self._measure, self._outcome)
-        return False
+    def was_read(self):
+        self._group = group_in(self.extraction, _collection(self.collection))
+        self.start(self._measure)
 
     def _measure(self):
-        """On the thread, which alone touches the model meanwhile: the number of objects before
-        grouping, and the Preview."""
-        model, frames = self.request.extraction.model, self.request.frames
+        """On the thread: the number of objects before grouping, and the Preview."""
+        model, frames = self.extraction.model, self.request.frames
 
         def triangles(store):
             if not frames:
                 return None
-            model.build(store, None, self._work.new_job("Levels"))
+            model.build(store, None, self.work.new_job("Levels"))
             camera, (width, height) = frames[0]
             with native.Cut(model, native.View(camera, width, height, self._pixel_error)) as cut:
                 drawn = cut.summary()
@@ -164,36 +148,13 @@ class _Session:
             known, *costs = structure_model(model, self._group)
             return known, Preview(0, *costs, before, triangles(store))
 
-    def measuring(self, collection):
-        """True while the thread runs; afterwards `found` and `preview` are there."""
-        if self._thread.is_alive():
-            return True
-        known, preview = work.finish(self._outcome, self._work.stopping)
-        self.found = groups_in(self.request.extraction, self._group, collection, known)
+    def measured(self):
+        """After the thread has ended: `found` and `preview` are there."""
+        known, preview = self.worked()
+        collection = _collection(self.collection)
+        self.found = groups_in(self.extraction, self._group, collection, known)
         preview.groups = self.found.count()
         self.preview = preview
-        return False
-
-    @property
-    def fraction(self):
-        return self._work.fraction
-
-    def stop(self):
-        self.request.tick = _raise_stopped
-        self._work.stop()
-
-    def busy(self):
-        running = self._thread is not None and self._thread.is_alive()
-        return bpy.app.is_job_running("RENDER") or running
-
-    def close(self):
-        self._work.stop()
-        if self._thread is not None:
-            self._thread.join()
-        self._reading.close()
-        if self.request.extraction is not None:
-            self.request.extraction.model.close()
-        self.request.poses.close()
 
 
 @contextlib.contextmanager
@@ -217,7 +178,7 @@ def _link(source, target):
         shutil.copyfile(source, target)
 
 
-class LODESTONE_OT_auto_structure(bpy.types.Operator):
+class LODESTONE_OT_auto_structure(sessions.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.auto_structure"
     bl_label = "Auto-Structure"
     bl_description = (
@@ -226,17 +187,11 @@ class LODESTONE_OT_auto_structure(bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    _timer = None
+    failures = FAILURES
 
     @classmethod
     def poll(cls, context):
-        if _running is not None or update_levels.running():
-            cls.poll_message_set("Already running (Esc to cancel)")
-            return False
-        if bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is running")
-            return False
-        why = refusal(context.collection)
+        why = sessions.refusal() or refusal(context.collection)
         if why:
             cls.poll_message_set(why)
         return not why
@@ -251,56 +206,21 @@ class LODESTONE_OT_auto_structure(bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context, event):
-        global _running
-        try:
-            _running = _Session(context)
-        except FAILURES as error:
-            self.report({"ERROR"}, sentence(error))
-            return {"CANCELLED"}
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(update_levels.INTERVAL_S, window=context.window)
-        manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return self.begin(context, _Session(context))
 
-    def modal(self, context, event):
-        session = _running
-        if session is None:
-            return self._end(context)
-        if event.type == "ESC" and event.value == "PRESS":
-            session.stop()
-            _status(context, "Lodestone: stopping")
-            return {"RUNNING_MODAL"}
-        if event.type != "TIMER":
+    def step(self, context, session):
+        if session.reading():
+            sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        try:
-            return self._step(context, session)
-        except work.Stopped:
-            return self._end(context)
-        except Exception as error:
-            self.report({"ERROR"}, sentence(error))
-            return self._end(context)
-
-    def _step(self, context, session):
-        collection = _collection(session.collection)
-        if collection is None:
-            raise work.Stopped
-        if session.waits_for_reading(collection):
-            _status(context, "Lodestone: reading the scene   [Esc] Cancel")
+        if session.working():
+            share = progress.percent(session.work.fraction, 1.0)
+            sessions.status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        if session.measuring(collection):
-            share = progress.percent(session.fraction, 1.0)
-            _status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
-            return {"PASS_THROUGH"}
-        _status(context, None)
-        context.window_manager.event_timer_remove(self._timer)
+        session.measured()
+        sessions.status(context, None)
+        self.remove_timer(context)
         bpy.ops.lodestone.make_groups("INVOKE_DEFAULT")
         return {"CANCELLED"}  # nothing has changed yet: there is nothing to undo
-
-    def _end(self, context):
-        stop_running()
-        _status(context, None)
-        context.window_manager.event_timer_remove(self._timer)
-        return {"CANCELLED"}
 
 
 class LODESTONE_OT_make_groups(bpy.types.Operator):
@@ -311,77 +231,50 @@ class LODESTONE_OT_make_groups(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _running is not None and _running.preview is not None
+        session = sessions.current(_Session)
+        return session is not None and session.preview is not None
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self, width=320)
 
     def draw(self, context):
+        session = sessions.current(_Session)
         column = self.layout.column(align=True)
-        if _running is not None and _running.preview is not None:
-            column.label(text=_running.collection, icon="OUTLINER_COLLECTION")
-            for line in _running.preview.lines():
+        if session is not None and session.preview is not None:
+            column.label(text=session.collection, icon="OUTLINER_COLLECTION")
+            for line in session.preview.lines():
                 column.label(text=line)
 
     def execute(self, context):
-        session = _running
-        collection = _collection(session.collection)
+        session = sessions.current(_Session)
         try:
-            if collection is None or refusal(collection):
+            collection = _collection(session.collection)
+            if refusal(collection):
                 self.report({"ERROR"}, "The collection has changed meanwhile")
                 return {"CANCELLED"}
             made = structure.make_collections(collection, session.found)
+        except Gone as error:
+            self.report({"ERROR"}, sentence(error))
+            return {"CANCELLED"}
         finally:
-            stop_running()
+            sessions.stop_running()
         self.report({"INFO"}, f"Made {len(made):,} collections")
         return {"FINISHED"}
 
     def cancel(self, context):
-        stop_running()
-
-
-def _raise_stopped():
-    raise work.Stopped
+        sessions.stop_running()
 
 
 def _collection(name):
-    """By name: Blender may have moved its memory."""
+    """By name: Blender may have moved its memory. Raises Gone."""
     scene = bpy.context.scene
     if scene.collection.name == name:
         return scene.collection
-    return next((item for item in bpy.data.collections if item.name == name), None)
-
-
-def _status(context, text):
-    if context.workspace is not None:
-        context.workspace.status_text_set(text)
-
-
-def stop_running():
-    """Ends a session from outside, leaving the file as it is."""
-    global _running
-    session, _running = _running, None
-    if session is not None:
-        session.stop()
-        session.close()
-
-
-@bpy.app.handlers.persistent
-def _on_load(*_):
-    stop_running()
+    for item in bpy.data.collections:
+        if item.name == name:
+            return item
+    raise Gone(f'Collection "{name}" is no more')
 
 
 _CLASSES = (LODESTONE_OT_auto_structure, LODESTONE_OT_make_groups)
-_register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
-
-
-def register():
-    _register()
-    bpy.app.handlers.load_pre.append(_on_load)
-
-
-def unregister():
-    stop_running()
-    if _on_load in bpy.app.handlers.load_pre:
-        bpy.app.handlers.load_pre.remove(_on_load)
-    _unregister()
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sessions: what operators do beside the window, one at a time.
+
+The scene is read by a render job of the extract engine, then a thread works; a timer watches both
+and Esc stops each. Loading a file or disabling the add-on ends a session, the file as it was.
+"""
+
+import contextlib
+import time
+import traceback
+
+import bpy
+
+from .. import extract_engine
+from ..core import work
+from ..core.native import lodestone_native as native
+from ..core.text import sentence
+
+INTERVAL_S = 0.1
+PATIENCE_S = 10.0  # for a render job that was told to stop
+FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)
+_current = None
+
+
+class Session:
+    """One run: what is read, how far the work is, and what has to be put back."""
+
+    def __init__(self, request):
+        self.request = request
+        self.extraction = None
+        self.work = work.Work()
+        self._outcome = {}
+        self._thread = None
+        self._reading = contextlib.ExitStack()
+
+    def start_reading(self, context):
+        """Starts the render job; raises RuntimeError when Blender refuses."""
+        self._reading = _start_reading(context, self.request)
+
+    def reading(self):
+        """True while the render job runs; afterwards `extraction` is there. Raises what failed."""
+        if self.extraction is not None:
+            return False
+        if bpy.app.is_job_running("RENDER"):
+            return True
+        self._reading.close()
+        if self.work.stopping:
+            raise work.Stopped
+        if self.request.error is not None:
+            raise self.request.error
+        if self.request.extraction is None:
+            raise work.Stopped
+        self.extraction = self.request.extraction
+        self.was_read()
+        return False
+
+    def was_read(self):
+        """Called once, when the extraction is there."""
+
+    def start(self, function):
+        """Calls it on a thread, which alone touches the model meanwhile."""
+        self._thread = work.start(function, self._outcome)
+
+    def working(self):
+        return self._thread is not None and self._thread.is_alive()
+
+    def worked(self):
+        """What the function returned; raises what it raised, Stopped when it was stopped."""
+        return work.finish(self._outcome, self.work.stopping)
+
+    def stop(self):
+        """Asks what runs to stop; reading() and worked() raise Stopped when it has."""
+        self.request.tick = _raise_stopped
+        self.work.stop()
+
+    def busy(self):
+        return bpy.app.is_job_running("RENDER") or self.working()
+
+    def close(self, keep=False):
+        """Puts everything back, but with `keep` what the session has written into the file."""
+        self.work.stop()
+        if self._thread is not None:
+            self._thread.join()
+        self._reading.close()
+        if self.request.extraction is not None:
+            self.request.extraction.model.close()
+        self.request.poses.close()
+
+
+def current(kind=Session):
+    """The session that runs in the window, if it is one of this kind; else None."""
+    return _current if isinstance(_current, kind) else None
+
+
+def refusal():
+    """Why no session can start now; "" when one can."""
+    if _current is not None:
+        return "Already running (Esc to cancel)"
+    return "A render is running" if bpy.app.is_job_running("RENDER") else ""
+
+
+class InWindow:
+    """What operators do while a session runs; no operator itself: Blender does not find the methods
+    of an operator that another one inherits. They have step(context, session), which returns what
+    modal() is to return and may raise."""
+
+    failures = FAILURES  # what is told without a traceback
+    _timer = None
+
+    def begin(self, context, session):
+        """Starts to read the scene."""
+        global _current
+        try:
+            session.start_reading(context)
+        except self.failures as error:
+            session.close()
+            self.report({"ERROR"}, sentence(error))
+            return {"CANCELLED"}
+        _current = session
+        return self.watch(context)
+
+    def watch(self, context):
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(INTERVAL_S, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        session = _current
+        if session is None:  # stopped from outside: a file was loaded, the add-on disabled
+            return self.end(context, {"CANCELLED"})
+        if event.type == "ESC" and event.value == "PRESS":
+            return self.stop(context, session, None)
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            return self.step(context, session)
+        except (*self.failures, work.Stopped) as error:
+            return self.stop(context, session, error)
+        except Exception as error:
+            traceback.print_exc()
+            return self.stop(context, session, error)
+
+    def stop(self, context, session, error):
+        """Esc when there is no error: what runs is told to stop and waited for, the window stays
+        usable meanwhile."""
+        if error is None:
+            session.stop()
+            status(context, "Lodestone: stopping")
+            if session.busy():
+                return {"RUNNING_MODAL"}
+        session.close()
+        if error is not None and not isinstance(error, work.Stopped):
+            self.report({"ERROR"}, sentence(error))
+        return self.end(context, {"CANCELLED"})
+
+    def end(self, context, outcome):
+        global _current
+        _current = None
+        self.remove_timer(context)
+        status(context, None)
+        return outcome
+
+    def remove_timer(self, context):
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+
+
+def status(context, text):
+    """In the status bar; None: what Blender shows there."""
+    if context.workspace is not None:
+        context.workspace.status_text_set(text)
+
+
+def _start_reading(context, request):
+    """Starts a render job that reads the scene for an extract_engine.Request; returns what to close
+    afterwards."""
+    preferences = context.preferences
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(extract_engine.prepared(context.scene, request))
+        view, dirty = preferences.view, preferences.is_dirty
+        stack.callback(setattr, preferences, "is_dirty", dirty)
+        stack.callback(setattr, view, "render_display_type", view.render_display_type)
+        view.render_display_type = "NONE"
+        result = bpy.data.images.get("Render Result")
+        if result is not None and len(result.render_slots) > 1:  # the picture there must stay
+            slots = result.render_slots
+            stack.callback(setattr, slots, "active_index", slots.active_index)
+            slots.active_index = (slots.active_index + 1) % len(slots)
+        bpy.ops.render.render("INVOKE_DEFAULT")
+        return stack.pop_all()
+
+
+def _raise_stopped():
+    raise work.Stopped
+
+
+def stop_running():
+    """Ends a session from outside, leaving the file as it is."""
+    global _current
+    session, _current = _current, None
+    if session is None:
+        return
+    session.stop()
+    deadline = time.monotonic() + PATIENCE_S
+    while bpy.app.is_job_running("RENDER") and time.monotonic() < deadline:
+        time.sleep(INTERVAL_S / 2)
+    session.close()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    stop_running()
+
+
+def register():
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister():
+    stop_running()
+    if _on_load in bpy.app.handlers.load_pre:
+        bpy.app.handlers.load_pre.remove(_on_load)
