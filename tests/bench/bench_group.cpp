@@ -3,13 +3,16 @@
 // what the cut at 1 px holds over 20 views.
 //
 //     cmake --build build/release --target bench_group
-//     build/release/tests/bench_group [--flat N] STORE...
+//     build/release/tests/bench_group [--far] [--flat N] [--group-cost C] [--similarity S] STORE...
 //
 // Stores are those `batch.py build` makes; groups that Lodestone made in them are taken out again.
 // --flat N: of the store that follows, the N leaves nearest to its middle, in no collection. Every
-// way starts from the same levels of the leaves and builds those of its own groups. "triangles" are
-// those of meshes, "drawn" counts a box as 12 and an ellipsoid as 80 as well. Prints a table; no
-// number makes it fail.
+// way starts from the same levels of the leaves and builds those of its own groups. "groups": made,
+// and of these such as stand for what is in them in some view, near or far. "triangles" are
+// those of meshes, "drawn" counts a box as 12 and an ellipsoid as 80 as well. "floor": of what is
+// drawn, that of leaves that are not at their coarsest level: as much as one of them needs at that
+// error, no group needs less for it; the others are free. Views are at .3 to 3 radii, with --far at
+// 3 to 30. Prints a table; no number makes it fail.
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -27,6 +30,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <set>
 #include <string>
 #include <unistd.h>
 
@@ -154,15 +158,15 @@ void flatten(Model& model, size_t most) {
     summarize_assemblies(model, bottom_up(model));
 }
 
-/// Eyes around the scene and in it, at many distances.
-std::vector<View> views_of(const Model& model) {
+/// Eyes around the scene and in it, at many distances; far: ten times as far.
+std::vector<View> views_of(const Model& model, bool away) {
     const Bound& bound = model.objects[model.root].bound();
     constexpr double kDistances[] = {0.3, 0.6, 1.0, 1.7, 3.0};  // of the scene's radius
     std::vector<View> views;
     for (int i = 0; i < kViews; ++i) {
         const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
         const double rise = 0.1 + 0.5 * (i % 4) / 3.0;
-        const double far = kDistances[i % 5] * bound.radius;
+        const double far = kDistances[i % 5] * bound.radius * (away ? 10 : 1);
         View view;
         view.camera.position =
             bound.center + far * glm::dvec3(std::cos(turn) * std::cos(rise),
@@ -180,28 +184,61 @@ std::vector<View> views_of(const Model& model) {
 struct Result {
     double cost = 0;
     size_t groups = 0;
-    double structure_s = 0;  // CPU
-    double build_s = 0;      // CPU
-    double triangles = 0;    // of meshes, over all views
-    double drawn = 0;        // primitives counted as triangles too
+    std::set<ObjectIndex> used;  // of the groups
+    double structure_s = 0;      // CPU
+    double build_s = 0;          // CPU
+    double triangles = 0;        // of meshes, over all views
+    double drawn = 0;            // primitives counted as triangles too
     double occurrences = 0;
     double bytes = 0;
 };
+
+double drawn_by(const Representation& representation) {
+    uint64_t drawn = representation.summary.cost.triangles;
+    if (representation.summary.kind == Kind::Box)
+        drawn += kTrianglesOfBox;
+    if (representation.summary.kind == Kind::Ellipsoid)
+        drawn += kTrianglesOfEllipsoid;
+    if (representation.summary.kind == Kind::Composite)
+        drawn += kTrianglesOfComposite;
+    return static_cast<double>(drawn);
+}
 
 void add_cut(Result& result, const Model& model, const View& view) {
     const quality::Cut cut = quality::choose(model, view);
     result.triangles += static_cast<double>(cut.triangles);
     result.occurrences += static_cast<double>(cut.chosen.size());
     result.bytes += static_cast<double>(cut.bytes);
-    result.drawn += static_cast<double>(cut.triangles);
     for (const uint32_t index : cut.chosen) {
-        if (cut.nodes[index].kind == Kind::Box)
-            result.drawn += static_cast<double>(kTrianglesOfBox);
-        if (cut.nodes[index].kind == Kind::Ellipsoid)
-            result.drawn += static_cast<double>(kTrianglesOfEllipsoid);
-        if (cut.nodes[index].kind == Kind::Composite)
-            result.drawn += static_cast<double>(kTrianglesOfComposite);
+        const quality::Node& node = cut.nodes[index];
+        result.drawn += drawn_by(model.objects[node.object].representations[node.lod]);
     }
+}
+
+void add_used(Result& result, const Model& model, size_t made, const View& view) {
+    const quality::Cut cut = quality::choose(model, view);
+    for (const uint32_t index : cut.chosen) {
+        if (cut.nodes[index].object >= made)
+            result.used.insert(cut.nodes[index].object);
+    }
+}
+
+/// What leaves that are not at their coarsest level draw, over all views.
+double floor_of(Model model, bool away) {
+    const std::vector<View> views = views_of(model, away);
+    flatten(model, std::numeric_limits<size_t>::max());
+    model.objects[model.root].representations.resize(1);
+    double drawn = 0;
+    for (const View& view : views) {
+        const quality::Cut cut = quality::choose(model, view);
+        for (const uint32_t index : cut.chosen) {
+            const quality::Node& node = cut.nodes[index];
+            const Object& object = model.objects[node.object];
+            if (node.lod + 1 < object.representations.size())
+                drawn += drawn_by(object.representations[node.lod]);
+        }
+    }
+    return drawn;
 }
 
 /// Of a group, from its bound's frame up: objects from `made` on were made to structure it.
@@ -219,8 +256,10 @@ double cost_below(const Model& model, ObjectIndex index, size_t made, double who
 
 using Way = std::function<void(Model&, const std::vector<ObjectIndex>&)>;
 
+group::StructureOptions structure_options;
+
 void by_insertion(Model& model, const std::vector<ObjectIndex>& flat) {
-    group::StructureOptions options;
+    group::StructureOptions options = structure_options;
     options.fewest = kFewest;
     group::structure_groups(model, flat, options, {});
 }
@@ -243,7 +282,7 @@ void by_octree(Model& model, const std::vector<ObjectIndex>& flat) {
 }
 
 Result measure(const Model& read, const std::string& store, const Way& way,
-               const build::Settings& settings) {
+               const build::Settings& settings, bool away, double* floor = nullptr) {
     namespace fs = std::filesystem;
     Result result;
     Model model = read;
@@ -264,19 +303,27 @@ Result measure(const Model& read, const std::string& store, const Way& way,
     for (const ObjectIndex index : flat)
         result.cost +=
             cost_below(model, index, made, group::half_area(model.objects[index].bound().box));
-    for (const View& view : views_of(model))
+    for (const View& view : views_of(model, away)) {
         add_cut(result, model, view);
+        add_used(result, model, made, view);
+    }
+    for (const View& view : views_of(model, !away))
+        add_used(result, model, made, view);
+    if (floor != nullptr)
+        *floor = floor_of(model, away);
     return result;
 }
 
 void print(const std::string& scene, const char* way, const Result& r, const Result& plain,
-           const Result& octree) {
+           const Result& octree, double floor) {
     std::printf(
-        "| %s | %s | %zu | %.1f | %.3f | %.1f | %.0f | %.0f | %.3f | %.3f | %.0f | %.3f |\n",
-        scene.c_str(), way, r.groups, r.cost, r.structure_s, r.build_s, r.triangles / kViews,
-        r.drawn / kViews, r.drawn / std::max(1.0, plain.drawn),
-        r.drawn / std::max(1.0, octree.drawn), r.occurrences / kViews,
-        r.bytes / std::max(1.0, plain.bytes));
+        "| %s | %s | %zu, %zu | %.1f | %.3f | %.1f | %.0f | %.0f | %.3f | %.3f | %.3f | %.0f | "
+        "%.3f "
+        "|\n",
+        scene.c_str(), way, r.groups, r.used.size(), r.cost, r.structure_s, r.build_s,
+        r.triangles / kViews, r.drawn / kViews, r.drawn / std::max(1.0, plain.drawn),
+        r.drawn / std::max(1.0, octree.drawn), floor / std::max(1.0, r.drawn),
+        r.occurrences / kViews, r.bytes / std::max(1.0, plain.bytes));
     std::fflush(stdout);
 }
 
@@ -318,49 +365,67 @@ build::Settings quick_settings() {
     return settings;
 }
 
-void compare(const std::string& path, size_t flat) {
+void compare(const std::string& path, size_t flat, bool away) {
     namespace fs = std::filesystem;
     std::string scene = fs::path(path).filename();
-    std::string store = path;
     Model model = read(path);
     build::Settings settings;
-    const fs::path quick = fs::temp_directory_path() / text("lodestone_flat_", getpid());
+    const fs::path base = fs::temp_directory_path() / text("lodestone_leaves_", getpid());
+    fs::remove_all(base);
     if (flat > 0) {
         scene += text(", ", flat, " flat");
         flatten(model, flat);
         settings = quick_settings();
-        Model leaves = model;
-        Problems problems;
-        fs::create_directories(quick);
-        build::build_hierarchy(leaves, segment::Store(quick), settings, problems, {});
-        store = quick;
+        fs::create_directories(base);
+    } else {
+        fs::copy(path, base, fs::copy_options::recursive);
     }
-    const Result plain = measure(
-        model, store, [](Model&, const std::vector<ObjectIndex>&) {}, settings);
-    const Result octree = measure(model, store, by_octree, settings);
-    print(scene, "collections", plain, plain, octree);
-    print(scene, "octree", octree, plain, octree);
-    print(scene, "agglomerative", measure(model, store, by_agglomeration, settings), plain, octree);
-    print(scene, "insertion", measure(model, store, by_insertion, settings), plain, octree);
-    fs::remove_all(quick);
+    Model leaves = model;
+    Problems problems;
+    build::build_hierarchy(leaves, segment::Store(base), settings, problems, {});
+    double floor = 0;
+    const auto by = [&](const Way& way, double* to = nullptr) {
+        return measure(model, base, way, settings, away, to);
+    };
+    const Result plain = by([](Model&, const std::vector<ObjectIndex>&) {}, &floor);
+    const Result octree = by(by_octree);
+    print(scene, "collections", plain, plain, octree, floor);
+    print(scene, "octree", octree, plain, octree, floor);
+    print(scene, "agglomerative", by(by_agglomeration), plain, octree, floor);
+    print(scene, "insertion", by(by_insertion), plain, octree, floor);
+    fs::remove_all(base);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     std::printf(
-        "| scene | way | groups | expected cost | structure, CPU s | build, CPU s | triangles "
-        "| drawn | / collections | / octree | occurrences | bytes / collections |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "| scene | way | groups, used | expected cost | structure, CPU s | levels, CPU s | "
+        "triangles "
+        "| drawn | / collections | / octree | floor / drawn | occurrences | bytes / collections |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     size_t flat = 0;
+    bool away = false;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         if (argument == "--flat" && i + 1 < argc) {
             flat = std::strtoul(argv[++i], nullptr, 10);
             continue;
         }
+        if (argument == "--group-cost" && i + 1 < argc) {
+            structure_options.group_cost = std::strtod(argv[++i], nullptr);
+            continue;
+        }
+        if (argument == "--similarity" && i + 1 < argc) {
+            structure_options.similarity = std::strtod(argv[++i], nullptr);
+            continue;
+        }
+        if (argument == "--far") {
+            away = true;
+            continue;
+        }
         try {
-            compare(argument, flat);
+            compare(argument, flat, away);
         } catch (const std::exception& error) {
             std::fprintf(stderr, "bench_group: %s: %s\n", argument.c_str(), error.what());
             return 1;
