@@ -30,6 +30,27 @@ int32_t mode_of(const Arguments& arguments) {
     throw UsageError("--mode is '" + name + "'; best, fast or cluster expected");
 }
 
+/// Makes groups of meshes of many loose parts, as --loose-parts says.
+void split_loose_parts(const Arguments& arguments, lds_model* model, int32_t threads) {
+    const std::string way = arguments.text("loose-parts").value_or("auto");
+    if (way != "auto" && way != "one" && way != "objects")
+        throw UsageError("--loose-parts is '" + way + "'; auto, one or objects expected");
+    if (way == "one")
+        return;
+    lds_loose_options options = lds_loose_options_default();
+    options.always = way == "objects" ? 1 : 0;
+    options.threads = threads;
+    lds_loose_report done{};
+    done.struct_size = sizeof done;
+    Progress progress("splitting");
+    check(lds_model_split_loose_parts(model, nullptr, 0, &options, progress.job(), &done));
+    if (done.split > 0)
+        std::printf("%llu meshes of %llu loose parts: %llu clusters and groups of these\n",
+                    static_cast<unsigned long long>(done.split),
+                    static_cast<unsigned long long>(done.parts),
+                    static_cast<unsigned long long>(done.made));
+}
+
 /// Fills ratio, triangles, error or pixels. Throws UsageError unless exactly one way is given.
 void set_target(const Arguments& arguments, lds_simplify_options& options) {
     constexpr double kPi = 3.14159265358979323846;
@@ -212,6 +233,7 @@ int run_build(const Arguments& arguments) {
     options.threads = threads_of(arguments);
     options.rebuild = arguments.has("rebuild") ? 1 : 0;
     const ModelHandle model = read_model(input);
+    split_loose_parts(arguments, model.get(), options.threads);
     lds_build_report done{};
     done.struct_size = sizeof done;
     {

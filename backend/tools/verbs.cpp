@@ -55,6 +55,8 @@ const std::vector<Verb>& verbs() {
          {{"level-ratio", "R", "triangles of a level over the finer one's (default 0.4)"},
           {"rays", "N", "rays to measure an object (default 4096)"},
           {"samples", "N", "samples to measure an error (default 2048)"},
+          {"loose-parts", "WAY",
+           "one: a mesh is one object; objects: so are its loose parts; auto (default): if small"},
           {"rebuild", "", "also build what has not changed"},
           kJson,
           kThreads,

@@ -79,6 +79,21 @@ BUILD_ON_RENDER = (
     ("ALL", "Everything", "Levels of everything that has none yet or has changed"),
     ("NONE", "Nothing", "Use the levels that there are; only Update Levels makes them"),
 )
+LOOSE_PARTS = (
+    (
+        "AUTOMATIC",
+        "Automatic",
+        "As objects where a mesh has more than 50,000 triangles, most of them in parts that are "
+        "small beside the whole: a town or strewn rocks, joined",
+    ),
+    ("ONE", "One Object", "Levels are made of the whole mesh: all of it is drawn equally fine"),
+    (
+        "OBJECTS",
+        "Objects",
+        "Neighboring parts get levels of their own, so that what is far is drawn simpler than what "
+        "is near. Glass and what deforms stay one object",
+    ),
+)
 STRUCTURE = (
     (
         "AUTOMATIC",
@@ -223,7 +238,15 @@ class LODESTONE_PG_collection(_Identified, bpy.types.PropertyGroup):
 
 
 class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
-    pass
+    loose_parts: EnumProperty(
+        name="Loose Parts",
+        description="How the unconnected parts of this object's mesh are drawn. It stays one "
+        "object, and at full detail its picture is the same",
+        items=LOOSE_PARTS,
+        default="AUTOMATIC",
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
 
 
 _GROUPS = (LODESTONE_PG_scene, LODESTONE_PG_collection, LODESTONE_PG_object)

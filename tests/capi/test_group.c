@@ -61,6 +61,55 @@ static void test_equal_meshes_are_one_content(void) {
     lds_model_destroy(model);
 }
 
+static void test_loose_parts_become_clusters_of_one_object(void) {
+    enum { TILES = 40 };
+    float points[TILES * 4][3];
+    uint32_t triangles[TILES * 2][3];
+    for (uint32_t i = 0; i < TILES; ++i) {
+        const float x = 3.0f * (float)i;
+        const float corners[4][3] = {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}};
+        const uint32_t two[2][3] = {{4 * i, 4 * i + 1, 4 * i + 2}, {4 * i, 4 * i + 2, 4 * i + 3}};
+        memcpy(points[4 * i], corners, sizeof corners);
+        memcpy(triangles[2 * i], two, sizeof two);
+    }
+    lds_mesh_view view;
+    memset(&view, 0, sizeof view);
+    view.struct_size = sizeof view;
+    view.positions = &points[0][0];
+    view.vertex_count = TILES * 4;
+    view.triangles = &triangles[0][0];
+    view.triangle_count = TILES * 2;
+    lds_model* model = NULL;
+    lds_object tiles;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_object_info info = info_of("tiles", "Tiles");
+    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, &tiles) == LDS_OK);
+    EXPECT(lds_model_set_root(model, tiles) == LDS_OK);
+    lds_loose_options options = lds_loose_options_default();
+    lds_loose_report report;
+    memset(&report, 0, sizeof report);
+    EXPECT(lds_model_split_loose_parts(model, NULL, 0, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    report.struct_size = sizeof report;
+    EXPECT(lds_model_split_loose_parts(model, NULL, 0, NULL, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_split_loose_parts(model, NULL, 0, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.split == 0);
+    options.always = 1;
+    options.fewest_triangles = 0;
+    EXPECT(lds_model_split_loose_parts(model, &tiles, 1, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    options.fewest_triangles = 8;
+    EXPECT(lds_model_split_loose_parts(model, &tiles, 1, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.split == 1 && report.parts == TILES && report.made >= TILES / 4);
+    lds_totals totals;
+    memset(&totals, 0, sizeof totals);
+    totals.struct_size = sizeof totals;
+    EXPECT(lds_model_totals(model, &totals) == LDS_OK);
+    EXPECT(totals.objects == 1 && totals.occurrences == 1 && totals.triangles_placed == 2 * TILES);
+    lds_model_destroy(model);
+}
+
 static void test_structuring_keeps_every_occurrence(void) {
     lds_object cube, many, child;
     lds_model* model = two_cubes(&cube);
@@ -296,6 +345,7 @@ int main(void) {
     test_strands_become_tubes();
     test_equal_meshes_are_one_content();
     test_grouping_keeps_every_occurrence();
+    test_loose_parts_become_clusters_of_one_object();
     test_structuring_keeps_every_occurrence();
     test_decided_placements_keep_importance_and_limit();
     test_hidden_placements_hide_all_below();

@@ -494,6 +494,36 @@ typedef struct lds_structure_report {
 LDS_API lds_status lds_model_structure(lds_model* model, const lds_object* groups,
                                        size_t group_count, const lds_structure_options* options,
                                        lds_job* job, lds_structure_report* out_report);
+
+typedef struct lds_loose_options {
+    uint32_t struct_size;
+    int32_t always;            /* 1: also where it hardly pays */
+    uint32_t fewest_triangles; /* of a cluster, usual 8192: more makes fewer clusters, which are
+                                    built sooner; less keeps less of what is far as fine as what is
+                                    near it */
+    uint32_t most_clusters;    /* of one mesh, in the mean; 2 or more, usual 128 */
+    int32_t threads;           /* 0 = all */
+} lds_loose_options;
+LDS_API lds_loose_options lds_loose_options_default(void);
+
+typedef struct lds_loose_report {
+    uint32_t struct_size;
+    uint64_t split; /* meshes that became groups */
+    uint64_t parts; /* loose parts these had */
+    uint64_t made;  /* objects that were made: clusters of parts, and groups of these */
+    double cpu_s;
+} lds_loose_report;
+/* Makes groups of meshes that are many loose parts (kit-bashed scenes, joined rocks), in place: their
+   children are clusters of neighboring parts, each with levels of its own, so that what is near the
+   eye does not force the rest to be as fine. The object stays one object and one occurrence;
+   triangles, normals, texture coordinates, colors and materials stay exactly what they are. What
+   deforms or refracts stays one mesh. Without `always` only more than 50,000 triangles in more than
+   64 parts, at least half of them in parts at most an eighth as large as the whole, and nothing that
+   was read from a store. objects null: all below the root. Call it before lds_model_build. */
+LDS_API lds_status lds_model_split_loose_parts(lds_model* model, const lds_object* objects,
+                                               size_t object_count,
+                                               const lds_loose_options* options, lds_job* job,
+                                               lds_loose_report* out_report);
 LDS_API lds_status lds_model_set_root(lds_model* model, lds_object root);
 LDS_API lds_status lds_model_add_light(lds_model* model, const lds_light* light);
 LDS_API lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera);
@@ -501,7 +531,8 @@ LDS_API lds_status lds_model_set_world(lds_model* model, const lds_world* world)
 
 typedef struct lds_totals {
     uint32_t struct_size;
-    uint64_t objects;          /* reachable from the root, groups included */
+    uint64_t objects;          /* reachable from the root, groups included; one made of loose parts
+                                    counts once, with all its parts */
     uint64_t occurrences;      /* of leaves: each path counts */
     uint64_t triangles_placed; /* at full detail */
     uint64_t triangles_unique;

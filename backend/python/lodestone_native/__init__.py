@@ -39,6 +39,7 @@ from .measure import surface_inertia
 from .model import (
     ANY_LEVEL,
     BuildOptions,
+    LooseOptions,
     MeasureOptions,
     Model,
     SimplifyOptions,
@@ -75,6 +76,7 @@ __all__ = [
     "Light",
     "LightKind",
     "LodestoneError",
+    "LooseOptions",
     "MeasureOptions",
     "MeshBuffers",
     "Model",

@@ -48,6 +48,11 @@ class StructureOptions(structs.StructureOptions):
         return _changed(library().lds_structure_options_default(), changes)
 
 
+class LooseOptions(structs.LooseOptions):
+    def __new__(cls, **changes: Any) -> Any:
+        return _changed(library().lds_loose_options_default(), changes)
+
+
 class MeasureOptions(structs.MeasureOptions):
     def __new__(cls, **changes: Any) -> Any:
         return _changed(library().lds_measure_options_default(), changes)
@@ -290,6 +295,28 @@ class Model(Handle):
                 given,
                 len(groups or ()),
                 options or StructureOptions(),
+                job,
+                ctypes.byref(out),
+            )
+        )
+        return record(out)
+
+    def split_loose_parts(
+        self,
+        objects: Sequence[Object] | None = None,
+        options: structs.LooseOptions | None = None,
+        job: Job | None = None,
+    ) -> Any:
+        """Makes meshes of many loose parts (None: all below the root) groups of clusters of them,
+        in place: each stays one object and one occurrence."""
+        given = None if objects is None else (Object * len(objects))(*objects)
+        out = structs.LooseReport()
+        check(
+            library().lds_model_split_loose_parts(
+                self.handle,
+                given,
+                len(objects or ()),
+                options or LooseOptions(),
                 job,
                 ctypes.byref(out),
             )

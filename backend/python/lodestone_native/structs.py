@@ -338,6 +338,26 @@ class StructureReport(Sized):
     ]
 
 
+class LooseOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("always", c_int32),
+        ("fewest_triangles", c_uint32),
+        ("most_clusters", c_uint32),
+        ("threads", c_int32),
+    ]
+
+
+class LooseReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("split", c_uint64),
+        ("parts", c_uint64),
+        ("made", c_uint64),
+        ("cpu_s", c_double),
+    ]
+
+
 class MeasureOptions(Sized):
     _fields_ = [
         ("struct_size", c_uint32),

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "group/loose_parts.h"
 #include "group/position.h"
 #include "group/structure.h"
 
@@ -204,6 +205,54 @@ lds_status lds_model_structure(lds_model* model, const lds_object* groups, size_
         report.made = made.made;
         report.cost_before = made.cost_before;
         report.cost_after = made.cost_after;
+        report.cpu_s = cpu_seconds() - cpu;
+        hand_out(out_report, report, "out_report");
+    });
+}
+
+lds_loose_options lds_loose_options_default(void) {
+    const group::LooseOptions defaults;
+    lds_loose_options options{};
+    options.struct_size = sizeof options;
+    options.fewest_triangles = static_cast<uint32_t>(defaults.fewest_triangles);
+    options.most_clusters = static_cast<uint32_t>(defaults.most_clusters);
+    return options;
+}
+
+lds_status lds_model_split_loose_parts(lds_model* model, const lds_object* objects,
+                                       size_t object_count, const lds_loose_options* options,
+                                       lds_job* job, lds_loose_report* out_report) {
+    return guard([&] {
+        require(model, "model");
+        checked(out_report, "out_report");
+        const lds_loose_options& given = checked(options, "options");
+        if (given.fewest_triangles < 1 || given.most_clusters < 2)
+            fail(Status::InvalidArgument, "clusters of ", given.fewest_triangles,
+                 " triangles, at most ", given.most_clusters, "; 1 and 2 or more expected");
+        const ThreadLimit limit(given.threads);
+        std::vector<ObjectIndex> wanted;
+        if (objects == nullptr)
+            wanted = group::leaves_of(model->model);
+        for (size_t i = 0; objects != nullptr && i < object_count; ++i)
+            wanted.push_back(model->index_of(objects[i]));
+        group::LooseOptions loose;
+        loose.always = given.always != 0;
+        loose.fewest_triangles = given.fewest_triangles;
+        loose.most_clusters = given.most_clusters;
+        const double cpu = cpu_seconds();
+        for (const ObjectIndex index : wanted) {  // else what a store holds stays as it is
+            Object& object = model->model.objects[index];
+            if (loose.always && !object.representations.empty() && !object.group())
+                model->load(object.representations[0]);
+        }
+        const size_t before = model->model.objects.size();
+        const group::LooseReport made =
+            group::split_loose_parts(model->model, wanted, loose, job_of(job));
+        list_new(*model, before);
+        lds_loose_report report{};
+        report.split = made.split;
+        report.parts = made.parts;
+        report.made = made.made;
         report.cpu_s = cpu_seconds() - cpu;
         hand_out(out_report, report, "out_report");
     });

@@ -14,11 +14,9 @@ lds_status lds_model_totals(lds_model* model, lds_totals* out_totals) {
         model->summarize();
         const Totals sums = totals(model->model);
         lds_totals out{};
-        for (const ObjectIndex index : bottom_up(model->model)) {
-            const Object& object = model->model.objects[index];
-            out.objects += object.representations.empty() ? 0 : 1;
-            out.representations += object.representations.size();
-        }
+        for (const ObjectIndex index : bottom_up(model->model))
+            out.representations += model->model.objects[index].representations.size();
+        out.objects = sums.objects;
         out.occurrences = sums.occurrences;
         out.triangles_placed = sums.triangles_placed;
         out.triangles_unique = sums.triangles_unique;

@@ -76,7 +76,7 @@ Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
     constexpr uint32_t kNone = ~uint32_t{0};
     Mesh whole;
     std::map<uint32_t, uint16_t> slot_of;
-    for_each_occurrence(model, [&](const Occurrence& occurrence) {
+    const auto add = [&](const Occurrence& occurrence) {
         const Representation& finest = model.objects[occurrence.object].representations[0];
         Mesh part = tessellated(finest, 3);
         std::vector<uint16_t> slots(part.triangles.size());
@@ -95,7 +95,8 @@ Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
         }
         part.slots = std::move(slots);
         append(whole, part, occurrence.world);
-    });
+    };
+    for_each_occurrence(model, add, Below::Parts);
     return whole;
 }
 

@@ -183,27 +183,44 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
 Totals totals(const Model& model) {
     Totals out;
     std::vector<Totals> below(model.objects.size());
-    for (const ObjectIndex index : bottom_up(model)) {
+    const std::vector<ObjectIndex> order = bottom_up(model);
+    for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.group()) {
             for (const Placement& placement : object.representations[0].assembly().placements) {
                 below[index].occurrences += below[placement.object].occurrences;
                 below[index].triangles_placed += below[placement.object].triangles_placed;
             }
+            if (object.of_parts)
+                below[index].occurrences = 1;
         } else if (!object.representations.empty()) {
             const uint64_t triangles = object.representations[0].summary.cost.triangles;
-            below[index] = {1, triangles, 0};
+            below[index].occurrences = 1;
+            below[index].triangles_placed = triangles;
             out.triangles_unique += triangles;
         }
     }
-    if (model.root != kNoObject) {
-        out.occurrences = below[model.root].occurrences;
-        out.triangles_placed = below[model.root].triangles_placed;
+    if (model.root == kNoObject)
+        return out;
+    out.occurrences = below[model.root].occurrences;
+    out.triangles_placed = below[model.root].triangles_placed;
+    std::vector<uint8_t> reached(model.objects.size(), 0);  // not only as parts
+    reached[model.root] = 1;
+    for (auto at = order.rbegin(); at != order.rend(); ++at) {  // parents before children
+        const Object& object = model.objects[*at];
+        if (reached[*at] == 0 || object.representations.empty())
+            continue;
+        ++out.objects;
+        if (!object.group() || object.of_parts)
+            continue;
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            reached[placement.object] = 1;
     }
     return out;
 }
 
-void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit) {
+void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,
+                         Below below) {
     if (model.root == kNoObject)
         return;
     bottom_up(model);  // refuses cycles
@@ -218,7 +235,7 @@ void for_each_occurrence(const Model& model, const std::function<void(const Occu
         const Entry entry = std::move(stack.back());
         stack.pop_back();
         const Object& object = model.objects[entry.object];
-        if (!object.group()) {
+        if (!object.group() || (object.of_parts && below == Below::Objects)) {
             if (!object.representations.empty())
                 visit({entry.object, entry.world, entry.path, entry.hidden});
             continue;

@@ -47,7 +47,9 @@ void summarize(Representation& representation, const Model& model,
                std::optional<Hash> mesh_hash = std::nullopt);
 
 /// Number of leaf occurrences below the root (each path of placements counts), and what they place.
+/// An object made of parts (Object::of_parts) is one object and one leaf.
 struct Totals {
+    uint64_t objects = 0;  // with representations, groups included
     uint64_t occurrences = 0;
     uint64_t triangles_placed = 0;
     uint64_t triangles_unique = 0;
@@ -61,6 +63,9 @@ struct Occurrence {
     std::string path;    // placement names joined by '/'
     RayMask hidden = 0;  // ray classes that do not see it
 };
-void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit);
+/// Whether an object made of parts is visited itself, or its parts.
+enum class Below { Objects, Parts };
+void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,
+                         Below below = Below::Objects);
 
 }  // namespace lodestone

@@ -25,6 +25,9 @@ struct Object {
     // frames, or there are none. Nothing stands in for a group that holds it, so that no picture
     // ever shows a level of another frame.
     bool deforms = false;
+    // One mesh of the user's whose loose parts were put into clusters: a group that counts as one
+    // object and as one occurrence, whatever of it is drawn how finely.
+    bool of_parts = false;
     std::shared_ptr<const Pose> pose;  // of something that deforms: what levels follow; may be null
     /// Of all that is below it, how important what is most important there is beside the object
     /// itself; infinite where something must not be drawn coarser than some level. See

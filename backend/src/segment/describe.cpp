@@ -215,6 +215,8 @@ Json describe(const Model& model) {
                     {"role", object.role == Role::Environment ? "environment" : "ordinary"},
                     {"source_hash", hex16(object.source_hash)},
                     {"build_hash", hex16(object.build_hash)}};
+        if (object.of_parts)
+            one["of_parts"] = true;
         if (object.bind_hash != 0)
             one["bind_hash"] = hex16(object.bind_hash);
         if (object.attributes)

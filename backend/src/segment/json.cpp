@@ -257,6 +257,7 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     o.role = json.at("role") == "environment" ? Role::Environment : Role::Ordinary;
     o.source_hash = hash(json, "source_hash");
     o.build_hash = hash(json, "build_hash");
+    o.of_parts = json.value("of_parts", false);
     if (json.contains("bind_hash"))
         o.bind_hash = hash(json, "bind_hash");
     if (json.contains("attributes"))
@@ -271,6 +272,8 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
             fail(Status::BadFile, "'", o.name, "' has an assembly that is not its finest level");
         last = s.error;
     }
+    if (o.of_parts && !o.group())
+        fail(Status::BadFile, "'", o.name, "' is made of parts, but is no group");
     return o;
 }
 

@@ -10,7 +10,6 @@ from ..core import identity
 from . import ids
 from .ids import name_of
 
-_DECISIONS = ("role", "use", "coarsest", "importance")
 _INHERITED = {"rna_type", "name"}
 
 Thing = tuple[str, Any]  # "object" or "collection", the datablock
@@ -106,12 +105,11 @@ def decided(item: Any) -> bool:
 
 
 def forget(item: Any, decisions: bool) -> bool:
-    """Removes the uid, with `decisions` these too. True when something was there."""
+    """Removes the uid, with `decisions` all that was decided. True when something was there."""
     settings = ids.settings_of(item)
     if settings is None:
         return False
-    names = ("uid", *_DECISIONS) if decisions else ("uid",)
-    found = [name for name in names if settings.is_property_set(name)]
+    found = [name for name in _set_names(settings) if decisions or name == "uid"]
     for name in found:
         settings.property_unset(name)
     drop_empty(item)
@@ -120,12 +118,14 @@ def forget(item: Any, decisions: bool) -> bool:
 
 def copy(source: Any, target: Any) -> None:
     """What is decided about an object or collection; what is not is taken back."""
-    settings = ids.settings_of(source)
-    for name in _DECISIONS:
-        if settings is not None and settings.is_property_set(name):
+    settings, before = ids.settings_of(source), ids.settings_of(target)
+    decided_here = _set_names(settings) if settings is not None else []
+    for name in _set_names(before) if before is not None else []:
+        if name != "uid":
+            before.property_unset(name)
+    for name in decided_here:
+        if name != "uid":
             setattr(target.lodestone, name, getattr(settings, name))
-        elif ids.settings_of(target) is not None:
-            target.lodestone.property_unset(name)
     target.update_tag()
     drop_empty(target)
 
@@ -192,6 +192,9 @@ def levels_uids(item: Any, roles: ids.Roles | None = None) -> list[str]:
     is_environment = roles.is_environment if roles else ids.is_environment
     if any(map(is_environment, (item, *item.users_collection))):
         uids = [identity.stable_id(uid, "environment") for uid in uids] + uids
+    loose = ids.loose_parts(item)
+    if loose != ids.AUTOMATIC:
+        uids = [identity.stable_id(uid, "loose", loose) for uid in uids] + uids
     if item.instance_collection is not None:
         uids.append(ids.uid_of("collection", item.instance_collection))
     uids += [identity.stable_id(own, "instances"), identity.stable_id(own, "hair")]

@@ -34,6 +34,7 @@ def library_of(datablock: Any) -> str:
     return datablock.library.filepath if datablock.library else ""
 
 
+AUTOMATIC = "AUTOMATIC"
 Key = tuple[str, str, str]  # "object" or "collection", library, name
 
 
@@ -93,6 +94,12 @@ def decision_of(datablock: Any) -> Decision:
     if settings is None:
         return UNDECIDED
     return decision(settings.use, settings.coarsest, settings.importance)
+
+
+def loose_parts(datablock: Any) -> str:
+    """How an object's loose parts are drawn: AUTOMATIC, ONE or OBJECTS."""
+    settings = settings_of(datablock)
+    return AUTOMATIC if settings is None else settings.loose_parts
 
 
 class Roles:

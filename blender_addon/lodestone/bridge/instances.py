@@ -281,7 +281,8 @@ class Instances:
         look = self._looks.get(original)
         if look is None:
             marked = self._roles.is_environment(owner)
-            look = self._looks[original] = Look(marked, False, self._motion.deforms(owner))
+            deforms, loose = self._motion.deforms(owner), ids.loose_parts(owner)
+            look = self._looks[original] = Look(marked, False, deforms, loose)
         if original in context.environment:
             look = look._replace(environment=True)
         if entry.holdout or (original != entry.object.original and self._seen(owner)[1]):

@@ -44,6 +44,7 @@ class Leaf:
     deforms: bool = False  # see Look
     settled: bool = True  # it is the same whoever shows it, and wherever
     glow: Glow | None = None
+    loose: str = "ONE"  # whether the parts of its mesh are one object: see ids.loose_parts()
 
 
 class Look(NamedTuple):
@@ -52,6 +53,7 @@ class Look(NamedTuple):
     environment: bool = False
     holdout: bool = False  # all its materials are black
     deforms: bool = False  # its shape is another one in every frame
+    loose: str = ids.AUTOMATIC  # see ids.loose_parts()
 
 
 class Leaves:
@@ -161,7 +163,8 @@ class Leaves:
             if error.status != native.Status.INVALID_ARGUMENT:
                 raise
             return self._unreadable(owner, error)  # a file may hold faces of what is not there
-        return Leaf(item, uid, name_of(shown.data), _names(slots), size, look.deforms)
+        leaf = Leaf(item, uid, name_of(shown.data), _names(slots), size, look.deforms)
+        return leaf if shown.type == "CURVES" else replace(leaf, loose=look.loose)
 
     def _unreadable(self, owner: Any, error: Exception) -> None:
         text = f'Object "{name_of(owner)}" cannot be read and is left out: {error}'
@@ -214,6 +217,8 @@ class Leaves:
             base = identity.stable_id(base, "holdout")
         if look.deforms:
             base = identity.stable_id(base, "deforms")
+        if look.loose != ids.AUTOMATIC:
+            base = identity.stable_id(base, "loose", look.loose)
         return self._uids.claim(base)
 
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:

@@ -77,8 +77,11 @@ def _extract(
         if root is None:
             root = model.add_group(uids.claim(ids.scene_uid(name_of(scene))), name_of(scene))
         model.set_root(root)
-        if structured and (settings is None or settings.structure == "AUTOMATIC"):
-            model.structure(list(tree.collections))
+        if structured:
+            automatic = settings is None or settings.structure == "AUTOMATIC"
+            _split_loose_parts(model, leaves, automatic)
+            if automatic:
+                model.structure(list(tree.collections))
         for name in tree.unplaced:
             report_outside(problems, name)
         surroundings(model, scene, walk.found, problems)
@@ -96,6 +99,17 @@ def _extract(
         dict(tree.parts),
         walk.users.found(),
     )
+
+
+def _split_loose_parts(model: Any, leaves: Leaves, automatic: bool) -> None:
+    """Meshes of many parts become groups of these, but stay one object each."""
+    ways = {"OBJECTS": native.LooseOptions(always=1)}
+    if automatic:
+        ways[ids.AUTOMATIC] = native.LooseOptions()
+    for way, options in ways.items():
+        items = [leaf.object for leaf in leaves if leaf.loose == way]
+        if items:
+            model.split_loose_parts(items, options)
 
 
 @contextlib.contextmanager

@@ -86,6 +86,8 @@ def _draw_decisions(layout, context, item):
     sub.active = settings.use in {"AUTOMATIC", "LIMIT"}
     sub.prop(settings, "importance")
     column.prop(settings, "role")
+    if getattr(item, "type", "") == "MESH":
+        column.prop(settings, "loose_parts")
     if len(context.selected_objects) > 1 and item == context.object:
         layout.operator("lodestone.copy_decisions", icon="COPYDOWN")
 
