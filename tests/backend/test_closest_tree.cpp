@@ -28,6 +28,8 @@ Mesh soup(int count, uint64_t seed) {
         glm::dvec3 c = a + point_in(random, size);
         if (i % 5 == 1)
             c = 0.5 * (a + b) + point_in(random, 1e-6 * size);  // a needle
+        if (i % 5 == 3)
+            c = b + point_in(random, size * std::pow(10.0, -1 - 6 * random.uniform()));  // another
         if (i % 11 == 2)
             b = c = a;
         const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -79,6 +81,27 @@ TEST(ClosestTree, FindsTheSameAsLookingAtEveryTriangle) {
             points.push_back(glm::dvec3(mesh.positions[i]) + point_in(random, 1e-6));
         expect_same(mesh, points);
     }
+}
+
+TEST(ClosestTree, OfWhatWasModelledStraightAndStandsAskewHasTheSameAnswers) {
+    Random random(5);
+    const glm::dvec3 x = glm::normalize(glm::dvec3(3, 1, 2));
+    const glm::dvec3 y = glm::normalize(glm::cross(x, glm::dvec3(0, 1, 0)));
+    const glm::dmat3 askew(x, y, glm::cross(x, y));
+    Mesh mesh;  // thin sheets, one above the other
+    for (int i = 0; i < 100; ++i) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (const glm::dvec2 corner : {glm::dvec2(0, 0), {2, 0}, {2, 1}, {0, 1}})
+            mesh.positions.emplace_back(askew * glm::dvec3(corner, 0.003 * i) + 7.0);
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    }
+    std::vector<glm::dvec3> points;
+    points.reserve(400);
+    for (const double size : {0.1, 1.0, 10.0, 1e8})
+        for (int i = 0; i < 100; ++i)
+            points.push_back(7.0 + point_in(random, size));
+    expect_same(mesh, points);
 }
 
 TEST(ClosestTree, OfFewTrianglesHasTheSameAnswers) {

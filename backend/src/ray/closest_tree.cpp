@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ray/closest_tree.h"
 
+#include "base/maths.h"
+
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +15,14 @@ namespace {
 constexpr int kBins = 16;
 constexpr int kMostUneven = 40;  // splits, after which they are in the middle: the depth is bounded
 constexpr size_t kStack = 256;   // three a level, and fewer levels than kMostUneven / 2 + 16
+constexpr size_t kCandidates = 32;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A distance in single precision is off by less than this share of itself and of the longest edge,
-// but for needles, which are off by up to all of it.
+// but for needles. Their edges are right to a few times as much; what is inside of them is not to be
+// relied on, but no farther from an edge than half of the height.
 constexpr float kOff = 4e-4f;
 constexpr float kNeedle = 1e-3f;  // square of height over length
+constexpr float kOffNeedle = 4 * kOff;
 
 template <typename Four>
 Four lower(Four a, Four b) {
@@ -46,17 +52,71 @@ struct Around {
     }
 };
 
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x + v.y + v.z);
+}
+
+/// The axes that most of the surface is square to, when boxes along them are much smaller than those
+/// along x, y, z: of what was modelled straight and placed askew. Otherwise none.
+std::optional<glm::dmat3> better_axes(const std::vector<glm::vec3>& positions,
+                                      const std::vector<Triangle>& triangles) {
+    constexpr double kWorthIt = 0.8;
+    constexpr size_t kMostTriangles = 4096;  // evenly chosen ones tell
+    const size_t step = triangles.size() / kMostTriangles + 1;
+    const auto each = [&](const auto& visit) {
+        for (size_t i = 0; i < triangles.size(); i += step) {
+            const Triangle& t = triangles[i];
+            if (finite(positions[t.x]) && finite(positions[t.y]) && finite(positions[t.z]))
+                visit(glm::dvec3(positions[t.x]), glm::dvec3(positions[t.y]),
+                      glm::dvec3(positions[t.z]));
+        }
+    };
+    glm::dmat3 normals(0.0);
+    each([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        const glm::dvec3 area = glm::cross(b - a, c - a);
+        const double length = glm::length(area);
+        if (length > 0)
+            normals += glm::outerProduct(area, area / length);
+    });
+    const glm::dmat3 axes = glm::transpose(eigen_symmetric(normals).axes);
+    const auto surface = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        const glm::dvec3 size = glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c);
+        return size.x * size.y + size.y * size.z + size.z * size.x;
+    };
+    double along = 0;
+    double plain = 0;
+    each([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        plain += surface(a, b, c);
+        along += surface(axes * a, axes * b, axes * c);
+    });
+    return along < kWorthIt * plain ? std::optional(axes) : std::nullopt;
+}
+
 }  // namespace
 
 ClosestTree::ClosestTree(const std::vector<glm::vec3>& positions,
-                         const std::vector<Triangle>& triangles) {
+                         const std::vector<Triangle>& triangles)
+    : axes_(better_axes(positions, triangles)) {
+    if (!axes_) {
+        make(positions, triangles);
+        return;
+    }
+    std::vector<glm::vec3> turned;
+    turned.reserve(positions.size());
+    for (const glm::vec3& position : positions)
+        turned.emplace_back(*axes_ * glm::dvec3(position));
+    make(turned, triangles);
+}
+
+void ClosestTree::make(const std::vector<glm::vec3>& positions,
+                       const std::vector<Triangle>& triangles) {
     std::vector<Reference> references;
     references.reserve(triangles.size());
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         const glm::vec3& a = positions[triangles[i].x];
         const glm::vec3& b = positions[triangles[i].y];
         const glm::vec3& c = positions[triangles[i].z];
-        if (!std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z + c.x + c.y + c.z))
+        if (!finite(a) || !finite(b) || !finite(c))
             continue;
         const auto four = [](const glm::vec3& v) { return Four{v.x, v.y, v.z, 0}; };
         references.push_back({lower(lower(four(a), four(b)), four(c)),
@@ -124,14 +184,16 @@ int32_t ClosestTree::add_leaf(const std::vector<glm::vec3>& positions,
         const glm::vec3 ac = positions[triangles[triangle].z] - a;
         const float square =
             std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)});
-        const glm::vec3 normal = glm::cross(ab, ac);
-        const bool needle = !(glm::dot(normal, normal) > kNeedle * square * square);
+        const float length = std::sqrt(square);
+        const float area = glm::length(glm::cross(ab, ac));  // twice
+        const bool needle = !(area * area > kNeedle * square * square);
+        const float height = length > 0 ? area / length : 0;
         for (int axis = 0; axis < 3; ++axis) {
             leaf.a[static_cast<size_t>(axis)][i] = a[axis];
             leaf.ab[static_cast<size_t>(axis)][i] = ab[axis];
             leaf.ac[static_cast<size_t>(axis)][i] = ac[axis];
         }
-        leaf.slack[i] = (needle ? 1.0f : kOff) * std::sqrt(square);
+        leaf.slack[i] = needle ? kOffNeedle * length + 0.5f * height : kOff * length;
         leaf.triangles[static_cast<size_t>(i)] = triangle;
     }
     leaves_.push_back(leaf);
@@ -255,19 +317,40 @@ void ClosestTree::search(ClosestSearch& search, double radius) const {
     };
     std::array<Entry, kStack> stack;
     size_t size = 0;
-    const glm::vec3 point(search.point);
+    const glm::vec3 point(axes_ ? *axes_ * search.point : search.point);
     const float rounding = search.reach(0);
     // Within which distance anything matters, and its square, both rounded up.
-    float reach = search.reach(radius);
-    float square = reach * reach * (1 + 0x1p-20f);
-    const auto visit = [&](uint32_t triangle) {
-        if (!search.visit(triangle))
-            return;
-        const float nearer = search.reach(std::sqrt(search.square));
-        if (nearer < reach) {
-            reach = nearer;
-            square = reach * reach * (1 + 0x1p-20f);
+    float reach = 0;
+    float square = 0;
+    const auto set_reach = [&](float to) {
+        reach = to;
+        square = reach * reach * (1 + 0x1p-20f);
+    };
+    set_reach(search.reach(radius));
+    // What may be the nearest, to be decided when all is seen.
+    struct Candidate {
+        float square;
+        float slack;
+        uint32_t triangle;
+    };
+    std::array<Candidate, kCandidates> candidates;
+    size_t waiting = 0;
+    const auto may_be_near = [&](float off_square, float slack) {
+        const float far = (reach + rounding + slack) * (1 + kOff);
+        return off_square <= far * far;
+    };
+    const auto decide = [&] {
+        // The nearest first: mostly no other is left then.
+        for (size_t i = 1; i < waiting; ++i) {
+            if (candidates[i].square < candidates[0].square)
+                std::swap(candidates[0], candidates[i]);
         }
+        for (size_t i = 0; i < waiting; ++i) {
+            const Candidate& next = candidates[i];
+            if (may_be_near(next.square, next.slack) && search.visit(next.triangle))
+                set_reach(std::min(reach, search.reach(std::sqrt(search.square))));
+        }
+        waiting = 0;
     };
     stack[size++] = {0, root_};
     while (size > 0) {
@@ -279,9 +362,20 @@ void ClosestTree::search(ClosestSearch& search, double radius) const {
             const Leaf& leaf = leaves_[static_cast<size_t>(index)];
             const Four distances = square_distances(leaf, point);
             for (int i = 0; i < kWidth; ++i) {
-                const float far = (reach + rounding + leaf.slack[i]) * (1 + kOff);
-                if (distances[i] <= far * far)
-                    visit(leaf.triangles[static_cast<size_t>(i)]);
+                if (!may_be_near(distances[i], leaf.slack[i]))
+                    continue;
+                if (waiting == kCandidates)
+                    decide();
+                candidates[waiting++] = {distances[i], leaf.slack[i],
+                                         leaf.triangles[static_cast<size_t>(i)]};
+                if (search.shows != nullptr) {  // its nearest point may be hidden
+                    decide();
+                    continue;
+                }
+                const float most =
+                    (std::sqrt(distances[i]) + leaf.slack[i] + rounding) * (1 + 2 * kOff);
+                if (most < reach)
+                    set_reach(most);
             }
             continue;
         }
@@ -306,6 +400,7 @@ void ClosestTree::search(ClosestSearch& search, double radius) const {
             stack[at] = {squares[i], node.children[static_cast<size_t>(i)]};
         }
     }
+    decide();
 }
 
 }  // namespace lodestone::ray

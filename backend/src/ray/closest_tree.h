@@ -4,7 +4,11 @@
 
 #include "ray/closest_search.h"
 
+#include <glm/mat3x3.hpp>
+
 #include <array>
+#include <optional>
+#include <vector>
 
 namespace lodestone::ray {
 
@@ -42,6 +46,7 @@ private:
         int depth;
     };
 
+    void make(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles);
     int32_t add(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
                 std::vector<Reference>& references, Range range);
     int32_t add_leaf(const std::vector<glm::vec3>& positions,
@@ -50,6 +55,7 @@ private:
     static size_t split(std::vector<Reference>& references, Range range);
     static Four square_distances(const Leaf& leaf, const glm::vec3& point);
 
+    std::optional<glm::dmat3> axes_;  // rows: the tree's; none: x, y, z
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     int32_t root_ = 0;
