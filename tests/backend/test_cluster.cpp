@@ -15,7 +15,7 @@
 using namespace lodestone;
 using approximate::cluster;
 using approximate::cluster_with_quadrics;
-using approximate::Clustered;
+using approximate::ClusteredMesh;
 using namespace lodestone::shapes;
 
 namespace {
@@ -212,7 +212,7 @@ TEST(Cluster, FarFromTheOriginAndTinyItIsTheSame) {
 
 TEST(Cluster, QuadricsKnowTheSurfaceOfTheirCell) {
     const Mesh mesh = without_normals(fine_cube(32));
-    const Clustered level = cluster_with_quadrics(mesh, mesh.triangles.size() / 8);
+    const ClusteredMesh level = cluster_with_quadrics(mesh, mesh.triangles.size() / 8);
     ASSERT_EQ(level.quadrics.size(), level.mesh.positions.size());
     double weight = 0;
     for (size_t v = 0; v < level.quadrics.size(); ++v) {

@@ -162,8 +162,8 @@ public:
             mend_normals();
     }
 
-    Clustered result(double unit, bool with_quadrics) {
-        Clustered out;
+    ClusteredMesh result(double unit, bool with_quadrics) {
+        ClusteredMesh out;
         if (with_quadrics) {
             out.quadrics.reserve(place_.size());
             const double scale = unit * unit;
@@ -249,11 +249,11 @@ private:
     ScratchVector<uint32_t> place_;  // of each of its vertices
 };
 
-Clustered clustered(const Mesh& mesh, size_t target, bool with_quadrics, const Job& job) {
+ClusteredMesh clustered(const Mesh& mesh, size_t target, bool with_quadrics, const Job& job) {
     check(mesh);
     if (target == 0)
         fail(Status::InvalidArgument, "the target is 0 triangles");
-    Clustered out;
+    ClusteredMesh out;
     if (mesh.triangles.size() <= target) {
         out.mesh = mesh;
         return out;
@@ -288,7 +288,7 @@ Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job) {
     return clustered(mesh, triangles, false, job).mesh;
 }
 
-Clustered cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job) {
+ClusteredMesh cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job) {
     return clustered(mesh, triangles, true, job);
 }
 

@@ -22,12 +22,12 @@ namespace lodestone::approximate {
 Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job = {});
 
 /// Clusters as the first phase of something more careful.
-struct Clustered {
+struct ClusteredMesh {
     Mesh mesh;
     /// Of each vertex, relative to its position: the squared distances to its cell's planes, m^4, a
     /// plane weighing twice its area as in the collapse. Vertices that a seam splits have the same. Empty where nothing was joined.
     std::vector<Quadric> quadrics;
 };
-Clustered cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job = {});
+ClusteredMesh cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job = {});
 
 }  // namespace lodestone::approximate
