@@ -9,7 +9,8 @@ usage: tests/run.sh [--fast] [--tidy-all] [--no-install]
 
     --fast         no Blender, no POV-Ray, no clang-tidy, no sanitizers: under 2 minutes
                    when build/release is up to date
-    --tidy-all     clang-tidy on every .cpp file, not only on those of the last 50 commits
+    --tidy-all     clang-tidy on every .cpp file, and looking deeper, not only on those of the last
+                   50 commits that there is time for
     --no-install   fail on a missing package instead of installing it with apt
 
 Logs: build/tests/. Exit code 0 when nothing failed and something passed, 1 otherwise, 2 usage.
@@ -18,6 +19,7 @@ END
 
 fast=0
 install=1
+tidy_until=600
 for argument in "$@"; do
     case $argument in
     --fast) fast=1 ;;
@@ -117,26 +119,43 @@ ctest_step() {
         --no-tests=error --output-junit "$logs/$name.xml" "$@"
 }
 
-# behind: begins the long work that has no time limits, the sanitized build and clang-tidy, on what
-# the tests in front leave of the processors. Linux shares them between sessions first and looks at
-# nice within one only, so this is a session of its own that asks for little.
+# behind: begins the long work that has no time limits, the sanitized build, its tests and
+# clang-tidy, on what the tests in front leave of the processors. Linux shares them between sessions
+# first and looks at nice within one only, so this is a session of its own that asks for little.
+# clang-tidy comes last and begins no file later than $tidy_until seconds from the start.
 behind() {
     setsid nice -n 19 bash -c '
         echo 19 2>/dev/null >/proc/self/autogroup || true
+        logs=$1 tidy_until=$2 SECONDS=$3
         cmake --preset sanitize -DLODESTONE_TESTS=ON && ninja -C build/sanitize || exit 1
-        PYTHONPATH=tests timeout --kill-after=10 2400 /usr/bin/python3 tests/run_python.py \
-            --junit "$1/tidy.xml" tests/lint/test_tidy.py >"$1/tidy.log" 2>&1 || true
-    ' behind "$logs" >"$logs/sanitize-build.log" 2>&1 &
+        began=$SECONDS
+        # Suites of these names start POV-Ray, in which nothing is sanitized.
+        timeout --kill-after=10 1800 /usr/bin/python3 tests/run_shards.py \
+            --junit "$logs/sanitize.xml" build/sanitize/tests/backend_tests \
+            --gtest_filter=-PovrayRun*:PovrayRender* >"$logs/sanitize.log" 2>&1
+        timeout --kill-after=10 900 ctest --test-dir build/sanitize --output-on-failure \
+            --no-tests=error --label-regex capi --label-exclude povray \
+            --output-junit "$logs/sanitize-c.xml" >"$logs/sanitize-c.log" 2>&1
+        echo $((SECONDS - began)) >"$logs/sanitize.seconds"
+        began=$SECONDS
+        TIDY_SECONDS=$((tidy_until - SECONDS)) PYTHONPATH=tests timeout --kill-after=10 3600 \
+            /usr/bin/python3 tests/run_python.py \
+            --junit "$logs/tidy.xml" tests/lint/test_tidy.py >"$logs/tidy.log" 2>&1
+        echo $((SECONDS - began)) >"$logs/tidy.seconds"
+    ' behind "$logs" "$tidy_until" $((SECONDS - start)) >"$logs/sanitize-build.log" 2>&1 &
     behind=$!
     trap 'kill -- "-$behind" 2>/dev/null || true' EXIT
-    behind_start=$SECONDS
 }
 
 # caught_up: waits for it.
 caught_up() {
-    wait "$behind" || stop "The sanitized build" "$logs/sanitize-build.log"
+    wait "$behind" || true
     trap - EXIT
-    finish tidy $((SECONDS - behind_start))
+    [ -e "$logs/tidy.seconds" ] || stop "The sanitized build" "$logs/sanitize-build.log"
+    finish sanitize "$(cat "$logs/sanitize.seconds")"
+    finish sanitize-c 0
+    finish tidy "$(cat "$logs/tidy.seconds")"
+    grep --only-matching '[0-9]* files, .* left to --tidy-all' "$logs/tidy.log" || true
 }
 
 if [ "$install" = 1 ]; then
@@ -170,7 +189,6 @@ else
     python_step povray tests/povray/test_*.py
     python_step end_to_end tests/end_to_end/test_*.py
     caught_up
-    ctest_step sanitize sanitize --label-exclude povray
 fi
 
 echo "Logs: build/tests/; $SECONDS s in all"

@@ -60,5 +60,47 @@ class Counting(unittest.TestCase):
         self.assertEqual(counts(*files), (1, "1 passed, 2 failed, 0 skipped"))
 
 
+class Shards(unittest.TestCase):
+    def counts(self, script: str) -> tuple[int, str]:
+        """The same after run_shards.py ran a program in the place of a GoogleTest one."""
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "program"
+            program.write_text("#!/bin/sh\n" + script, encoding="utf-8")
+            program.chmod(0o755)
+            junit = Path(folder) / "out.xml"
+            command = [sys.executable, str(ROOT / "tests/run_shards.py"), "--junit", str(junit)]
+            subprocess.run([*command, "--seconds", "5", str(program)], capture_output=True)
+            command = [sys.executable, str(ROOT / "tests/count.py"), str(junit)]
+            done = subprocess.run(command, capture_output=True, text=True)
+            return done.returncode, done.stdout
+
+    WRITE = (
+        'out=${1#--gtest_output=xml:}\n[ "$GTEST_SHARD_INDEX" != 0 ] || tests="'
+        "<testcase classname='A' name='b' status='run'/>\"\n"
+        "echo \"<testsuite><testcase classname='C' name='$GTEST_SHARD_INDEX'/>$tests"
+        '</testsuite>" >"$out"\n'
+    )
+
+    def test_every_process_counts(self):
+        code, said = self.counts(self.WRITE)
+        self.assertEqual(code, 0, said)
+        self.assertRegex(said, r"\d+ passed, 0 failed, 0 skipped")
+
+    def test_a_leak_after_passed_tests_fails(self):
+        code, said = self.counts(self.WRITE + '[ "$GTEST_SHARD_INDEX" != 1 ] || exit 23')
+        self.assertEqual(code, 1)
+        self.assertIn("part 2 of", said)
+        self.assertIn(" 1 failed, ", said)
+
+    def test_a_crash_is_named_by_the_test_it_was_in(self):
+        crash = "echo '[ RUN      ] A.Crashes'; kill -SEGV $$"
+        code, said = self.counts(
+            f'if [ "$GTEST_SHARD_INDEX" = 1 ]; then {crash}; fi\n' + self.WRITE
+        )
+        self.assertEqual(code, 1)
+        self.assertIn("A.Crashes (exit code -11)", said)
+        self.assertIn(" 1 failed, ", said)
+
+
 if __name__ == "__main__":
     unittest.main()

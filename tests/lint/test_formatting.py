@@ -21,8 +21,7 @@ class Formatting(unittest.TestCase):
     def test_black_would_change_nothing(self):
         sources = files_ending(".py")
         self.assertGreater(len(sources), 5)
-        self.assert_silent("black", "-q", "--diff", "-l", "100", "-t", "py310", *sources)
-        self.assert_silent("black", "-q", "--check", "-l", "100", "-t", "py310", *sources)
+        self.assert_silent("black", "-q", "--check", "--diff", "-l100", "-tpy310", *sources)
 
     def test_flake8_finds_nothing(self):
         self.assert_silent(*FLAKE8, *files_ending(".py"))
