@@ -63,6 +63,15 @@ void expect_same(const Mesh& mesh, const std::vector<glm::dvec3>& points) {
         ASSERT_EQ(scene.closest_point(point, found.distance * (1 + 1e-9)).triangle, found.triangle);
         ASSERT_EQ(scene.closest_point(point, found.distance * 0.999 - 1e-9).triangle,
                   ray::kNoTriangle);
+        for (const double enough : {0.5 * found.distance, 2 * found.distance}) {
+            const double far = scene.closest_point(point, kInfinity, 3, enough).distance;
+            ASSERT_LE(far, std::max(enough, found.distance));
+            ASSERT_GE(far, found.distance);
+            ASSERT_EQ(
+                scene.closest_point(point, found.distance * 0.999 - 1e-9, ray::kNoTriangle, enough)
+                    .triangle,
+                ray::kNoTriangle);
+        }
     }
 }
 

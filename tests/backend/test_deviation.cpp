@@ -5,6 +5,7 @@
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "measure/deviation.h"
 
 #include <gtest/gtest.h>
@@ -123,6 +124,31 @@ TEST(Deviation, SubsampledVerticesGiveTheSameError) {
     few.samples = 0;
     few.most_vertices = 0;
     EXPECT_EQ(DeviationReference(finest, few).of(coarse).error, 0);
+}
+
+TEST(Deviation, OfAFineStandInIsTheSameForAllSeedsWhereAFewVerticesDecide) {
+    constexpr int kSide = 80;
+    const auto at = [](int x, int y) { return static_cast<uint32_t>(y * kSide + x); };
+    Random random(3);
+    Mesh rough;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            rough.positions.emplace_back(x, y, std::sqrt(-std::log(1 - random.uniform())));
+    for (int y = 0; y + 1 < kSide; ++y) {
+        for (int x = 0; x + 1 < kSide; ++x) {
+            rough.triangles.emplace_back(at(x, y), at(x + 1, y), at(x + 1, y + 1));
+            rough.triangles.emplace_back(at(x, y), at(x + 1, y + 1), at(x, y + 1));
+        }
+    }
+    Mesh flat = rough;
+    for (glm::vec3& position : flat.positions)
+        position.z = 0;
+    std::vector<double> errors;
+    for (uint64_t seed = 1; seed <= 5; ++seed)
+        errors.push_back(DeviationReference(flat, {2048, 2048, seed}).of(rough).error);
+    const auto [least, most] = std::minmax_element(errors.begin(), errors.end());
+    EXPECT_GT(*least, 1);
+    EXPECT_LT(*most, 1.02 * *least);
 }
 
 TEST(Deviation, MovesWithTheMeshesAndGrowsWithTheirSize) {

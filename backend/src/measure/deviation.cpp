@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace lodestone::measure {
@@ -19,6 +20,9 @@ constexpr double kQuantile = 0.999;
 constexpr double kLookQuantile = 0.99;
 constexpr double kLeastLookShare = 0.002;
 constexpr size_t kBlock = 256;
+// Of levels as fine as scans a few vertices decide the quantile: those of the stand-in are taken
+// all, up to so many at least.
+constexpr uint32_t kLevelVertices = 16384;
 
 double weight_of(const std::vector<Sample>& samples, const std::vector<size_t>& indices) {
     double sum = 0;
@@ -189,26 +193,42 @@ double move_of(const Sample& sample, const ray::Closest& at, const Against& agai
                                  : moved_by(sample, theirs, color, against);
 }
 
-/// From the samples to the nearest points of the other mesh.
-Deviation measure(const std::vector<Sample>& samples, const Against& against, const Job& job) {
+/// From the samples to the nearest points of the other mesh. The first `points` of them tell which
+/// distances can be the quantile; of the others, vertices, nothing else is asked than whether they
+/// are farther, and how far then.
+Deviation measure(const std::vector<Sample>& samples, size_t points, const Against& against,
+                  const Job& job) {
     std::vector<double> places(samples.size(), 0);
     std::vector<double> moves(samples.size(), 0);
     const ray::Scene& scene = against.other.whole();
-    parallel_for((samples.size() + kBlock - 1) / kBlock, [&](size_t block) {
-        job.check();
-        uint32_t last = ray::kNoTriangle;
-        for (size_t i = block * kBlock; i < std::min(samples.size(), (block + 1) * kBlock); ++i) {
-            const glm::dvec3& point = samples[i].point;
-            // Neighbors in the list are mostly neighbors in space.
-            const ray::Closest closest =
-                scene.closest_point(point, std::numeric_limits<double>::infinity(), last);
-            // Nothing in reach at all: a scene of triangles that have no finite corners.
-            places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
-            last = closest.triangle;
-            if (samples[i].look != kAnyLook && std::isfinite(closest.distance))
-                moves[i] = move_of(samples[i], closest, against);
-        }
-    });
+    const auto measure_from = [&](size_t begin, size_t end, double enough) {
+        parallel_for((end - begin + kBlock - 1) / kBlock, [&](size_t block) {
+            job.check();
+            uint32_t last = ray::kNoTriangle;
+            const size_t first = begin + block * kBlock;
+            for (size_t i = first; i < std::min(end, first + kBlock); ++i) {
+                // Neighbors in the list are mostly neighbors in space.
+                const ray::Closest closest = scene.closest_point(
+                    samples[i].point, std::numeric_limits<double>::infinity(), last, enough);
+                // Nothing in reach at all: a scene of triangles that have no finite corners.
+                places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
+                last = closest.triangle;
+                if (samples[i].look != kAnyLook && std::isfinite(closest.distance))
+                    moves[i] = move_of(samples[i], closest, against);
+            }
+        });
+    };
+    measure_from(0, points, 0);
+    std::vector<size_t> order(points);
+    std::iota(order.begin(), order.end(), size_t{0});
+    const double all =
+        std::accumulate(samples.begin(), samples.end(), 0.0,
+                        [](double sum, const Sample& sample) { return sum + sample.weight; });
+    // More than the quantile leaves out of everything lies above, whatever the others are.
+    const double share = weight_of(samples, order) / std::max(all, 1e-300);
+    const double above = 4 * (1 - kQuantile) / std::max(share, 1e-300);
+    const double enough = above < 1 ? quantile(samples, places, std::move(order), 1 - above) : 0;
+    measure_from(points, samples.size(), enough);
     return summary(samples, places, moves);
 }
 
@@ -224,6 +244,7 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
     if (sampler.empty())
         return;
     add_visible_points(finest, sampler, surface, options.samples, job, visible_);
+    points_ = visible_.size();
     const std::vector<WeightedVertex> vertices =
         weighted_vertices(finest, options.most_vertices, options.seed);
     if (surface.skin && surface.skin->transmits())
@@ -245,13 +266,18 @@ Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
     // What the stand-in shows where, the visible points have asked already.
     std::vector<Sample> samples;
     add_area_samples(stand_in, scenes.whole(), options_.samples, options_.seed, samples);
+    const size_t points = samples.size();
     add_vertex_samples(stand_in, scenes.whole(),
-                       weighted_vertices(stand_in, options_.most_vertices, options_.seed), samples);
+                       weighted_vertices(stand_in, std::max(options_.most_vertices, kLevelVertices),
+                                         options_.seed),
+                       samples);
     const ray::Skin* const skin = surface.skin.get();
-    const Deviation there = measure(
-        visible_, {scenes, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
-    const Deviation back = measure(
-        samples, {scenes_, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
+    const Deviation there =
+        measure(visible_, points_,
+                {scenes, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
+    const Deviation back =
+        measure(samples, points,
+                {scenes_, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

@@ -22,13 +22,13 @@ struct Deviation {
 
 struct DeviationOptions {
     uint32_t samples = 8192;        // points uniform in area, each direction
-    uint32_t most_vertices = 8192;  // of either mesh; a larger one is represented by so many
+    uint32_t most_vertices = 8192;  // of the finest; a larger one is represented by so many
     uint64_t seed = 1;
 };
 
 /// The finest surface made ready to be compared with. A direction's quantile is over two sets of
 /// equal weight: points uniform in (visible) area, which share it equally, and (visible) vertices,
-/// each with a third of its triangles' area. A point of the finest is visible when a ray from
+/// each with a third of its triangles' area; of a stand-in up to 16,384, for a few of them decide. A point of the finest is visible when a ray from
 /// outside its bound hits it; a vertex when one of 16 rays from beside it sees infinity.
 class DeviationReference {
 public:
@@ -56,6 +56,7 @@ private:
     LookScenes scenes_;
     const Looks* palette_;
     std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
+    size_t points_ = 0;                   // so many of them are points; vertices come after
     std::vector<glm::dvec3> lights_;      // what they shine with
     double diameter_ = 0;
 };

@@ -308,7 +308,7 @@ ClosestTree::Four ClosestTree::square_distances(const Leaf& leaf, const glm::vec
     return in ? inside : best;
 }
 
-void ClosestTree::search(ClosestSearch& search, double radius) const {
+void ClosestTree::search(ClosestSearch& search, double radius, double enough) const {
     if (empty_)
         return;
     struct Entry {
@@ -327,6 +327,7 @@ void ClosestTree::search(ClosestSearch& search, double radius) const {
         square = reach * reach * (1 + 0x1p-20f);
     };
     set_reach(search.reach(radius));
+    const auto enough_here = static_cast<float>(enough);
     // What may be the nearest, to be decided when all is seen.
     struct Candidate {
         float square;
@@ -357,6 +358,8 @@ void ClosestTree::search(ClosestSearch& search, double radius) const {
         const Entry top = stack[--size];
         if (top.square > square)
             continue;
+        if (reach <= enough_here)
+            break;
         if (top.node < 0) {
             const int32_t index = ~top.node;
             const Leaf& leaf = leaves_[static_cast<size_t>(index)];

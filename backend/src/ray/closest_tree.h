@@ -21,8 +21,8 @@ public:
     ClosestTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles);
 
     /// Lets the search visit what may be within `radius` of its point, whose coordinates are below
-    /// 1e15. The search must be over the same mesh.
-    void search(ClosestSearch& search, double radius) const;
+    /// 1e15. The search must be over the same mesh. Ends as soon as something is within `enough`.
+    void search(ClosestSearch& search, double radius, double enough = 0) const;
 
 private:
     using Four = float __attribute__((vector_size(16)));

@@ -176,7 +176,8 @@ size_t Scene::crossed(const glm::dvec3& origin, const glm::dvec3& direction, dou
     return data.tree->crossed(part.origin, part.direction, part.far, list);
 }
 
-Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps) const {
+Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
+                             double enough) const {
     Data& data = *data_;
     Closest out;
     if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
@@ -197,7 +198,11 @@ Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t pe
     if (far < kFarthest) {
         // On this thread alone: one that waits for others could be given work that comes back here.
         std::call_once(data.once, [&] { data.boxes.emplace(data.positions, data.triangles); });
-        data.boxes->search(search, std::min(radius * data.scale, std::sqrt(search.square)));
+        // What the radius alone keeps near is not found yet.
+        if (search.triangle == kNoTriangle && radius <= enough)
+            enough = 0;
+        data.boxes->search(search, std::min(radius * data.scale, std::sqrt(search.square)),
+                           enough * data.scale);
     } else {
         for (uint32_t i = 0; i < data.triangles.size(); ++i)
             search.visit(i);

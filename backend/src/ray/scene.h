@@ -98,12 +98,13 @@ public:
                    std::span<uint32_t> list) const;
 
     /// The nearest point of any triangle within `radius`. A small radius is faster; so is a
-    /// triangle that may be near, which changes nothing else.
+    /// triangle that may be near, which changes nothing else. With `enough`, some point within that
+    /// distance will do where there is one.
     /// Where something transparent is nearest, the edge of what is not is found to an eighth of its
     /// triangle's size.
     Closest closest_point(const glm::dvec3& point,
                           double radius = std::numeric_limits<double>::infinity(),
-                          uint32_t perhaps = kNoTriangle) const;
+                          uint32_t perhaps = kNoTriangle, double enough = 0) const;
 
 private:
     struct Data;
