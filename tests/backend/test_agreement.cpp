@@ -68,6 +68,17 @@ TEST_F(Agreements, WhatIsHalfAsBrightNeverAgreesAndTellsByHowMuch) {
     EXPECT_LT(AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.55)).error, 0.1);
 }
 
+TEST_F(Agreements, PicturesTracedOnceServeForEveryPlainColor) {
+    const AgreementReference reference(grid(3, 0), plain(0.5), 1);
+    const Mesh other = grid(3, 0.1);
+    const AgreementReference::Traced traced = reference.trace(other, plain(0.9));
+    for (const double brightness : {0.1, 0.5, 0.9}) {
+        const Agreement fresh = reference.of(other, plain(brightness));
+        EXPECT_EQ(reference.of(traced, plain(brightness)).error, fresh.error);
+        EXPECT_EQ(reference.brightness_of(traced, plain(brightness)).light, fresh.light);
+    }
+}
+
 TEST_F(Agreements, MovedPartsAgreeFromAboutAPixelThatIsMuchLargerThanTheMove) {
     const AgreementReference reference(grid(4, 0), nullptr, 1);
     double last = 0;

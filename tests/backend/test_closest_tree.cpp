@@ -146,6 +146,20 @@ TEST(ClosestTree, TrianglesInOnePlaceAndInALineDoNotRunDeep) {
     expect_same(mesh, {{0.3, 0.1, 0.2}, {0, 0, 0}, {2, 2, 2}, {1e-9, 0, 0}});
 }
 
+TEST(ClosestTree, WhatIsNearEnoughEndsTheSearchAndNothingElseDoes) {
+    const Mesh mesh = soup(600, 4);
+    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    Random random(14);
+    for (int i = 0; i < 200; ++i) {
+        const glm::dvec3 point = point_in(random, 2);
+        const double right = scene.closest_point(point).distance;
+        const ray::Closest some = scene.closest_point(point, kInfinity, 3, 2 * right);
+        EXPECT_GE(some.distance, right);
+        EXPECT_LE(some.distance, 2 * right * (1 + 1e-9));
+        EXPECT_EQ(scene.closest_point(point, kInfinity, 3, 0.999 * right).distance, right);
+    }
+}
+
 TEST(ClosestTree, ScenesForClosestPointsRefuseRaysByName) {
     const ray::Scene scene(shapes::cube(), nullptr, ray::Uses::ClosestPoints);
     EXPECT_NEAR(scene.closest_point({0, 0, 2}).distance, 1.5, 1e-6);

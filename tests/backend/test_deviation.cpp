@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "measure/deviation.h"
+#include "measure/point_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -110,6 +111,46 @@ TEST(Deviation, SeesASpikeButNotOneThousandthOfTheWeight) {
     EXPECT_LT(deviation(flat, spiked(40)).error, 0.007);
     EXPECT_NEAR(deviation(flat, spiked(40)).max, 0.01, 1e-6);
     EXPECT_NEAR(deviation(spiked(10), flat).error, 0.01, 1e-6);
+}
+
+TEST(Deviation, IsExactAsLongAsItIsOfUseAndNeverSmallerThanItIs) {
+    const Mesh finest = shapes::sphere(1, 5);
+    const Mesh coarse = shapes::sphere(1, 2);
+    const DeviationReference reference(finest, {2048, 2048, 1});
+    const double error = reference.of(coarse).error;
+    for (const double useless : {1e9, 2 * error, 1.001 * error})
+        EXPECT_EQ(reference.of(coarse, {}, {}, useless).error, error) << useless;
+    EXPECT_GE(reference.of(coarse, {}, {}, 0.9 * error).error, error);
+    EXPECT_EQ(reference.of(coarse, {}, {}, 0.1 * error).error,
+              std::numeric_limits<double>::infinity());
+    EXPECT_EQ(reference.of(coarse, {}, {}, 0).error, std::numeric_limits<double>::infinity());
+}
+
+TEST(Deviation, FindsTheNearestWantedPointLikeLookingAtAll) {
+    Random random(7);
+    const auto point = [&] {
+        return glm::dvec3(random.uniform(), random.uniform(), 0.1 * random.uniform());
+    };
+    for (const size_t count : {size_t{1}, size_t{8}, size_t{9}, size_t{300}}) {
+        std::vector<glm::dvec3> points;
+        std::vector<uint32_t> numbers;
+        for (uint32_t i = 0; i < count; ++i) {
+            points.push_back(i % 5 == 4 ? points[i / 2] : point());  // some in one place
+            numbers.push_back(i);
+        }
+        const measure::PointTree tree(points, numbers);
+        for (int i = 0; i < 50; ++i) {
+            const glm::dvec3 from = 2.0 * point() - 0.5;
+            const double most = i % 2 == 0 ? 100 : 0.05;
+            double square = most;
+            for (size_t k = 0; k < count; k += 3) {
+                const glm::dvec3 arm = points[k] - from;
+                square = std::min(square, glm::dot(arm, arm));
+            }
+            EXPECT_EQ(tree.nearest(from, most, [](uint32_t k) { return k % 3 == 0; }), square);
+        }
+    }
+    EXPECT_EQ(measure::PointTree().nearest({}, 4, [](uint32_t) { return true; }), 4);
 }
 
 TEST(Deviation, SubsampledVerticesGiveTheSameError) {

@@ -35,6 +35,15 @@ Mesh tessellated(const Candidate& primitive) {
                                        : tessellate_ellipsoid(primitive.primitive, kSubdivisions);
 }
 
+/// What stands for a candidate where rays are cast; `solid` holds it unless it is a mesh.
+const Mesh& traced_mesh(const Candidate& candidate, Mesh& solid) {
+    if (candidate.kind == Kind::Mesh)
+        return *candidate.mesh;
+    solid = candidate.kind == Kind::Composite ? tessellate(*candidate.composite, 2)
+                                              : tessellated(candidate);
+    return solid;
+}
+
 /// The ground is large, and what lies on it (roads, fields) a small share of it.
 uint32_t samples_of(bool environment, const Settings& settings) {
     return environment ? 8 * settings.samples : settings.samples;
@@ -84,20 +93,28 @@ bool Judge::solid() const {
 }
 
 bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
+    // Few rays tell what is nearly alike or far from it.
+    constexpr double kUnsure = 0.15;
+    const ray::Scene scene(level, skin_);
     measure::VisibleOptions options;
-    options.rays = rays_ / 2;
     options.seed = seed_;
-    const double visible =
-        measure::measure_visible(level, ray::Scene(level, skin_), skin_, options, {}, job)
-            .attributes.visible_area;
-    return std::abs(visible - attributes_.visible_area) <=
-           kMostAreaChange * attributes_.visible_area;
+    double change = 0;
+    for (const uint64_t share : {8, 2}) {
+        options.rays = rays_ / share;
+        const double visible =
+            measure::measure_visible(level, scene, skin_, options, {}, job).attributes.visible_area;
+        change = std::abs(visible / attributes_.visible_area - 1);
+        if (std::abs(change - kMostAreaChange) > kUnsure)
+            break;
+    }
+    return change <= kMostAreaChange;
 }
 
-void Judge::measure_mesh(Candidate& candidate, const Job& job) {
+void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless) {
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job));
+    const double own = (useless - child_error_) / counted_error(1, environment_ || layer_, 0);
+    set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job, own));
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {
@@ -111,16 +128,8 @@ void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
     pictures_.emplace(finest, skin_, seed_, coarse ? Pictures::kCoarseSide : Pictures::kSide, job);
 }
 
-measure::Agreement Judge::agreement_of(const Candidate& candidate, const Job& job) const {
-    const auto skin = std::make_shared<const ray::Skin>(candidate.materials, texels_);
-    switch (candidate.kind) {
-        case Kind::Mesh:
-            return pictures_->of(*candidate.mesh, skin, job);
-        case Kind::Composite:
-            return pictures_->of(tessellate(*candidate.composite, 2), skin, job);
-        default:
-            return pictures_->of(tessellated(candidate), skin, job);
-    }
+ray::SkinPtr Judge::skin_of(const Candidate& candidate) const {
+    return std::make_shared<const ray::Skin>(candidate.materials, texels_);
 }
 
 void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted,
@@ -128,15 +137,18 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
     constexpr double kAlikeBright = 0.02;
     // Of a mesh some of the light is that of other slots.
     constexpr int kRounds = 2;
+    const bool mesh = candidate.kind == Kind::Mesh;
     std::vector<uint16_t> slots(tinted.begin(), tinted.end());
-    if (candidate.kind != Kind::Mesh) {
+    if (!mesh) {
         slots.resize(candidate.materials.size());
         std::iota(slots.begin(), slots.end(), uint16_t{0});
     }
-    const bool mesh = candidate.kind == Kind::Mesh;
-    measure::Agreement agreement = agreement_of(candidate, job);
+    ray::SkinPtr current = skin_of(candidate);
+    Mesh solid;
+    const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
     for (int round = 0; round < (mesh ? kRounds : 1); ++round) {
-        const glm::dvec3 off = glm::abs(agreement.light - 1.0);
+        const glm::dvec3 light = pictures_->brightness_of(traced, current).light;
+        const glm::dvec3 off = glm::abs(light - 1.0);
         bool changed = false;
         if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
             break;
@@ -144,14 +156,15 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
             if (slot >= candidate.materials.size())
                 continue;
             // Light that is scattered once is in proportion to the color.
-            approximate::brighten(candidate.materials[slot], agreement.light);
+            approximate::brighten(candidate.materials[slot], light);
             changed = true;
         }
         if (!changed)
             break;
-        agreement = agreement_of(candidate, job);
+        current = skin_of(candidate);
     }
-    set_error(candidate, {agreement.error, agreement.error});
+    const double error = pictures_->of(traced, current).error;
+    set_error(candidate, {error, error});
     candidate.pictured = true;
 }
 
@@ -168,14 +181,18 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, const Job
     const bool glows =
         std::any_of(candidate.materials.begin(), candidate.materials.end(),
                     [](const Material& material) { return material.emission != glm::dvec3(0.0); });
+    ray::SkinPtr current = skin_of(candidate);
+    Mesh solid;
+    const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
     for (int round = 0; round < (glows ? 2 : 1); ++round) {
-        const glm::dvec3 light = agreement_of(candidate, job).light;
+        const glm::dvec3 light = pictures_->brightness_of(traced, current).light;
         const glm::dvec3 off = glm::abs(light - 1.0);
         if (!(std::max({off.x, off.y, off.z}) > kAlikeBright))
             return;
         for (Material& material : candidate.materials)
             approximate::brighten(material,
                                   glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
+        current = skin_of(candidate);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "measure/deviation.h"
 #include "measure/looks.h"
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -44,8 +45,10 @@ public:
 
     /// False for a level of the finest's materials that shows another amount of surface.
     bool shows_as_much(const Mesh& level, const Job& job) const;
-    /// Fill the errors of a candidate; a mesh has the finest's materials.
-    void measure_mesh(Candidate& candidate, const Job& job);
+    /// Fill the errors of a candidate; a mesh has the finest's materials. Where the error is much
+    /// larger than `useless` it may be infinite, which takes less time.
+    void measure_mesh(Candidate& candidate, const Job& job,
+                      double useless = std::numeric_limits<double>::infinity());
     void measure_primitive(Candidate& candidate, const Job& job);
 
     /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
@@ -64,7 +67,7 @@ public:
 
 private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
-    measure::Agreement agreement_of(const Candidate& candidate, const Job& job) const;
+    ray::SkinPtr skin_of(const Candidate& candidate) const;
 
     image::TexelCache& texels_;
     measure::Looks looks_;

@@ -19,16 +19,12 @@ constexpr double kSky = 0.25;
 // Bounds of the finest and of larger stand-ins: pictures show this much around.
 constexpr double kMargin = 1.1;
 
-/// The 26 directions from the middle of a cube to its faces, edges and corners.
+/// Towards 13 faces, edges and corners of a cube from its middle: of each opposite pair one, in turns.
 std::vector<glm::dvec3> directions() {
     std::vector<glm::dvec3> out;
-    for (int x = -1; x <= 1; ++x) {
-        for (int y = -1; y <= 1; ++y) {
-            for (int z = -1; z <= 1; ++z) {
-                if (x != 0 || y != 0 || z != 0)
-                    out.push_back(glm::normalize(glm::dvec3(x, y, z)));
-            }
-        }
+    for (int number = 0; number < 13; ++number) {
+        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
+        out.push_back((number % 2 == 0 ? 1.0 : -1.0) * glm::normalize(along));
     }
     return out;
 }
@@ -177,14 +173,14 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& s
         center_ = box.center();
         radius_ = kMargin * 0.5 * glm::length(box.size());
     }
-    finest_ = taken(finest, skin, job);
+    finest_ = shown(trace(finest, skin, job), skin.get());
 }
 
-AgreementReference::Pictures AgreementReference::taken(const Mesh& mesh, const ray::SkinPtr& skin,
-                                                       const Job& job) const {
-    Pictures out;
+AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::SkinPtr& skin,
+                                                     const Job& job) const {
+    Traced out(mesh);
     const auto row = static_cast<size_t>(side_);
-    out.samples.assign(kViews * row * row, glm::vec4(0.0f));
+    out.samples_.resize(kViews * row * row);
     const ray::Scene scene(mesh, skin);
     if (mesh.empty() || !(radius_ > 0))
         return out;
@@ -193,6 +189,7 @@ AgreementReference::Pictures AgreementReference::taken(const Mesh& mesh, const r
     const double lift = ray_lift(radius_);
     parallel_for(kViews * row, [&](size_t line) {
         job.check();
+        const ray::Burst burst;
         const View view(views[line / row], line / row);
         for (size_t column = 0; column < row; ++column) {
             const size_t number = line * row + column;
@@ -215,26 +212,63 @@ AgreementReference::Pictures AgreementReference::taken(const Mesh& mesh, const r
             const double facing = glm::dot(normal, view.sun);
             if (facing > 0 && !scene.occluded(from, view.sun))
                 light += (1 - kSky) * facing;
-            const ray::Shown shown =
-                skin ? skin->at(mesh, hit.triangle, hit.u, hit.v) : ray::Shown{};
-            out.samples[number] = glm::vec4(glm::dvec4(light * shown.color + shown.emission, 1));
+            out.samples_[number] = {hit.triangle, static_cast<float>(hit.u),
+                                    static_cast<float>(hit.v), static_cast<float>(light)};
         }
     });
     return out;
 }
 
-Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
-                                 const Job& job) const {
-    const Pictures other = taken(stand_in, skin, job);
+AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
+                                                       const ray::Skin* skin) const {
+    Pictures out(traced.samples_.size(), glm::vec4(0.0f));
+    const Mesh& mesh = *traced.mesh_;
+    std::vector<ray::Shown> means;  // by slot
+    std::vector<uint8_t> varies;
+    for (size_t i = 0; i < out.size(); ++i) {
+        const Traced::Sample& sample = traced.samples_[i];
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const uint16_t slot = mesh.slot(sample.triangle);
+        for (size_t next = means.size(); next <= slot; ++next) {
+            const auto number = static_cast<uint16_t>(next);
+            means.push_back(skin != nullptr ? skin->mean(number) : ray::Shown{});
+            varies.push_back(skin != nullptr && skin->varies(mesh, number) ? 1 : 0);
+        }
+        const ray::Shown shown =
+            varies[slot] != 0 ? skin->at(mesh, sample.triangle, sample.u, sample.v) : means[slot];
+        const double light = sample.light;
+        out[i] = glm::vec4(glm::dvec4(light * shown.color + shown.emission, 1));
+    }
+    return out;
+}
+
+Agreement AgreementReference::brightness_of(const Pictures& other) const {
     Agreement out;
-    const glm::dvec4 ours = total(finest_.samples);
-    const glm::dvec4 theirs = total(other.samples);
+    const glm::dvec4 ours = total(finest_);
+    const glm::dvec4 theirs = total(other);
     out.coverage = ours.w > 0 ? theirs.w / ours.w : 1;
     for (int i = 0; i < 3; ++i)
         out.light[i] = theirs[i] > 0 ? ours[i] / theirs[i] : 1;
+    return out;
+}
+
+Agreement AgreementReference::brightness_of(const Traced& stand_in,
+                                            const ray::SkinPtr& skin) const {
+    return brightness_of(shown(stand_in, skin.get()));
+}
+
+Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
+                                 const Job& job) const {
+    return of(trace(stand_in, skin, job), skin);
+}
+
+Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& skin) const {
+    const Pictures other = shown(stand_in, skin.get());
+    Agreement out = brightness_of(other);
     const double sample = 2 * radius_ / side_;
     // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
-    // power of the size, nearly.
+    // power of the size, nearly. Pictures of a pixel each are few: by chance they may differ alone.
     double last_misses = 0;
     int last = 0;
     out.error = 2 * radius_;
@@ -242,13 +276,15 @@ Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
             continue;
-        const double misses = compare(finest_.samples, other.samples, kViews, side_, pixel).worst();
+        const double misses = compare(finest_, other, kViews, side_, pixel).worst();
         if (misses > 1) {
             if (last > 0) {
                 const double part =
                     last_misses > 0 ? std::log(misses) / std::log(misses / last_misses) : 0.0;
                 const double ratio = static_cast<double>(last) / pixel;
                 out.error = pixel * sample * std::pow(ratio, std::clamp(part, 0.0, 1.0));
+            } else if (pixel == side_) {
+                continue;
             }
             return out;
         }

@@ -24,10 +24,10 @@ struct Agreement {
 
 /// The error of what is not solid (foliage, fences, crowds, things one can see through): where single
 /// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
-/// how bright it is does. Orthographic pictures along 13 axes, both ways, of a diffuse surface under
-/// an even sky (a quarter of the light) and a sun that stands obliquely beside the viewer, with
-/// shadows; both meshes are sampled by the same rays. Larger pixels are means of smaller ones;
-/// differences are those of pictures without sampling noise.
+/// how bright it is does. Orthographic pictures along 13 axes (against them the same is covered, and lit
+/// by other suns) of a diffuse surface under an even sky (a quarter of the light) and a sun that stands
+/// obliquely beside the viewer, with shadows; both meshes are sampled by the same rays. Larger pixels
+/// are means of smaller ones; differences are those of pictures without sampling noise.
 class AgreementReference {
 public:
     /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
@@ -43,20 +43,44 @@ public:
     /// they never agree the error is the side of the whole picture.
     Agreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
 
+    /// What pictures of a stand-in have where, and how much light falls on it: what all skins that
+    /// hide alike have in common, and what takes long.
+    class Traced;
+    /// Keeps a reference to the mesh. Same bits on any number of threads.
+    Traced trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
+    /// `skin` is the one it was traced in, or differs from that in colors that are no textures.
+    Agreement of(const Traced& stand_in, const ray::SkinPtr& skin) const;
+    /// The same without the error.
+    Agreement brightness_of(const Traced& stand_in, const ray::SkinPtr& skin) const;
+
 private:
-    static constexpr size_t kViews = 26;
+    static constexpr size_t kViews = 13;
 
     /// Coverage and light (premultiplied) of each sample of each view.
-    struct Pictures {
-        std::vector<glm::vec4> samples;
-    };
-    Pictures taken(const Mesh& mesh, const ray::SkinPtr& skin, const Job& job) const;
+    using Pictures = std::vector<glm::vec4>;
+    Pictures shown(const Traced& traced, const ray::Skin* skin) const;
+    Agreement brightness_of(const Pictures& other) const;
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
     uint64_t seed_;
     int side_;
     Pictures finest_;
+};
+
+class AgreementReference::Traced {
+    friend AgreementReference;
+
+    struct Sample {
+        uint32_t triangle = ray::kNoTriangle;  // none: nothing is there
+        float u = 0;
+        float v = 0;
+        float light = 0;
+    };
+    explicit Traced(const Mesh& mesh) : mesh_(&mesh) {}
+
+    const Mesh* mesh_;
+    std::vector<Sample> samples_;
 };
 
 }  // namespace lodestone::measure

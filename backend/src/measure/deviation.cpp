@@ -2,11 +2,12 @@
 #include "measure/deviation.h"
 
 #include "base/parallel.h"
+#include "measure/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <set>
 #include <tuple>
 
 namespace lodestone::measure {
@@ -75,72 +76,157 @@ Deviation summary(const std::vector<Sample>& samples, const std::vector<double>&
     return out;
 }
 
+/// Whether the error of all samples is larger than `useless` without any doubt, by some of them.
+bool surely_above(double useless, const std::vector<Sample>& samples,
+                  const std::vector<size_t>& some, const std::vector<double>& places,
+                  const std::vector<double>& moves) {
+    // Many times as much as the quantiles allow, of samples enough.
+    constexpr double kPlaces = 0.02;
+    constexpr double kMoves = 0.06;
+    constexpr size_t kFewest = 6;
+    constexpr double kLeastShare = 5 * kLeastLookShare;
+    struct Sum {
+        double all = 0;
+        double above = 0;
+        size_t count = 0;
+        void add(double weight, bool is_above) {
+            all += weight;
+            above += is_above ? weight : 0;
+            count += is_above ? 1 : 0;
+        }
+    };
+    if (!std::isfinite(useless))
+        return false;
+    Sum place;
+    std::map<uint16_t, Sum> looks;
+    for (const size_t i : some) {
+        place.add(samples[i].weight, places[i] > useless);
+        looks[samples[i].look].add(samples[i].weight, moves[i] > useless);
+    }
+    if (place.count >= kFewest && place.above > kPlaces * place.all)
+        return true;
+    return std::any_of(looks.begin(), looks.end(), [&](const auto& look) {
+        const Sum& moved = look.second;
+        return moved.count >= kFewest && moved.above > kMoves * moved.all &&
+               moved.all > kLeastShare * place.all;
+    });
+}
+
 /// Whether two places can be seen at once: not the grass from above and the road from below.
 bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
     constexpr double kUnknown = 0.5;  // square of a length; sides are unit vectors
     return glm::dot(a, a) < kUnknown || glm::dot(b, b) < kUnknown || glm::dot(a, b) > 0;
 }
 
-/// Distance to the nearest point of look `look` that can be seen of the finest, from the same side.
-double nearest_visible(const std::vector<Sample>& visible, const Sample& from, uint16_t look) {
-    double square = std::numeric_limits<double>::infinity();
-    for (const Sample& sample : visible) {
-        const glm::dvec3 arm = sample.point - from.point;
-        const double here = glm::dot(arm, arm);
-        if (here < square && sample.look == look && face_alike(sample.side, from.side))
-            square = here;
-    }
-    return std::sqrt(square);
-}
+}  // namespace
 
-/// The same for what shows a color.
-double nearest_of_color(const std::vector<Sample>& visible, const Sample& from,
-                        const glm::dvec3& color) {
-    double square = std::numeric_limits<double>::infinity();
-    for (const Sample& sample : visible) {
-        const glm::dvec3 arm = sample.point - from.point;
-        const double here = glm::dot(arm, arm);
-        if (here < square && sample.look != kAnyLook && Looks::alike(sample.color, color) &&
-            face_alike(sample.side, from.side))
-            square = here;
+/// What can be seen of the finest, in the orders that are asked for.
+class DeviationReference::Seen {
+public:
+    explicit Seen(const std::vector<Sample>& visible) : visible_(visible) {
+        // Every so many of the visible points are enough for a mean.
+        constexpr size_t kMostPoints = 512;
+        std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
+        for (uint32_t i = 0; i < visible.size(); ++i) {
+            if (visible[i].look == kAnyLook)
+                continue;
+            auto& [points, numbers] = looks[visible[i].look];
+            points.push_back(visible[i].point);
+            numbers.push_back(i);
+        }
+        for (auto& [look, list] : looks)
+            by_look_.try_emplace(look, std::move(list.first), std::move(list.second));
+        const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
+        for (size_t run = 0; run < visible.size(); run += step) {
+            // Any one of each run: they were drawn evenly, and every so many of such are in one
+            // place.
+            const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
+            if (visible[i].look != kAnyLook)
+                mixed_.push_back({visible[i].point, visible[i].side,
+                                  Looks::light_of(visible[i].color), visible[i].look});
+        }
     }
-    return std::sqrt(square);
-}
 
-/// The radius around a point within which the visible colors of the finest mix (as light does, in a
-/// pixel that shows them all) to `color`; never
-/// (infinity) when not even all of them do.
-double mixing_radius(const std::vector<Sample>& visible, const std::vector<glm::dvec3>& lights,
-                     const Sample& from, const glm::dvec3& color) {
-    // Every so many of the visible points are enough for a mean.
-    constexpr size_t kMostPoints = 512;
-    const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
-    std::vector<std::tuple<double, uint16_t, size_t>> near;
-    for (size_t run = 0; run < visible.size(); run += step) {
-        // Any one of each run: they were drawn evenly, and every so many of such are in one place.
-        const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
-        const glm::dvec3 arm = visible[i].point - from.point;
-        if (visible[i].look != kAnyLook && face_alike(visible[i].side, from.side))
-            near.emplace_back(glm::dot(arm, arm), visible[i].look, i);
+    /// The distance to the nearest point of look `look` that can be seen, from the same side; `most`
+    /// where it is not less.
+    double nearest(const Sample& from, uint16_t look, double most) const {
+        const auto tree = by_look_.find(look);
+        if (tree == by_look_.end())
+            return most;
+        return std::sqrt(tree->second.nearest(from.point, most * most, [&](uint32_t i) {
+            return face_alike(visible_[i].side, from.side);
+        }));
     }
-    std::sort(near.begin(), near.end());
-    const Looks::Lights wanted = Looks::lights_alike(color);
-    glm::dvec3 sum(0.0);
-    double count = 0;
-    for (const auto& [square, look, index] : near) {
-        sum += lights[index];
-        ++count;
-        if (wanted.hold(sum / count))
-            return std::sqrt(square);
+
+    /// The same for what shows a color.
+    double nearest_of_color(const Sample& from, const glm::dvec3& color, double most) const {
+        double square = most * most;
+        for (const auto& [look, tree] : by_look_) {
+            square = tree.nearest(from.point, square, [&](uint32_t i) {
+                return Looks::alike(visible_[i].color, color) &&
+                       face_alike(visible_[i].side, from.side);
+            });
+        }
+        return std::sqrt(square);
     }
-    return std::numeric_limits<double>::infinity();
-}
+
+    /// The radius around a point within which the visible colors mix (as light does, in a pixel that
+    /// shows them all) to `color`; `most` where it is not less, or not even all of them do.
+    double mixing_radius(const Sample& from, const glm::dvec3& color, double most) const {
+        struct Near {
+            double square;
+            uint16_t look;
+            uint32_t index;
+            bool operator<(const Near& other) const {
+                return std::tie(square, look, index) <
+                       std::tie(other.square, other.look, other.index);
+            }
+        };
+        constexpr size_t kFirst = 16;
+        std::vector<Near> near;
+        near.reserve(mixed_.size());
+        for (uint32_t i = 0; i < mixed_.size(); ++i) {
+            const glm::dvec3 arm = mixed_[i].point - from.point;
+            const double square = glm::dot(arm, arm);
+            if (square < most * most && face_alike(mixed_[i].side, from.side))
+                near.push_back({square, mixed_[i].look, i});
+        }
+        const Looks::Lights wanted = Looks::lights_alike(color);
+        glm::dvec3 sum(0.0);
+        // Mostly the nearest few are enough: the rest is not sorted.
+        size_t end = 0;
+        for (size_t begin = 0; begin < near.size(); begin = end) {
+            end = std::min(near.size(), std::max(kFirst, 2 * begin));
+            const auto at = [&](size_t i) { return near.begin() + static_cast<ptrdiff_t>(i); };
+            if (end < near.size())
+                std::nth_element(at(begin), at(end), near.end());
+            std::sort(at(begin), at(end));
+            for (size_t i = begin; i < end; ++i) {
+                sum += mixed_[near[i].index].light;
+                if (wanted.hold(sum / static_cast<double>(i + 1)))
+                    return std::sqrt(near[i].square);
+            }
+        }
+        return most;
+    }
+
+private:
+    struct Mixed {
+        glm::dvec3 point;
+        glm::dvec3 side;
+        glm::dvec3 light;
+        uint16_t look;
+    };
+
+    const std::vector<Sample>& visible_;
+    std::map<uint16_t, PointTree> by_look_;
+    std::vector<Mixed> mixed_;
+};
 
 /// What the samples of one mesh are compared with.
-struct Against {
+struct DeviationReference::Against {
     const LookScenes& other;
-    const std::vector<Sample>& visible;     // of the finest
-    const std::vector<glm::dvec3>& lights;  // of these
+    const Seen& seen;  // of the finest
     const LookScenes& finest;
     const Looks* palette;
     double none;            // the answer where there is nothing to find
@@ -154,85 +240,120 @@ struct Against {
         return varies ? Looks::color_of(skin->at(mesh, at.triangle, at.u, at.v))
                       : palette->color(other.look_of(at.triangle));
     }
+    /// Whether what the other shows does not depend on where.
+    bool shows_one_thing() const {
+        if (palette == nullptr)
+            return true;
+        if (other.several())
+            return false;
+        if (skin == nullptr)
+            return true;
+        const std::set<uint16_t> slots(mesh.slots.begin(), mesh.slots.end());
+        return !skin->varies(mesh, 0) &&
+               std::none_of(slots.begin(), slots.end(),
+                            [&](uint16_t slot) { return skin->varies(mesh, slot); });
+    }
+    /// Whether it shows a look that the finest has nowhere.
+    bool is_mixed() const {
+        return palette != nullptr && other.whole().triangles() > 0 && !finest.has(other.look_of(0));
+    }
+    /// How far a look was moved at a sample where the other mesh shows the look `theirs`.
+    double moved_by(const Sample& sample, uint16_t theirs, const glm::dvec3& color) const {
+        const bool mixed = !finest.has(theirs);
+        double least = none;
+        if (!mixed)
+            least = seen.nearest(sample, theirs, least);
+        least = std::min(least, other.nearest(sample.look, sample.point, least).distance);
+        return mixed ? seen.mixing_radius(sample, color, least) : least;
+    }
+    /// How far the same texture slid along the surface at a sample where the other shows another
+    /// color.
+    double slid_by(const Sample& sample, const ray::Closest& at, const glm::dvec3& color) const {
+        double least = none;
+        if (sample.metres_per_uv > 0 && !mesh.uvs.empty()) {
+            const glm::dvec2 there = ray::uv_at(mesh, at.triangle, at.u, at.v);
+            least = std::min(least, glm::length(there - sample.uv) * sample.metres_per_uv);
+        }
+        return seen.mixing_radius(sample, color, seen.nearest_of_color(sample, color, least));
+    }
+    /// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
+    double move_of(const Sample& sample, const ray::Closest& at) const {
+        const uint16_t theirs = other.look_of(at.triangle);
+        if (palette == nullptr)
+            return 0;
+        if (theirs == sample.look && !sample.varies)
+            return 0;
+        bool varies = false;
+        const glm::dvec3 color = color_at(at, varies);
+        if ((varies || sample.varies) && Looks::alike(color, sample.color))
+            return 0;
+        return theirs == sample.look ? slid_by(sample, at, color) : moved_by(sample, theirs, color);
+    }
 };
 
-/// How far a look was moved at a sample where the other mesh shows the look `theirs`.
-double moved_by(const Sample& sample, uint16_t theirs, const glm::dvec3& color,
-                const Against& against) {
-    const double least =
-        std::min(against.none, against.other.nearest(sample.look, sample.point).distance);
-    if (against.finest.has(theirs))
-        return std::min(least, nearest_visible(against.visible, sample, theirs));
-    return std::min(least, mixing_radius(against.visible, against.lights, sample, color));
-}
-
-/// How far the same texture slid along the surface at a sample where the other shows another color.
-double slid_by(const Sample& sample, const ray::Closest& at, const glm::dvec3& color,
-               const Against& against) {
-    double least = against.none;
-    if (sample.metres_per_uv > 0 && !against.mesh.uvs.empty()) {
-        const glm::dvec2 there = ray::uv_at(against.mesh, at.triangle, at.u, at.v);
-        least = std::min(least, glm::length(there - sample.uv) * sample.metres_per_uv);
-    }
-    least = std::min(least, nearest_of_color(against.visible, sample, color));
-    return std::min(least, mixing_radius(against.visible, against.lights, sample, color));
-}
-
-/// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
-double move_of(const Sample& sample, const ray::Closest& at, const Against& against) {
-    const uint16_t theirs = against.other.look_of(at.triangle);
-    if (against.palette == nullptr)
-        return 0;
-    if (theirs == sample.look && !sample.varies)
-        return 0;
-    bool varies = false;
-    const glm::dvec3 color = against.color_at(at, varies);
-    if ((varies || sample.varies) && Looks::alike(color, sample.color))
-        return 0;
-    return theirs == sample.look ? slid_by(sample, at, color, against)
-                                 : moved_by(sample, theirs, color, against);
-}
-
-/// From the samples to the nearest points of the other mesh. The first `points` of them tell which
-/// distances can be the quantile; of the others, vertices, nothing else is asked than whether they
-/// are farther, and how far then.
-Deviation measure(const std::vector<Sample>& samples, size_t points, const Against& against,
-                  const Job& job) {
+/// From the samples to the nearest points of the other mesh. What is not near the quantile is found
+/// out no further than that it is below.
+Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
+                                      double useless, const Job& job) {
+    constexpr size_t kEvery = 8;
+    constexpr size_t kThinned = 4;  // divides that, and a block
+    constexpr size_t kFewSamples = 512;
+    constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
     std::vector<double> moves(samples.size(), 0);
     const ray::Scene& scene = against.other.whole();
-    const auto measure_from = [&](size_t begin, size_t end, double enough) {
-        parallel_for((end - begin + kBlock - 1) / kBlock, [&](size_t block) {
+    // Where only the distance counts, any point that is near enough will do.
+    const bool bare = against.shows_one_thing() ||
+                      std::all_of(samples.begin(), samples.end(),
+                                  [](const Sample& sample) { return sample.look == kAnyLook; });
+    // What solids of a mean color miss changes little from one sample to the next, and takes long.
+    const size_t thinned = against.shows_one_thing() && against.is_mixed() ? kThinned : 1;
+    const auto visit = [&](size_t step, double enough) {
+        const size_t count = (samples.size() + step - 1) / step;
+        parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
             uint32_t last = ray::kNoTriangle;
-            const size_t first = begin + block * kBlock;
-            for (size_t i = first; i < std::min(end, first + kBlock); ++i) {
+            for (size_t k = block * kBlock; k < std::min(count, (block + 1) * kBlock); ++k) {
+                const size_t i = k * step;
+                if (step == 1 && i % kEvery == 0)
+                    continue;
                 // Neighbors in the list are mostly neighbors in space.
                 const ray::Closest closest = scene.closest_point(
                     samples[i].point, std::numeric_limits<double>::infinity(), last, enough);
                 // Nothing in reach at all: a scene of triangles that have no finite corners.
                 places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
                 last = closest.triangle;
-                if (samples[i].look != kAnyLook && std::isfinite(closest.distance))
-                    moves[i] = move_of(samples[i], closest, against);
+                if (samples[i].look == kAnyLook || !std::isfinite(closest.distance))
+                    continue;
+                const size_t before = i - i % thinned;
+                moves[i] =
+                    before < i && !samples[i].varies && samples[before].look == samples[i].look
+                        ? moves[before]
+                        : against.move_of(samples[i], closest);
             }
         });
     };
-    measure_from(0, points, 0);
-    std::vector<size_t> order(points);
-    std::iota(order.begin(), order.end(), size_t{0});
-    const double all =
-        std::accumulate(samples.begin(), samples.end(), 0.0,
-                        [](double sum, const Sample& sample) { return sum + sample.weight; });
-    // More than the quantile leaves out of everything lies above, whatever the others are.
-    const double share = weight_of(samples, order) / std::max(all, 1e-300);
-    const double above = 4 * (1 - kQuantile) / std::max(share, 1e-300);
-    const double enough = above < 1 ? quantile(samples, places, std::move(order), 1 - above) : 0;
-    measure_from(points, samples.size(), enough);
+    visit(kEvery, 0);
+    std::vector<size_t> some;
+    for (size_t i = 0; i < samples.size(); i += kEvery)
+        some.push_back(i);
+    if (surely_above(useless, samples, some, places, moves))
+        return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    const bool many = samples.size() >= kFewSamples;
+    const double enough = bare && many ? quantile(samples, places, std::move(some), kBelow) : 0;
+    visit(1, enough);
+    if (enough > 0) {
+        double above = 0;
+        double all = 0;
+        for (size_t i = 0; i < samples.size(); ++i) {
+            all += samples[i].weight;
+            above += places[i] > enough ? samples[i].weight : 0;
+        }
+        if (!(above > (1 - kQuantile) * all))
+            visit(1, 0);
+    }
     return summary(samples, places, moves);
 }
-
-}  // namespace
 
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
                                        const Surface& surface, const Job& job)
@@ -241,24 +362,23 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
       palette_(surface.palette),
       diameter_(2 * radius_of(finest)) {
     const VisibleSampler sampler(finest, scenes_.whole(), options.seed);
-    if (sampler.empty())
-        return;
-    add_visible_points(finest, sampler, surface, options.samples, job, visible_);
-    points_ = visible_.size();
-    const std::vector<WeightedVertex> vertices =
-        weighted_vertices(finest, options.most_vertices, options.seed);
-    if (surface.skin && surface.skin->transmits())
-        add_vertex_samples(finest, scenes_.whole(), vertices, visible_);
-    else
-        add_visible_vertices(finest, scenes_.whole(), sampler.sides(), vertices,
-                             ray_lift(diameter_ / 2), options.seed, job, visible_);
-    lights_.reserve(visible_.size());
-    for (const Sample& sample : visible_)
-        lights_.push_back(Looks::light_of(sample.color));
+    if (!sampler.empty()) {
+        add_visible_points(finest, sampler, surface, options.samples, job, visible_);
+        const std::vector<WeightedVertex> vertices =
+            weighted_vertices(finest, options.most_vertices, options.seed);
+        if (surface.skin && surface.skin->transmits())
+            add_vertex_samples(finest, scenes_.whole(), vertices, visible_);
+        else
+            add_visible_vertices(finest, scenes_.whole(), sampler.sides(), vertices,
+                                 ray_lift(diameter_ / 2), options.seed, job, visible_);
+    }
+    seen_ = std::make_unique<const Seen>(visible_);
 }
 
-Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
-                                 const Job& job) const {
+DeviationReference::~DeviationReference() = default;
+
+Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface, const Job& job,
+                                 double useless) const {
     const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints);
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
@@ -266,18 +386,17 @@ Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
     // What the stand-in shows where, the visible points have asked already.
     std::vector<Sample> samples;
     add_area_samples(stand_in, scenes.whole(), options_.samples, options_.seed, samples);
-    const size_t points = samples.size();
     add_vertex_samples(stand_in, scenes.whole(),
                        weighted_vertices(stand_in, std::max(options_.most_vertices, kLevelVertices),
                                          options_.seed),
                        samples);
     const ray::Skin* const skin = surface.skin.get();
     const Deviation there =
-        measure(visible_, points_,
-                {scenes, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
+        measure(visible_, {scenes, *seen_, scenes_, palette_, none, stand_in, skin}, useless, job);
+    if (!std::isfinite(there.error))
+        return there;
     const Deviation back =
-        measure(samples, points,
-                {scenes_, visible_, lights_, scenes_, palette_, none, stand_in, skin}, job);
+        measure(samples, {scenes_, *seen_, scenes_, palette_, none, stand_in, skin}, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

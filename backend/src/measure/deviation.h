@@ -36,11 +36,16 @@ public:
     /// palette. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
                        const Surface& surface = {}, const Job& job = {});
+    ~DeviationReference();
+    DeviationReference(const DeviationReference&) = delete;
+    DeviationReference& operator=(const DeviationReference&) = delete;
 
     /// `surface` is numbered by the same palette. Same bits on any number of threads. Where one of
     /// the two meshes has nothing to measure to, both numbers are the diameter of the other's
-    /// bounding sphere; two empty ones agree. May be called from any thread.
-    Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {}) const;
+    /// bounding sphere; two empty ones agree. Where the error is much larger than `useless` the answer
+    /// may be infinite, and sooner there. May be called from any thread.
+    Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
+                 double useless = std::numeric_limits<double>::infinity()) const;
 
     /// Gives each triangle of a level (of the finest's slots and skin) the slot that most of the
     /// visible points nearest to it show, where enough of them agree: boards look like the tiles
@@ -52,12 +57,16 @@ public:
     size_t visible_points() const { return visible_.size(); }
 
 private:
+    class Seen;
+    struct Against;
+    static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
+                             double useless, const Job& job);
+
     DeviationOptions options_;
     LookScenes scenes_;
     const Looks* palette_;
     std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
-    size_t points_ = 0;                   // so many of them are points; vertices come after
-    std::vector<glm::dvec3> lights_;      // what they shine with
+    std::unique_ptr<const Seen> seen_;    // the same, to be searched
     double diameter_ = 0;
 };
 

@@ -22,10 +22,10 @@ LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const 
     }
 }
 
-ray::Closest LookScenes::nearest(uint16_t look, const glm::dvec3& point) const {
+ray::Closest LookScenes::nearest(uint16_t look, const glm::dvec3& point, double radius) const {
     if (!has(look))
         return {};
-    return (several() ? by_look_.at(look) : whole_).closest_point(point);
+    return (several() ? by_look_.at(look) : whole_).closest_point(point, radius);
 }
 
 }  // namespace lodestone::measure

@@ -106,13 +106,19 @@ bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const U
 void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& job) const {
     if (level.slots.empty())
         return;
-    const ray::Scene scene(level);
+    const ray::Scene scene(level, nullptr, ray::Uses::ClosestPoints);
     std::vector<uint32_t> nearest(visible_.size(), ray::kNoTriangle);
     parallel_for((visible_.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
+        uint32_t last = ray::kNoTriangle;
         for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
-            if (visible_[i].look != kAnyLook)
-                nearest[i] = scene.closest_point(visible_[i].point).triangle;
+            if (visible_[i].look == kAnyLook)
+                continue;
+            nearest[i] = scene
+                             .closest_point(visible_[i].point,
+                                            std::numeric_limits<double>::infinity(), last)
+                             .triangle;
+            last = nearest[i];
         }
     });
     std::map<uint32_t, std::map<uint16_t, Voters>> votes;  // by triangle and slot

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// PointTree: the nearest of a set of points that is wanted.
+#pragma once
+
+#include "base/maths.h"
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// A balanced k-d tree (Bentley 1975): halves by the median along the longest side of their bound.
+class PointTree {
+public:
+    PointTree() = default;
+    /// `numbers` are what the points are called. All are finite.
+    PointTree(std::vector<glm::dvec3> points, std::vector<uint32_t> numbers);
+
+    bool empty() const { return nodes_.empty(); }
+
+    /// The square of the distance to the nearest point whose number is `wanted`, or `square` where
+    /// that is not larger.
+    template <typename Wanted>
+    double nearest(const glm::dvec3& from, double square, const Wanted& wanted) const {
+        search(0, nodes_.size(), from, square, wanted);
+        return square;
+    }
+
+private:
+    static constexpr size_t kLeaf = 8;
+
+    struct Node {
+        glm::dvec3 point;
+        uint32_t number;
+        uint32_t axis;  // of the split, of the one in the middle of its range
+    };
+
+    void build(size_t begin, size_t end);
+
+    template <typename Wanted>
+    void search(size_t begin, size_t end, const glm::dvec3& from, double& square,
+                const Wanted& wanted) const {
+        if (end - begin <= kLeaf) {
+            for (size_t i = begin; i < end; ++i)
+                visit(nodes_[i], from, square, wanted);
+            return;
+        }
+        const size_t middle = begin + (end - begin) / 2;
+        const Node& node = nodes_[middle];
+        const auto axis = static_cast<int>(node.axis);
+        const double off = from[axis] - node.point[axis];
+        // The other half is at least as far as the plane.
+        for (const bool near : {true, false}) {
+            if (!near && !(off * off < square))
+                return;
+            if ((off < 0) == near)
+                search(begin, middle, from, square, wanted);
+            else
+                search(middle + 1, end, from, square, wanted);
+            if (near)
+                visit(node, from, square, wanted);
+        }
+    }
+
+    template <typename Wanted>
+    static void visit(const Node& node, const glm::dvec3& from, double& square,
+                      const Wanted& wanted) {
+        const glm::dvec3 arm = node.point - from;
+        const double here = glm::dot(arm, arm);
+        if (here < square && wanted(node.number))
+            square = here;
+    }
+
+    std::vector<Node> nodes_;
+};
+
+}  // namespace lodestone::measure
