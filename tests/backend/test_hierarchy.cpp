@@ -285,6 +285,41 @@ TEST_F(Hierarchy, CancelledBuildChangesNothing) {
         EXPECT_EQ(object.representations.size(), 1u);
 }
 
+TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
+    Model model;
+    std::vector<ObjectIndex> groups;
+    const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(1, 4));
+    for (int i = 0; i < 9; ++i) {  // eight of one mesh in nine different groups
+        std::vector<Placement> placements;
+        for (int k = 0; k < 8; ++k)
+            placements.push_back({ball, models::moved(3 * k, i * k, 0), "ball"});
+        groups.push_back(models::add_group(model, "row " + std::to_string(i), placements));
+    }
+    std::vector<Placement> own;
+    for (int k = 0; k < 8; ++k) {
+        const std::string uid = "own " + std::to_string(k);
+        own.push_back(
+            {models::add_leaf(model, uid, shapes::sphere(1, 4)), models::moved(3 * k, 0, 0), uid});
+    }
+    groups.push_back(models::add_group(model, "own", own));
+    std::vector<Placement> all;
+    for (const ObjectIndex group : groups)
+        all.push_back({group, {}, model.objects[group].name});
+    model.root = models::add_group(model, "all", all);
+    build_in(model, scratch("shared"));
+    const std::vector<uint64_t> uses = build::uses_of(model);
+    const auto flattened = [&](ObjectIndex group) {
+        const double error = build::error_to_flatten(model, group, 1000000, uses, {});
+        return build::drawn_within(model, group, error, uses, {}).triangles;
+    };
+    EXPECT_LT(5 * flattened(groups[0]), flattened(groups[9]));
+    EXPECT_LE(
+        build::drawn_within(model, groups[9],
+                            build::error_to_flatten(model, groups[9], 500, uses, {}), uses, {})
+            .triangles,
+        500u);
+}
+
 TEST_F(Hierarchy, WhatNobodySeesCostsAGroupNothing) {
     // A sphere of 20,480 triangles inside a closed box: the group's stand-ins are boxes.
     Model model;

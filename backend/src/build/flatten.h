@@ -19,12 +19,6 @@ struct Flat {
 Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
              const Job& job);
 
-/// The finest error (from a rising series) at which flattening gives at most `wanted` triangles, or
-/// little more than at an error that is still fine (1/32 of the size); larger errors only where
-/// those would be more than `most`.
-double error_for_triangles(const Model& model, ObjectIndex group, uint64_t wanted, uint64_t most,
-                           const Job& job);
-
 /// What a group must know of the rest of the model; made once for a build.
 struct Surroundings {
     std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
@@ -35,10 +29,23 @@ struct Surroundings {
 /// How often each object is drawn: the number of paths to it from the root.
 std::vector<uint64_t> uses_of(const Model& model);
 
-/// What an occurrence of the group's children costs POV-Ray within an error: a share of every
-/// representation (its bytes over its object's uses, for all occurrences share it) and the
-/// occurrences themselves. The group's own stand-ins do not count.
-double bytes_within(const Model& model, ObjectIndex group, double error,
-                    const std::vector<uint64_t>& uses, const Job& job);
+/// What an occurrence of the group's children is within an error.
+struct Drawn {
+    uint64_t triangles = 0;  // of the flat mesh
+    double bytes = 0;        // in POV-Ray
+};
+
+/// Bytes: a share of every representation (its bytes over its object's uses, for all occurrences
+/// share it) and the occurrences themselves. The group's own stand-ins do not count.
+Drawn drawn_within(const Model& model, ObjectIndex group, double error,
+                   const std::vector<uint64_t>& uses, const Job& job);
+
+/// At which error to flatten a group: much below that of the finest stand-in that could cost less
+/// than the children do at its error, and at most a sixteenth of the size. Flat meshes of what its
+/// children share with other groups are dear: the less a group can save, the coarser its reference
+/// may be. Coarser only to have at most `wanted` triangles, or little more than at an error that is
+/// still fine (1/32 of the size); and then where those would be more than `most`.
+double error_to_flatten(const Model& model, ObjectIndex group, uint64_t wanted, uint64_t most,
+                        const std::vector<uint64_t>& uses, const Job& job);
 
 }  // namespace lodestone::build

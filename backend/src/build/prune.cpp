@@ -214,7 +214,8 @@ private:
 
 void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                        const std::vector<Material>& materials, const Crowd& crowd,
-                       double level_ratio, uint64_t seed, Judge& judge, const Job& job) {
+                       double level_ratio, size_t most, uint64_t seed, Judge& judge,
+                       const Job& job) {
     const Thinner thinner(mesh, materials, crowd, judge, job);
     const std::vector<Step> steps = steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
     const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
@@ -227,6 +228,8 @@ void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
         const std::vector<uint32_t> order = approximate::prune_order(crowd, kind, seed);
         for (size_t i = 0; i < steps.size(); ++i) {
             job.check();
+            if (steps[i].crowd_triangles + rests[i].triangles.size() > most)
+                continue;
             Candidate candidate = thinner.thinned(order, steps[i], rests[i]);
             if (candidate.mesh->triangles.size() >= mesh.triangles.size())
                 continue;

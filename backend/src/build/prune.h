@@ -8,10 +8,11 @@
 namespace lodestone::build {
 
 /// Levels of a mesh with a crowd in it: of the crowd some parts, enlarged until each kind shows as
-/// much as in the mesh; of the rest as many triangles in proportion. Judged by pictures, which the
-/// judge must have taken of the same mesh.
+/// much as in the mesh; of the rest as many triangles in proportion; none of more than about `most`
+/// triangles. Judged by pictures, which the judge must have taken of the same mesh.
 void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                        const std::vector<Material>& materials, const approximate::Crowd& crowd,
-                       double level_ratio, uint64_t seed, Judge& judge, const Job& job);
+                       double level_ratio, size_t most, uint64_t seed, Judge& judge,
+                       const Job& job);
 
 }  // namespace lodestone::build

@@ -25,6 +25,11 @@ namespace {
 constexpr size_t kFewestTriangles = 8;
 // So many things drawn in a group may be a crowd.
 constexpr size_t kManyChildren = 32;
+// Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
+constexpr double kCollapsed = 0.2;
+constexpr double kNear = 1.0 / 8;  // over the radius
+// A composite of eight is off by a fifth of the radius, more or less.
+constexpr double kOff = 0.2;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 24;
 
@@ -43,6 +48,12 @@ uint64_t bytes_of(const Candidate& candidate) {
 double bytes_of(const Candidate& candidate, uint64_t uses) {
     const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
     return count * bytes_each(candidate.kind, bytes_of(candidate), uses);
+}
+
+/// Triangles of a mesh that costs so many bytes for each of its occurrences.
+size_t triangles_for(double bytes, uint64_t uses) {
+    const double all = bytes * static_cast<double>(std::max<uint64_t>(1, uses));
+    return static_cast<size_t>(std::clamp(all / kBytesPerTriangle, 0.0, 1e9));
 }
 
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
@@ -71,9 +82,12 @@ const Mesh& without_unseen_colors(const Mesh& mesh, const std::vector<Material>&
     return plain;
 }
 
+/// From which error on a mesh of so many triangles is no use.
+using Useless = std::function<double(size_t triangles)>;
+
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                Judge& judge, const Job& job) {
+                const Useless& useless, Judge& judge, const Job& job) {
     if (targets.empty())
         return;
     Mesh plain;
@@ -85,8 +99,8 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
-        judge.measure_mesh(candidate, job);
-        if (judge.shows_as_much(*candidate.mesh, job))
+        judge.measure_mesh(candidate, job, useless(candidate.mesh->triangles.size()));
+        if (std::isfinite(candidate.error) && judge.shows_as_much(*candidate.mesh, job))
             candidates.push_back(std::move(candidate));
     }
 }
@@ -132,7 +146,8 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
 
 /// `airy`: clear ones too, of these parts.
 void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
-                    const approximate::Crowd& crowd, uint64_t seed, Judge& judge, const Job& job) {
+                    const approximate::Crowd& crowd, double most, uint64_t seed, Judge& judge,
+                    const Job& job) {
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
     options.shape = !airy;
@@ -144,6 +159,8 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
             levels.push_back(std::move(level));
     }
     for (const approximate::Clustered& level : levels) {
+        if (static_cast<double>(level.composite.solids.size() * kBytesPerPrimitive) > most)
+            continue;  // no use, and comparing takes long
         Candidate candidate;
         candidate.kind = Kind::Composite;
         candidate.composite = std::make_shared<const Composite>(level.composite);
@@ -165,45 +182,90 @@ double bytes_within(const std::vector<Candidate>& candidates, double error, uint
     return out;
 }
 
+/// What replacements must be better than.
+struct Whole {
+    Bound bound;
+    uint64_t uses = 1;
+    double bytes = 0;   // as one mesh
+    double most = 0;    // bytes of an occurrence that are no use any more
+    bool many = false;  // its parts are objects
+};
+
 /// Pruned levels, primitives and composites of what is no environment, where they promise more than
-/// the levels among the candidates. `bound` is the finest's; `many`: its parts are objects.
+/// the levels among the candidates.
 void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
-                      const std::function<approximate::Crowd()>& crowd_in_mesh, bool many,
-                      uint64_t uses, const Bound& bound, const std::vector<Material>& materials,
-                      const Settings& settings, uint64_t seed, Judge& judge, const Job& job) {
-    // Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
-    constexpr double kCollapsed = 0.2;
-    constexpr double kNear = 1.0 / 8;  // over the radius
-    const double bytes = static_cast<double>(mesh.triangles.size()) * kBytesPerTriangle;
+                      const std::function<approximate::Crowd()>& crowd_in_mesh, const Whole& whole,
+                      const std::vector<Material>& materials, const Settings& settings,
+                      uint64_t seed, Judge& judge, const Job& job) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
     constexpr double kFewSolids = 32;
-    const bool worth_pictures = bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
+    const bool worth_pictures = whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
     approximate::Crowd crowd;
-    if (worth_pictures &&
-        (many || bytes_within(candidates, kNear * bound.radius, uses) > kCollapsed * bytes))
+    const auto dear = [&] {
+        return bytes_within(candidates, kNear * whole.bound.radius, whole.uses) >
+               kCollapsed * whole.bytes;
+    };
+    if (worth_pictures && (whole.many || dear()))
         crowd = crowd_in_mesh();
     const bool by_pictures = worth_pictures && (!crowd.empty() || !judge.solid());
     if (by_pictures)
         judge.take_pictures(mesh, crowd.empty(), job);
     if (!crowd.empty())
-        add_pruned_levels(candidates, mesh, materials, crowd, settings.level_ratio, seed, judge,
-                          job);
+        add_pruned_levels(candidates, mesh, materials, crowd, settings.level_ratio,
+                          triangles_for(whole.most, whole.uses), seed, judge, job);
     if (by_pictures || judge.solid())
-        add_primitives(candidates, bound, by_pictures, judge, job);
-    // A composite of eight is off by a fifth of the radius, more or less.
-    constexpr double kOff = 0.2;
+        add_primitives(candidates, whole.bound, by_pictures, judge, job);
     // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
     // good, and comparing pictures takes long.
     const double solids = by_pictures ? 16 : 64;
     const double dearer =
-        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, uses));
-    if (bytes > 2 * dearer && bytes_within(candidates, kOff * bound.radius, uses) > dearer &&
-        !judge.refracts()) {
+        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
+    // The cheapest has four.
+    const bool too_dear = whole.most < static_cast<double>(4 * kBytesPerPrimitive);
+    if (!too_dear && !judge.refracts() && whole.bytes > 2 * dearer &&
+        bytes_within(candidates, kOff * whole.bound.radius, whole.uses) > dearer) {
         if (!by_pictures)
             judge.take_pictures(mesh, true, job);
-        add_composites(candidates, mesh, by_pictures, crowd, seed, judge, job);
+        add_composites(candidates, mesh, by_pictures, crowd, whole.most, seed, judge, job);
     }
 }
+
+/// What a group's children cost within rising errors.
+class Children {
+public:
+    /// From `error` on.
+    Children(const Model& model, ObjectIndex group, double error, const std::vector<uint64_t>& uses,
+             const Job& job) {
+        constexpr int kFinest = -10;  // powers of two, over the radius
+        constexpr int kCoarsest = 3;
+        const auto add = [&](double at) {
+            steps_.push_back({at, drawn_within(model, group, at, uses, job).bytes});
+        };
+        add(error);
+        for (int power = kFinest; power < kCoarsest; ++power) {
+            const double at = std::ldexp(model.objects[group].bound().radius, power);
+            if (at > error)
+                add(at);
+        }
+    }
+
+    double bytes() const { return steps_.front().bytes; }
+    /// The error from which on they cost no more than `bytes`; a step too large rather than too small.
+    double cheaper_from(double bytes) const {
+        for (const Step& step : steps_) {
+            if (step.bytes <= bytes)
+                return step.error;
+        }
+        return std::numeric_limits<double>::infinity();
+    }
+
+private:
+    struct Step {
+        double error;
+        double bytes;
+    };
+    std::vector<Step> steps_;
+};
 
 /// What no ray from outside reaches is left out (of the occurrences too); everything stays when
 /// nothing would, and where there is glass, which ends rays but hides nothing.
@@ -289,7 +351,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 15;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 16;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -338,11 +400,15 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
-    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), judge, job);
+    const auto never = [](size_t) { return std::numeric_limits<double>::infinity(); };
+    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), never, judge, job);
+    Whole whole{finest.summary.bound, uses};
+    whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
+    whole.most = bytes_each(Kind::Mesh, finest.summary.cost.bytes, uses);
     if (object.role != Role::Environment)
         add_replacements(
-            out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, false, uses,
-            finest.summary.bound, materials, settings, seed_of(object, settings), judge, job);
+            out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, materials,
+            settings, seed_of(object, settings), judge, job);
     keep_useful(out.candidates, finest.summary.cost.bytes, uses);
     for (Candidate& candidate : out.candidates)
         judge.match_brightness(candidate, *mesh, job);
@@ -361,7 +427,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const bool environment = surroundings.environment[group] != 0;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
-    const double fine = error_for_triangles(model, group, budget, settings.group_triangles, job);
+    const double fine = error_to_flatten(model, group, budget, settings.group_triangles, uses, job);
     const Flat reference = flatten(model, group, fine, source, job);
     if (reference.mesh.empty())
         return out;
@@ -376,14 +442,33 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
 
     std::vector<uint32_t> occurrence = reference.occurrence;
     Mesh shell = without_hidden(reference.mesh, occurrence, judge.skin(), seed, job);
+    // A stand-in is off by as much as the reference or more, and no use where it costs more than
+    // what the children use there.
+    const Children children(model, group, reference.child_error, uses, job);
+    Whole whole{finest.bound, uses[group]};
+    whole.bytes = static_cast<double>(shell.triangles.size() * kBytesPerTriangle);
+    whole.most = children.bytes() - static_cast<double>(kBytesPerOccurrence);
+    whole.many = reference.occurrences >= kManyChildren;
     const size_t count = shell.triangles.size();
-    add_levels(out.candidates, shell, reference.materials,
-               targets_of(count + 1, count, settings.level_ratio), judge, job);
+    const size_t first = std::min(count, triangles_for(whole.most, uses[group]));
+    std::vector<size_t> targets = targets_of(count + 1, first, settings.level_ratio);
+    const auto fifth = static_cast<size_t>(kCollapsed * static_cast<double>(count));
+    if (!environment && !whole.many && first < fifth)
+        targets.insert(targets.begin(), fifth);  // tells whether it is a crowd
+    const size_t coarsest = targets.empty() ? 0 : targets.back();
+    const auto useless = [&](size_t triangles) {
+        // The coarsest is what there is where nothing is of use; the probe is no stand-in.
+        if (triangles <= coarsest || triangles > first)
+            return std::numeric_limits<double>::infinity();
+        const double own = bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]) +
+                           static_cast<double>(kBytesPerOccurrence);
+        return std::max(children.cheaper_from(own), kOff * finest.bound.radius);
+    };
+    add_levels(out.candidates, shell, reference.materials, targets, useless, judge, job);
     if (!environment)
         add_replacements(
-            out.candidates, shell, [&] { return crowd_in(shell, occurrence); },
-            reference.occurrences >= kManyChildren, uses[group], finest.bound, reference.materials,
-            settings, seed, judge, job);
+            out.candidates, shell, [&] { return crowd_in(shell, occurrence); }, whole,
+            reference.materials, settings, seed, judge, job);
 
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
@@ -396,18 +481,20 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
                            static_cast<double>(kBytesPerOccurrence);
         const double error = useful[i].error;
         const double used = next > 0 ? std::sqrt(error * next) : error;
-        if (own < bytes_within(model, group, used, uses, job))
+        if (own < drawn_within(model, group, used, uses, job).bytes)
             next = error;
         else
             useful.erase(useful.begin() + static_cast<std::ptrdiff_t>(i));
     }
     if (useful.empty()) {
-        // Every group has a stand-in, even one that saves nothing but the occurrences.
-        Candidate whole;
-        whole.mesh = std::make_shared<Mesh>(std::move(shell));
-        whole.materials = reference.materials;
-        judge.measure_mesh(whole, job);
-        out.candidates.push_back(std::move(whole));
+        // Every group has a stand-in, even one that saves nothing but the occurrences: the cheapest.
+        if (out.candidates.empty()) {
+            Candidate all;
+            all.mesh = std::make_shared<Mesh>(std::move(shell));
+            all.materials = reference.materials;
+            judge.measure_mesh(all, job);
+            out.candidates.push_back(std::move(all));
+        }
         keep_useful(out.candidates, ~uint64_t{0});
         useful = {out.candidates.back()};
     }
