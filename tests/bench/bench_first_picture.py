@@ -6,7 +6,8 @@
 Without files: build/samples/street.blend, which samples/quickstart.sh makes. Every round opens the
 file in a Blender of its own, with no levels, and counts what both programs take from F12 to the
 picture: of full detail, then at Pixel Error 1 the first, second and third time, then with all
-levels built first, then once more. Prints a table and writes JSON; no number makes it fail.
+levels built first, then once more. --pictures takes some of these only, --whole N builds all levels
+in the first N rounds only. Prints a table and writes JSON; no number makes it fail.
 """
 
 import argparse
@@ -30,10 +31,20 @@ PICTURES = {  # goal: most of it over the picture of full detail
     "whole": ("all levels built first", 3.0),
     "after": ("then", 1.0),
 }
-TIMEOUT = 1800
+WHOLE = ("whole", "after")  # what builds all levels, and what needs that
+TIMEOUT = 3600
 
 
-def measured(blend: Path, size: list[int], camera: str) -> dict:
+def pictures_of(number: int, options: argparse.Namespace) -> list[str]:
+    """What one round takes, in order."""
+    return [
+        picture
+        for picture in PICTURES
+        if picture in options.pictures and (number < options.whole or picture not in WHOLE)
+    ]
+
+
+def measured(blend: Path, options: argparse.Namespace, pictures: list[str]) -> dict:
     """{picture: {"cpu_s", "wall_s", "triangles"}} of one round."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -45,7 +56,13 @@ def measured(blend: Path, size: list[int], camera: str) -> dict:
         }
         command = ["blender", "-b", "--factory-startup", str(blend), "--addons", "lodestone"]
         command += ["--python-exit-code", "1", "--python", str(INSIDE), "--"]
-        command += [str(folder / "copy.blend"), str(report), *map(str, size), camera]
+        command += [
+            str(folder / "copy.blend"),
+            str(report),
+            *map(str, options.size),
+            options.camera,
+        ]
+        command += pictures
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=TIMEOUT, env=environment, check=False
         )
@@ -58,12 +75,16 @@ def summary(found: list[dict]) -> dict[str, dict]:
     """By picture: spreads of CPU and wall seconds, and of each round's ratio to full detail."""
     out = {}
     for picture, (_, goal) in PICTURES.items():
-        ratios = [one[picture]["cpu_s"] / max(one["full"]["cpu_s"], 1e-3) for one in found]
+        having = [one for one in found if picture in one]
+        if not having:
+            continue
+        ratios = [one[picture]["cpu_s"] / max(one["full"]["cpu_s"], 1e-3) for one in having]
         out[picture] = {
-            "cpu_s": benching.spread([one[picture]["cpu_s"] for one in found]),
-            "wall_s": benching.spread([one[picture]["wall_s"] for one in found]),
+            "cpu_s": benching.spread([one[picture]["cpu_s"] for one in having]),
+            "wall_s": benching.spread([one[picture]["wall_s"] for one in having]),
             "ratio": benching.spread(ratios),
-            "triangles": found[-1][picture]["triangles"],
+            "triangles": having[-1][picture]["triangles"],
+            "rounds": len(having),
             "goal": goal,
         }
     return out
@@ -71,14 +92,14 @@ def summary(found: list[dict]) -> dict[str, dict]:
 
 def table(found: dict[str, dict]) -> list[str]:
     lines = [
-        "| picture | CPU s | wall s | CPU over full detail | goal | triangles |",
-        "|---|---|---|---|---|---|",
+        "| picture | rounds | CPU s | wall s | CPU over full detail | goal | triangles |",
+        "|---|---|---|---|---|---|---|",
     ]
-    for picture, (label, _) in PICTURES.items():
-        one = found[picture]
+    for picture, one in found.items():
+        label = PICTURES[picture][0]
         goal = f"<= {one['goal']:g}" if one["goal"] else ""
         lines.append(
-            f"| {label} | {benching.cell(one['cpu_s'], digits=1)} "
+            f"| {label} | {one['rounds']} | {benching.cell(one['cpu_s'], digits=1)} "
             f"| {benching.cell(one['wall_s'], digits=1)} | {benching.cell(one['ratio'])} | {goal} "
             f"| {one['triangles']:,} |"
         )
@@ -91,10 +112,15 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--size", type=int, nargs=2, default=[640, 360], metavar=("W", "H"))
     parser.add_argument("--camera", default="", help="by name; default: far, else the scene's")
+    parser.add_argument("--pictures", nargs="+", choices=[*PICTURES], default=[*PICTURES])
+    parser.add_argument("--whole", type=int, help="rounds; default: all")
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "first.json")
     options = parser.parse_args(arguments)
     if options.rounds < 1:
         parser.error("--rounds is at least 1")
+    if "full" not in options.pictures:
+        parser.error("--pictures: all are compared with full")
+    options.whole = options.rounds if options.whole is None else options.whole
     options.blend = options.blend or [ROOT / "build" / "samples" / "street.blend"]
     return options
 
@@ -110,8 +136,10 @@ def main() -> None:
             sys.exit(f"bench_first_picture.py: there is no {blend}; samples/quickstart.sh makes it")
         found = []
         for number in range(options.rounds):
-            found.append(measured(blend.resolve(), options.size, options.camera))
-            print(f"{blend.stem} {number}: {found[-1]['first']['cpu_s']:.1f} s", flush=True)
+            pictures = pictures_of(number, options)
+            found.append(measured(blend.resolve(), options, pictures))
+            took = ", ".join(f"{p} {found[-1][p]['cpu_s']:.1f}" for p in pictures)
+            print(f"{blend.stem} {number}: CPU s: {took}", flush=True)
         results[blend.stem] = {"rounds": found, "summary": summary(found)}
         print(f"\n{blend.stem}: {benching.said(options.rounds, busy)}\n")
         print("\n".join(table(results[blend.stem]["summary"])))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The half of bench_first_picture.py inside Blender: presses F12 and says what each picture took.
 
-blender -b --factory-startup FILE --addons lodestone --python THIS -- COPY JSON WIDTH HEIGHT CAMERA
+blender -b --factory-startup FILE --addons lodestone --python THIS -- COPY JSON
+    WIDTH HEIGHT CAMERA PICTURE...
 """
 
 import json
@@ -30,7 +31,7 @@ def cpu_seconds():
 
 
 def main():
-    copy, report, width, height, camera = sys.argv[sys.argv.index("--") + 1 :]
+    copy, report, width, height, camera, *wanted = sys.argv[sys.argv.index("--") + 1 :]
     bpy.ops.wm.save_as_mainfile(filepath=copy)  # so that no levels lie beside it
     scene = bpy.context.scene
     scene.render.engine = "LODESTONE_POVRAY"
@@ -42,6 +43,8 @@ def main():
     bpy.ops.render.render()
     found = {}
     for name, pixel_error, build in PICTURES:
+        if name not in wanted:
+            continue
         scene.lodestone.pixel_error_render = pixel_error
         scene.lodestone.build_on_render = build
         wall, cpu = time.perf_counter(), cpu_seconds()

@@ -44,7 +44,7 @@ class RealScenes(unittest.TestCase):
         done = subprocess.run(
             ["/usr/bin/python3", str(ROOT / "blender_addon" / "lodestone" / "batch.py"), "render"]
             + [str(place / Path(name).name), "--views", str(place / "views.json")]
-            + ["--size", "320x180", "--antialias", "off", "--json", str(place / "report.json")],
+            + ["--size", "160x90", "--antialias", "off", "--json", str(place / "report.json")],
             capture_output=True,
             text=True,
             env={**os.environ, "LODESTONE_STAGE": str(STAGE)},

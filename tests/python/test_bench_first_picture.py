@@ -31,6 +31,16 @@ class FirstPicture(unittest.TestCase):
     def test_a_picture_that_took_no_time_divides_by_nothing(self):
         self.assertGreater(bench.summary([round_of(0.0, 1.0)])["first"]["ratio"]["max"], 1)
 
+    def test_rounds_may_leave_out_what_takes_long(self):
+        options = bench.options_of(["--rounds", "2", "--pictures", "full", "whole", "--whole", "1"])
+        self.assertEqual(bench.pictures_of(0, options), ["full", "whole"])
+        self.assertEqual(bench.pictures_of(1, options), ["full"])
+        short = {"full": round_of(10, 11)["full"]}
+        found = bench.summary([round_of(10, 11), short])
+        self.assertEqual((found["full"]["rounds"], found["first"]["rounds"]), (2, 1))
+        with self.assertRaises(SystemExit):
+            bench.options_of(["--pictures", "first"])
+
     def test_rounds_are_at_least_one(self):
         with self.assertRaises(SystemExit):
             bench.options_of(["--rounds", "0"])
