@@ -309,13 +309,13 @@ TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
     build_in(model, scratch("shared"));
     const std::vector<uint64_t> uses = build::uses_of(model);
     const auto flattened = [&](ObjectIndex group) {
-        const double error = build::error_to_flatten(model, group, 1000000, uses, {});
+        const double error = build::error_to_flatten(model, group, 1000000, 1000000, uses, {});
         return build::drawn_within(model, group, error, uses, {}).triangles;
     };
     EXPECT_LT(5 * flattened(groups[0]), flattened(groups[9]));
     EXPECT_LE(
         build::drawn_within(model, groups[9],
-                            build::error_to_flatten(model, groups[9], 500, uses, {}), uses, {})
+                            build::error_to_flatten(model, groups[9], 500, 500, uses, {}), uses, {})
             .triangles,
         500u);
 }

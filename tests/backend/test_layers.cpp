@@ -173,7 +173,8 @@ TEST_F(Layers, HouseUnderARoofOfBoxesIsNotAsWrongAsItIsLarge) {
     build_in(model, "house");
     const Object& house = model.objects[model.root];
     const double radius = house.bound().radius;
-    EXPECT_LE(build::error_for_triangles(model, model.root, 1000, 40000, {}), radius / 32);
+    EXPECT_LE(build::error_to_flatten(model, model.root, 1000, 40000, build::uses_of(model), {}),
+              radius / 32);
     ASSERT_GE(house.representations.size(), 2u);
     double least = radius;
     for (size_t lod = 1; lod < house.representations.size(); ++lod)

@@ -94,6 +94,17 @@ class Camera(unittest.TestCase):
         self.assertEqual((far.name, far.orthographic, far_size), ("Far", True, (10, 20)))
         self.assertEqual((own.name, own.orthographic, own_size), ("Camera", False, (64, 36)))
 
+    def test_a_mesh_was_now_and_then_read_as_a_camera_among_thousands_of_objects(self):
+        data = blender_scenes.cube_mesh()
+        for number in range(3000):
+            blender_scenes.cube(f"Cube {number}", (2 * number, 0, 0), data=data)
+        data = bpy.data.cameras.new("Second")
+        blender_scenes.link(bpy.data.objects.new("Second", data))
+        for _ in range(5):
+            extraction, _ = blender_scenes.extract(False)
+            with extraction.model as model:
+                self.assertEqual([c.name for c in model.cameras()], ["Camera", "Second"])
+
     def test_scaled_and_sheared_parents_do_not_change_the_view(self):
         parent = blender_scenes.link(bpy.data.objects.new("Parent", None))
         parent.scale, parent.rotation_euler = (3.0, 0.5, 1.0), (0.3, 0.2, 0.1)

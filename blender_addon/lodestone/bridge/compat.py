@@ -2,11 +2,7 @@
 """Differences between Blender versions, chosen by what is there: 3.4 (tested), 4.1 and later."""
 
 from array import array
-from collections.abc import Iterator
-from itertools import compress
 from typing import Any
-
-import bpy
 
 from .ids import called
 
@@ -17,14 +13,6 @@ def buffer(code: str, count: int) -> array:
     """Of 4-byte items ("f", "i", "I") or bytes ("b"), all 0. Blender copies into the code that is a
     property's own ("I" for indices) at 2 ns an item, item by item into any other, at 20 to 80."""
     return _ZERO[code] * count
-
-
-def of_type(objects: Any, kind: str) -> Iterator[Any]:
-    """Those of one type in a collection: asked all at once, a fifth of the time."""
-    kinds = buffer("i", len(objects))
-    objects.foreach_get("type", kinds)
-    wanted = bpy.types.Object.bl_rna.properties["type"].enum_items[kind].value
-    return compress(objects, map(wanted.__eq__, kinds)) if wanted in kinds else iter(())
 
 
 def smooth_faces(mesh: Any) -> array | None:

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
-from . import camera, compat, groups, ids, lights, world
+from . import camera, groups, ids, lights, world
 from .ids import name_of
 from .images import ImageMeans
 from .instances import Instances, report_outside
@@ -177,7 +177,7 @@ def _add_cameras(model: Any, scene: Any) -> None:
     """All of the scene, its own one first, for programs that render the store. What is not exact
     about one is told when it is used."""
     frame = camera.Frame.of(scene.render)
-    items = list(compat.of_type(scene.objects, "CAMERA"))
+    items = [item for item in scene.objects if item.type == "CAMERA"]
     items.sort(key=lambda item: (item != scene.camera, name_of(item)))
     for item in items:
         matrix = item.matrix_world
