@@ -14,3 +14,10 @@ inline std::filesystem::path own_scratch() {
     std::filesystem::create_directories(folder);
     return folder;
 }
+
+/// A folder in it that is not there.
+inline std::filesystem::path scratch(const std::string& name) {
+    std::filesystem::path folder = own_scratch() / name;
+    std::filesystem::remove_all(folder);
+    return folder;
+}

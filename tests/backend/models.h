@@ -74,4 +74,25 @@ inline Model row_of_balls(int count) {
     return model;
 }
 
+/// From so many metres in front of the origin, where a pixel covers 1/640 of the distance.
+inline View view_from(double distance, double pixel_error = 1) {
+    View view;
+    view.camera.position = {0, -distance, 0};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 0, 0.5625};
+    view.pixel_error = pixel_error;
+    return view;
+}
+
+/// Adds a coarser level with a made-up error.
+inline void add_level(Model& model, ObjectIndex object, double error, const Mesh& mesh) {
+    Representation level;
+    level.materials = {0};
+    level.payload = std::make_shared<const Mesh>(mesh);
+    summarize(level, model);
+    level.summary.error = error;
+    model.objects[object].representations.push_back(std::move(level));
+}
+
 }  // namespace lodestone::models

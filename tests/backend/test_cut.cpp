@@ -9,28 +9,10 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
+using models::add_level;
+using models::view_from;
 
 namespace {
-
-View view_from(double distance, double pixel_error) {
-    View view;
-    view.camera.position = {0, -distance, 0};
-    view.camera.direction = {0, 1, 0};
-    view.camera.right = {1, 0, 0};  // a pixel covers 1/640 of the distance
-    view.camera.up = {0, 0, 0.5625};
-    view.pixel_error = pixel_error;
-    return view;
-}
-
-/// Adds a coarser level with a made-up error.
-void add_level(Model& model, ObjectIndex object, double error, const Mesh& mesh) {
-    Representation level;
-    level.materials = {0};
-    level.payload = std::make_shared<const Mesh>(mesh);
-    summarize(level, model);
-    level.summary.error = error;
-    model.objects[object].representations.push_back(std::move(level));
-}
 
 Model balls_with_levels() {
     Model model = models::row_of_balls(8);

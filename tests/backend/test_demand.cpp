@@ -15,13 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path scratch(const std::string& name) {
-    fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
-    return folder;
-}
-
 /// Looks along -z from `distance` metres before the origin.
 View view_from(double distance) {
     View view;

@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -28,11 +27,8 @@ protected:
 };
 
 void build_in(Model& model, const std::string& name) {
-    const fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
     Problems problems;
-    build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    build::build_hierarchy(model, segment::Store(scratch(name)), build::Settings{}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
 }
 

@@ -7,6 +7,7 @@
 #include "build/hierarchy.h"
 #include "measure/deviation.h"
 #include "ray/scene.h"
+#include "scratch.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -15,13 +16,6 @@ using namespace lodestone;
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path scratch(const std::string& name) {
-    fs::path folder = fs::path(LODESTONE_TEST_SCRATCH) / "followed" / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
-    return folder;
-}
 
 /// A sheet that waves higher in every frame, over a ball that rests; `cells` a side.
 Model scene_at(int frame, uint32_t cells = 32) {

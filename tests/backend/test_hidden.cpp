@@ -14,16 +14,8 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-namespace fs = std::filesystem;
 
 namespace {
-
-fs::path scratch(const std::string& name) {
-    fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
-    return folder;
-}
 
 /// Two rooms of a ball and a box each; the right room and its box are hidden as told.
 Model house(RayMask room, RayMask box) {

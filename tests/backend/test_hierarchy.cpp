@@ -17,17 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path scratch(const std::string& name) {
-    fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
-    return folder;
-}
-
 build::Report build_in(Model& model, const fs::path& folder) {
     Problems problems;
-    const build::Report report =
-        build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    const build::Report report = build::build_hierarchy(model, segment::Store(folder),
+                                                        build::Settings{}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
 }

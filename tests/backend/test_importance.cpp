@@ -14,38 +14,14 @@
 #include <limits>
 
 using namespace lodestone;
+using models::add_level;
+using models::view_from;
 namespace fs = std::filesystem;
 
 namespace {
 
-fs::path scratch(const std::string& name) {
-    fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    return folder;
-}
-
 constexpr ObjectIndex kBall = 0;
 constexpr ObjectIndex kPair = 1;
-
-/// From so many metres in front of the origin, where a pixel covers 1/640 of the distance.
-View view_from(double distance, double pixel_error = 1) {
-    View view;
-    view.camera.position = {0, -distance, 0};
-    view.camera.direction = {0, 1, 0};
-    view.camera.right = {1, 0, 0};
-    view.camera.up = {0, 0, 0.5625};
-    view.pixel_error = pixel_error;
-    return view;
-}
-
-void add_level(Model& model, ObjectIndex object, double error, const Mesh& mesh) {
-    Representation level;
-    level.materials = {0};
-    level.payload = std::make_shared<const Mesh>(mesh);
-    summarize(level, model);
-    level.summary.error = error;
-    model.objects[object].representations.push_back(std::move(level));
-}
 
 /// Four balls of radius 1 in two pairs; LOD 1 of a ball is off by .1 m, LOD 2 by .2, a pair's by .4.
 Model pairs() {

@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path scratch(const std::string& name) {
-    fs::path folder = own_scratch() / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder.parent_path());
-    return folder;
-}
-
 /// Balls with a coarse level, a box and an ellipsoid, a camera, lights, names of all sorts.
 Model rich_model() {
     Model model = models::row_of_balls(4);
