@@ -163,7 +163,7 @@ class PeerFailures(Case):
         from lodestone import engine
 
         scenes.cube()
-        extract, engine.scene.extract = engine.scene.extract, lambda *_: 1 // 0
+        extract, engine.scene.extract = engine.scene.extract, lambda *_, **__: 1 // 0
         try:
             self.refused("ZeroDivisionError")
         finally:

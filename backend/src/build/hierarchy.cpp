@@ -6,6 +6,7 @@
 #include "build/demand.h"
 #include "build/effort.h"
 #include "build/flatten.h"
+#include "build/followed.h"
 #include "build/stand_ins.h"
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 // Judge: measures stand-ins against the finest mesh they stand for.
 #pragma once
 
-#include "build/stand_ins.h"
+#include "build/candidate.h"
+#include "build/settings.h"
 #include "measure/agreement.h"
 #include "measure/deviation.h"
 #include "measure/looks.h"

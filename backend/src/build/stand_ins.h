@@ -1,29 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stand-ins of one object: candidates, their errors, and the list that is kept.
+// Stand-ins of one object: which are tried, and the list that is kept.
 #pragma once
 
 #include "base/job.h"
-#include "build/poses.h"
+#include "build/candidate.h"
 #include "build/settings.h"
 #include "image/texels.h"
 #include "model/model.h"
-#include "segment/bound_file.h"
 
 #include <functional>
 
 namespace lodestone::build {
-
-/// A stand-in on its way into the model; its materials are its own until it is added.
-struct Candidate {
-    Kind kind = Kind::Mesh;
-    double error = 0;
-    double max_error = 0;
-    std::shared_ptr<const Mesh> mesh;  // of a mesh
-    Primitive primitive;               // of a box or ellipsoid
-    std::shared_ptr<const Composite> composite;
-    std::vector<Material> materials;  // by slot
-    bool pictured = false;            // compared by pictures, and as bright as they are
-};
 
 struct StandIns {
     Attributes attributes;
@@ -48,21 +35,5 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
                             const Settings& settings, const MeshSource& source,
                             image::TexelCache& texels, const Job& job);
-
-/// The levels of something that deforms, one collapse for all frames: the one that suits all poses
-/// of a bind together, tied to the surface it has in the first of them.
-segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
-                                          const MeshSource& source, image::TexelCache& texels,
-                                          const Job& job);
-
-/// These levels where the object has them now. The errors are those of now, by witnesses: nothing is
-/// measured anew. All that can be drawn, fine to coarse; an error is raised to the finer one's where
-/// it would not be larger.
-std::vector<Candidate> followed_levels(const Model& model, const Object& object,
-                                       const segment::BoundLevels& levels, const Job& job);
-
-/// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
-/// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
-void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses = 1);
 
 }  // namespace lodestone::build

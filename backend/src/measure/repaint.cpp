@@ -114,10 +114,10 @@ void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& 
         for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
             if (visible_[i].look == kAnyLook)
                 continue;
-            nearest[i] = scene
-                             .closest_point(visible_[i].point,
-                                            std::numeric_limits<double>::infinity(), last)
-                             .triangle;
+            nearest[i] =
+                scene
+                    .closest_point(visible_[i].point, std::numeric_limits<double>::infinity(), last)
+                    .triangle;
             last = nearest[i];
         }
     });

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/candidate.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lodestone::build {
+
+uint64_t bytes_of(const Candidate& candidate) {
+    switch (candidate.kind) {
+        case Kind::Mesh:
+            return candidate.mesh->triangles.size() * kBytesPerTriangle;
+        case Kind::Composite:
+            return candidate.composite->solids.size() * kBytesPerPrimitive;
+        default:
+            return kBytesPerPrimitive;
+    }
+}
+
+double bytes_of(const Candidate& candidate, uint64_t uses) {
+    const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
+    return count * bytes_each(candidate.kind, bytes_of(candidate), uses);
+}
+
+double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses) {
+    double out = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.error <= error)
+            out = std::min(out, bytes_of(candidate, uses));
+    }
+    return out;
+}
+
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses) {
+    // A level that saves less than this over a better one is not worth its place on disk.
+    constexpr double kSameCost = 1.02;
+    const auto bytes = [&](const Candidate& candidate) { return bytes_of(candidate, uses); };
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const Candidate& a, const Candidate& b) {
+                         return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;
+                     });
+    std::vector<Candidate> front;  // cheapest first, errors falling
+    for (Candidate& candidate : candidates) {
+        if (bytes(candidate) >= static_cast<double>(finest_bytes) ||
+            (!front.empty() && candidate.error >= front.back().error))
+            continue;
+        if (!front.empty() && bytes(candidate) < kSameCost * bytes(front.back()))
+            front.back() = std::move(candidate);
+        else
+            front.push_back(std::move(candidate));
+    }
+    std::reverse(front.begin(), front.end());
+    candidates = std::move(front);
+}
+
+}  // namespace lodestone::build

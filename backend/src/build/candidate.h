@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Candidate: a stand-in on its way into the model, and which of several are worth keeping.
+#pragma once
+
+#include "model/model.h"
+
+#include <memory>
+#include <vector>
+
+namespace lodestone::build {
+
+/// Its materials are its own until it is added.
+struct Candidate {
+    Kind kind = Kind::Mesh;
+    double error = 0;
+    double max_error = 0;
+    std::shared_ptr<const Mesh> mesh;  // of a mesh
+    Primitive primitive;               // of a box or ellipsoid
+    std::shared_ptr<const Composite> composite;
+    std::vector<Material> materials;  // by slot
+    bool pictured = false;            // compared by pictures, and as bright as they are
+};
+
+/// In POV-Ray's memory, of one.
+uint64_t bytes_of(const Candidate& candidate);
+/// Of all its occurrences together.
+double bytes_of(const Candidate& candidate, uint64_t uses);
+
+/// The cheapest candidate within an error; infinite when there is none.
+double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses);
+
+/// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
+/// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses = 1);
+
+}  // namespace lodestone::build

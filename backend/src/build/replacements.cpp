@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/replacements.h"
+
+#include "approximate/composite.h"
+#include "approximate/replace.h"
+#include "approximate/stand_in_material.h"
+#include "approximate/standing.h"
+#include "build/prune.h"
+
+#include <algorithm>
+
+namespace lodestone::build {
+namespace {
+
+/// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
+void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
+                    Judge& judge, const Job& job) {
+    const Material material = approximate::mean_material(judge.attributes());
+    const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
+        Candidate candidate;
+        candidate.kind = kind;
+        candidate.primitive = primitive;
+        candidate.materials = {approximate::clear_material(material, opacity)};
+        if (by_pictures)
+            judge.compare_pictures(candidate, {}, job);
+        else
+            judge.measure_primitive(candidate, job);
+        candidates.push_back(std::move(candidate));
+    };
+    // Nothing sinks into the plane that its original stands on. What floats above it may be the
+    // better one (a tree's crown), or not (a table's top): the error decides.
+    const double floor = bound.box.low.z;
+    const auto add_standing = [&](Kind kind, const Primitive& primitive) {
+        const bool is_box = kind == Kind::Box;
+        const approximate::Reach reach = approximate::reach_of(primitive, is_box);
+        add(kind, approximate::kept_above(primitive, is_box, floor), 1);
+        constexpr double kStands = 0.01;  // over its height
+        if (reach.low - floor > kStands * (reach.high - reach.low))
+            add(kind, approximate::standing_on(primitive, is_box, floor), 1);
+    };
+    if (const auto box = approximate::fit_box(judge.attributes(), bound))
+        add_standing(Kind::Box, *box);
+    if (const auto ellipsoid = approximate::fit_ellipsoid(judge.attributes(), bound))
+        add_standing(Kind::Ellipsoid, *ellipsoid);
+    if (!by_pictures)
+        return;
+    if (const auto box = approximate::fit_clear_box(judge.attributes(), bound))
+        add(Kind::Box, approximate::kept_above(box->primitive, true, floor), box->opacity);
+    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(judge.attributes(), bound))
+        add(Kind::Ellipsoid, approximate::kept_above(ellipsoid->primitive, false, floor),
+            ellipsoid->opacity);
+}
+
+/// `airy`: clear ones too, of these parts.
+void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
+                    const approximate::Crowd& crowd, double most, uint64_t seed, Judge& judge,
+                    const Job& job) {
+    // Between leaves one sees far into a crown: a solid with the same variances would be too small.
+    approximate::CompositeOptions options{seed};
+    options.shape = !airy;
+    std::vector<approximate::Clustered> levels =
+        approximate::composites(mesh, judge.skin(), judge.attributes(), options, job);
+    if (airy) {
+        for (approximate::Clustered& level : approximate::clear_composites(
+                 mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
+            levels.push_back(std::move(level));
+    }
+    for (const approximate::Clustered& level : levels) {
+        if (static_cast<double>(level.composite.solids.size() * kBytesPerPrimitive) > most)
+            continue;  // no use, and comparing takes long
+        Candidate candidate;
+        candidate.kind = Kind::Composite;
+        candidate.composite = std::make_shared<const Composite>(level.composite);
+        for (size_t i = 0; i < level.attributes.size(); ++i)
+            candidate.materials.push_back(approximate::clear_material(
+                approximate::mean_material(level.attributes[i]), level.opacities[i]));
+        judge.compare_pictures(candidate, {}, job);
+        candidates.push_back(std::move(candidate));
+    }
+}
+
+}  // namespace
+
+void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
+                      const std::function<approximate::Crowd()>& crowd_in_mesh, const Whole& whole,
+                      const std::vector<Material>& materials, const Settings& settings,
+                      uint64_t seed, Judge& judge, const Job& job) {
+    // Less than so many solids would cost is not worth a tenth of a second of pictures.
+    constexpr double kFewSolids = 32;
+    const bool worth_pictures = whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
+    approximate::Crowd crowd;
+    const auto dear = [&] {
+        return bytes_within(candidates, kNear * whole.bound.radius, whole.uses) >
+               kCollapsed * whole.bytes;
+    };
+    if (worth_pictures && (whole.many || dear()))
+        crowd = crowd_in_mesh();
+    const bool by_pictures = worth_pictures && (!crowd.empty() || !judge.solid());
+    if (by_pictures)
+        judge.take_pictures(mesh, crowd.empty(), job);
+    if (!crowd.empty())
+        add_pruned_levels(candidates, mesh, materials, crowd, settings.level_ratio,
+                          triangles_for(whole.most, whole.uses), seed, judge, job);
+    if (by_pictures || judge.solid())
+        add_primitives(candidates, whole.bound, by_pictures, judge, job);
+    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
+    // good, and comparing pictures takes long.
+    const double solids = by_pictures ? 16 : 64;
+    const double dearer =
+        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
+    // The cheapest has four.
+    const bool too_dear = whole.most < static_cast<double>(4 * kBytesPerPrimitive);
+    if (!too_dear && !judge.refracts() && whole.bytes > 2 * dearer &&
+        bytes_within(candidates, kOff * whole.bound.radius, whole.uses) > dearer) {
+        if (!by_pictures)
+            judge.take_pictures(mesh, true, job);
+        add_composites(candidates, mesh, by_pictures, crowd, whole.most, seed, judge, job);
+    }
+}
+
+size_t triangles_for(double bytes, uint64_t uses) {
+    const double all = bytes * static_cast<double>(std::max<uint64_t>(1, uses));
+    return static_cast<size_t>(std::clamp(all / kBytesPerTriangle, 0.0, 1e9));
+}
+
+}  // namespace lodestone::build

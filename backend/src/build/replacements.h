@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Replacements: pruned meshes, primitives and composites of one mesh.
+#pragma once
+
+#include "approximate/crowd.h"
+#include "build/candidate.h"
+#include "build/judge.h"
+#include "build/settings.h"
+
+#include <functional>
+
+namespace lodestone::build {
+
+/// Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
+inline constexpr double kCollapsed = 0.2;
+inline constexpr double kNear = 1.0 / 8;  // over the radius
+/// A composite of eight is off by a fifth of the radius, more or less.
+inline constexpr double kOff = 0.2;
+
+/// Triangles of a mesh that costs so many bytes for each of its occurrences.
+size_t triangles_for(double bytes, uint64_t uses);
+
+/// What replacements must be better than.
+struct Whole {
+    Bound bound;
+    uint64_t uses = 1;
+    double bytes = 0;   // as one mesh
+    double most = 0;    // bytes of an occurrence that are no use any more
+    bool many = false;  // its parts are objects
+};
+
+/// Pruned levels, primitives and composites of what is no environment, where they promise more than
+/// the levels among the candidates.
+void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
+                      const std::function<approximate::Crowd()>& crowd_in_mesh, const Whole& whole,
+                      const std::vector<Material>& materials, const Settings& settings,
+                      uint64_t seed, Judge& judge, const Job& job);
+
+}  // namespace lodestone::build
