@@ -19,8 +19,8 @@ namespace {
 
 build::Report build_in(Model& model, const fs::path& folder) {
     Problems problems;
-    const build::Report report = build::build_hierarchy(model, segment::Store(folder),
-                                                        build::Settings{}, problems, {});
+    const build::Report report =
+        build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
 }
