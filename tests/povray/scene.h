@@ -18,12 +18,6 @@
 
 namespace lodestone::povray::scenes {
 
-inline std::filesystem::path scratch(const std::string& name) {
-    const auto folder = own_scratch() / name;
-    std::filesystem::remove_all(folder);
-    return folder;
-}
-
 inline bool have_povray() {
     try {
         find_program();

@@ -19,7 +19,7 @@ std::string ini_of(const View& view) {
     scenes::Builder builder;
     builder.place(builder.mesh(shapes::cube()));
     ExportOptions options;
-    options.folder = scenes::scratch("camera_ini");
+    options.folder = scratch("camera_ini");
     Problems problems;
     scenes::write(builder.finish(), view, options, problems);
     return read_file(options.folder / "scene.ini");

@@ -42,9 +42,9 @@ TEST(PovrayLooseParts, ThePictureIsTheSameBitByBit) {
     View view = scenes::above(64, 64);
     view.pixel_error = 0;
     ExportOptions export_options;
-    export_options.folder = scenes::scratch("loose_whole");
+    export_options.folder = scratch("loose_whole");
     const scenes::Image first = scenes::render(whole, view, export_options);
-    export_options.folder = scenes::scratch("loose_parts");
+    export_options.folder = scratch("loose_parts");
     const scenes::Image second = scenes::render(parts, view, export_options);
     size_t covered = 0;
     for (int y = 0; y < 64; ++y) {

@@ -52,7 +52,7 @@ scenes::Image drawn(double size, const std::string& name, bool shadow = true) {
     view.camera.position *= size;
     view.camera.near_clip *= size;
     ExportOptions options;
-    options.folder = scenes::scratch(name);
+    options.folder = scratch(name);
     return scenes::render(builder.finish(), view, options);
 }
 

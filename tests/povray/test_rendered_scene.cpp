@@ -12,7 +12,6 @@ using scenes::above;
 using scenes::Builder;
 using scenes::render;
 using scenes::rich_sphere;
-using scenes::scratch;
 
 TEST(PovrayRender, PovrayReadsEverythingWithoutAWarning) {
     if (!scenes::have_povray())

@@ -15,7 +15,6 @@
 
 using namespace lodestone;
 using namespace lodestone::povray;
-using scenes::scratch;
 
 namespace {
 

@@ -14,7 +14,6 @@ using namespace lodestone::povray;
 using scenes::above;
 using scenes::Builder;
 using scenes::rich_sphere;
-using scenes::scratch;
 
 namespace {
 

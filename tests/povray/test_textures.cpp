@@ -11,7 +11,6 @@ using scenes::above;
 using scenes::Builder;
 using scenes::checker;
 using scenes::render;
-using scenes::scratch;
 
 namespace {
 
