@@ -12,6 +12,14 @@
 namespace lodestone::build {
 namespace {
 
+/// Many parts of a few triangles each: how far their points are from those of fewer tells little.
+bool is_foliage(const approximate::Crowd& crowd) {
+    constexpr size_t kFewestLeaves = 256;
+    constexpr size_t kTriangles = 8;  // of a leaf, in the mean
+    return crowd.parts.size() >= kFewestLeaves &&
+           crowd.triangles <= kTriangles * crowd.parts.size();
+}
+
 /// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
 void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
                     Judge& judge, const Job& job) {
@@ -93,8 +101,11 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
         return bytes_within(candidates, kNear * whole.bound.radius, whole.uses) >
                kCollapsed * whole.bytes;
     };
-    if (worth_pictures && (whole.many || dear()))
+    if (worth_pictures) {
         crowd = crowd_in_mesh();
+        if (!whole.many && !is_foliage(crowd) && !dear())
+            crowd = {};
+    }
     const bool by_pictures = worth_pictures && (!crowd.empty() || !judge.solid());
     if (by_pictures)
         judge.take_pictures(mesh, crowd.empty(), job);
