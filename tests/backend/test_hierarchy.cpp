@@ -283,9 +283,10 @@ TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
     std::vector<ObjectIndex> groups;
     const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(1, 4));
     for (int i = 0; i < 9; ++i) {  // eight of one mesh in nine different groups
-        std::vector<Placement> placements;
-        for (int k = 0; k < 8; ++k)
-            placements.push_back({ball, models::moved(3 * k, i * k, 0), "ball"});
+        std::vector<Placement> placements(8, {ball, {}, "ball"});
+        for (size_t k = 0; k < placements.size(); ++k)
+            placements[k].transform =
+                models::moved(3.0 * static_cast<double>(k), i * static_cast<double>(k), 0);
         groups.push_back(models::add_group(model, "row " + std::to_string(i), placements));
     }
     std::vector<Placement> own;
@@ -296,6 +297,7 @@ TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
     }
     groups.push_back(models::add_group(model, "own", own));
     std::vector<Placement> all;
+    all.reserve(groups.size());
     for (const ObjectIndex group : groups)
         all.push_back({group, {}, model.objects[group].name});
     model.root = models::add_group(model, "all", all);

@@ -235,8 +235,9 @@ AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
             means.push_back(skin != nullptr ? skin->mean(number) : ray::Shown{});
             varies.push_back(skin != nullptr && skin->varies(mesh, number) ? 1 : 0);
         }
-        const ray::Shown shown =
-            varies[slot] != 0 ? skin->at(mesh, sample.triangle, sample.u, sample.v) : means[slot];
+        const ray::Shown shown = skin != nullptr && varies[slot] != 0
+                                     ? skin->at(mesh, sample.triangle, sample.u, sample.v)
+                                     : means[slot];
         const double light = sample.light;
         out[i] = glm::vec4(glm::dvec4(light * shown.color + shown.emission, 1));
     }
