@@ -14,7 +14,7 @@ namespace lodestone::measure {
 /// (0...1) is at most this, ...
 inline constexpr double kMostCoverageOff = 0.10;
 /// ... and that of light, over the mean light of the finest's, at most this.
-inline constexpr double kMostLightOff = 0.25;
+inline constexpr double kMostLightOff = 0.20;
 
 struct Agreement {
     double error = 0;       // the smallest pixel size at which pictures agree, metres
