@@ -79,13 +79,16 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
             .attributes;
 }
 
-void Judge::count_layers() {
+bool is_flat(const Attributes& attributes) {
     const auto variance = [&](int axis) {
-        const glm::dvec3& along = attributes_.axes[axis];
-        return glm::dot(along, attributes_.moments * along);
+        const glm::dvec3& along = attributes.axes[axis];
+        return glm::dot(along, attributes.moments * along);
     };
-    if (!attributes_.empty() && variance(2) < kFlat * kFlat * variance(1))
-        layer_ = true;
+    return !attributes.empty() && variance(2) < kFlat * kFlat * variance(1);
+}
+
+void Judge::count_layers() {
+    layer_ = is_flat(attributes_);
 }
 
 bool Judge::solid() const {

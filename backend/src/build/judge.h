@@ -18,6 +18,9 @@ namespace lodestone::build {
 /// never 0, which the finest alone has.
 double counted_error(double error, bool environment, double size);
 
+/// Whether the surface is 20 times thinner than wide.
+bool is_flat(const Attributes& attributes);
+
 /// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings, but one to
 /// the texels.
 class Judge {

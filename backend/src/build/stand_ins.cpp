@@ -113,6 +113,24 @@ approximate::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occur
     return approximate::crowd_of(mesh, occurrence);
 }
 
+/// Whether one flat thing lies under most of a group, as a road lies under its markings; a town of
+/// many houses is flat too, but in no layers.
+bool lies_on_a_layer(const Model& model, const Object& object, std::set<const Object*>& asked) {
+    constexpr double kMost = 0.5;  // of the radius
+    if (!asked.insert(&object).second)
+        return false;
+    if (!object.group())
+        return object.attributes && is_flat(*object.attributes);
+    const std::vector<Placement>& placements = object.representations[0].assembly().placements;
+    return std::any_of(placements.begin(), placements.end(), [&](const Placement& placement) {
+        const Object& child = model.objects[placement.object];
+        return !child.representations.empty() &&
+               child.bound().radius * stretch(placement.transform) >
+                   kMost * object.bound().radius &&
+               lies_on_a_layer(model, child, asked);
+    });
+}
+
 uint64_t seed_of(const Object& object, const Settings& settings) {
     return Hasher().value(object.source_hash).value(settings.seed).result();
 }
@@ -182,7 +200,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
     judge.measure_finest(reference.mesh, job);
-    judge.count_layers();
+    if (std::set<const Object*> asked; lies_on_a_layer(model, object, asked))
+        judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
