@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the error of what is not solid: pictures that agree, and from which size on.
 #include "backend/foliage.h"
+#include "backend/with_rays.h"
 #include "base/parallel.h"
 #include "measure/agreement.h"
 
@@ -12,14 +13,7 @@ using measure::AgreementReference;
 
 namespace {
 
-class Agreements : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Agreements : public WithRays {};
 
 ray::SkinPtr skin(const std::vector<Material>& materials) {
     image::TexelCache texels;

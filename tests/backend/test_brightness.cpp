@@ -4,6 +4,7 @@
 #include "approximate/stand_in_material.h"
 #include "backend/foliage.h"
 #include "backend/models.h"
+#include "backend/with_rays.h"
 #include "base/files.h"
 #include "build/hierarchy.h"
 #include "measure/agreement.h"
@@ -16,14 +17,7 @@ using namespace lodestone;
 
 namespace {
 
-class Brightness : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Brightness : public WithRays {};
 
 ray::SkinPtr skin_of(const Model& model, const Representation& level, image::TexelCache& texels) {
     std::vector<Material> materials;

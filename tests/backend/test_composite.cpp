@@ -3,6 +3,7 @@
 #include "approximate/composite.h"
 #include "approximate/stand_in_material.h"
 #include "backend/foliage.h"
+#include "backend/with_rays.h"
 #include "measure/visible.h"
 #include "ray/scene.h"
 
@@ -22,14 +23,7 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, ui
     return approximate::composites(mesh, skin, wanted, {seed});
 }
 
-class Composites : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Composites : public WithRays {};
 
 Attributes attributes_of(const Mesh& mesh, uint64_t seed) {
     measure::VisibleOptions options;

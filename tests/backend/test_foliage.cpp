@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards hierarchies of things one can see through, and of textured things in one atlas.
+#include "backend/built.h"
 #include "backend/foliage.h"
 #include "backend/models.h"
+#include "backend/with_rays.h"
 #include "base/files.h"
 #include "build/flatten.h"
 #include "build/hierarchy.h"
@@ -17,20 +19,7 @@ using namespace lodestone;
 
 namespace {
 
-class Foliage : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
-
-void build_in(Model& model, const std::string& name) {
-    Problems problems;
-    build::build_hierarchy(model, segment::Store(scratch(name)), build::Settings{}, problems, {});
-    EXPECT_TRUE(problems.empty()) << problems[0].message;
-}
+class Foliage : public WithRays {};
 
 /// One leaf picture, half of it there: a disk of the right size.
 PicturePtr disk() {

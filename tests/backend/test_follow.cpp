@@ -2,6 +2,7 @@
 // Guards following: one collapse for all frames, its levels on the surface of every frame.
 #include "approximate/bind.h"
 #include "backend/grids.h"
+#include "backend/with_rays.h"
 #include "base/clock.h"
 #include "measure/deviation.h"
 #include "ray/scene.h"
@@ -84,14 +85,7 @@ double largest_move(const Mesh& a, const Mesh& b) {
     return most;
 }
 
-class Follow : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Follow : public WithRays {};
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 // Guards levels of what deforms: those of one collapse in every frame, whatever was built before.
 #include "backend/grids.h"
 #include "backend/models.h"
+#include "backend/with_rays.h"
 #include "base/files.h"
 #include "base/parallel.h"
 #include "build/hierarchy.h"
@@ -84,14 +85,7 @@ size_t bound_files(const fs::path& folder) {
     return count;
 }
 
-class Followed : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Followed : public WithRays {};
 
 }  // namespace
 

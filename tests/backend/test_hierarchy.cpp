@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the building of hierarchies: lists in order, only stale objects built, cancel without loss.
 #include "backend/models.h"
+#include "backend/with_rays.h"
 #include "base/files.h"
 #include "base/parallel.h"
 #include "build/flatten.h"
@@ -73,14 +74,7 @@ void expect_valid(const Model& model) {
     }
 }
 
-class Hierarchy : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
+class Hierarchy : public WithRays {};
 
 }  // namespace
 

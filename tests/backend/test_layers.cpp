@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what lies on, behind or beside something else: lines on roads, lamps in globes, tiles.
+#include "backend/built.h"
 #include "backend/models.h"
+#include "backend/with_rays.h"
 #include "build/flatten.h"
 #include "build/hierarchy.h"
 #include "measure/deviation.h"
@@ -13,20 +15,7 @@ using namespace lodestone;
 
 namespace {
 
-class Layers : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-};
-
-void build_in(Model& model, const std::string& name) {
-    Problems problems;
-    build::build_hierarchy(model, segment::Store(scratch(name)), build::Settings{}, problems, {});
-    EXPECT_TRUE(problems.empty()) << problems[0].message;
-}
+class Layers : public WithRays {};
 
 /// A road of 8 x 6 m sunk by 8 cm between two kerbs, in steps along its length.
 Mesh road() {

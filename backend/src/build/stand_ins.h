@@ -29,7 +29,7 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
                            const Settings& settings, const MeshSource& source,
                            image::TexelCache& texels, const Job& job);
 
-/// Of a group whose children have theirs: flattened at a quarter of its finest stand-in's error,
+/// Of a group whose children have theirs: flattened as finely as a stand-in can pay,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
 /// below can be drawn.
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,

@@ -48,7 +48,7 @@ public:
     class Traced;
     /// Keeps a reference to the mesh. Same bits on any number of threads.
     Traced trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
-    /// `skin` is the one it was traced in, or differs from that in colors that are no textures.
+    /// `skin` is the one it was traced in, or differs from that in colors and scales of textures alone.
     Agreement of(const Traced& stand_in, const ray::SkinPtr& skin) const;
     /// The same without the error.
     Agreement brightness_of(const Traced& stand_in, const ray::SkinPtr& skin) const;
