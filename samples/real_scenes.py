@@ -14,6 +14,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -30,7 +31,7 @@ SCENES = {
     "stk-cocoa_temple": "stk-cocoa_temple/cocoa_temple.blend",
     "tps-forklift": "tps-forklift/flying_forklift.blend",
 }
-PIXEL_ERRORS = {"full": 0, "one": 1}
+PIXEL_ERRORS = (0.0, 1.0)
 HEADER = (
     "| scene, Pixel Error | occurrences (mesh / box / ellipsoid) | triangles | scene MB | export "
     "| parse | trace | memory MB | mean | SSIM |\n|---|---|---|---|---|---|---|---|---|---|"
@@ -57,14 +58,14 @@ def prepare(data: Path, out: Path) -> list[Path]:
     return [Path(job["out"]) for job in jobs]
 
 
-def render(blends: list[Path], out: Path, size: str) -> dict[str, dict[str, dict]]:
-    """{scene: {"full": what batch.py reports on that picture, "one": ...}}"""
+def render(
+    blends: list[Path], out: Path, size: str, pixel_errors: Iterable[float]
+) -> dict[str, dict[float, dict]]:
+    """{scene: {Pixel Error: what batch.py reports on that picture}}"""
     shutil.rmtree(out / "store", ignore_errors=True)
     views, report = out / "views.json", out / "report.json"
     first = out / blends[0].stem  # of several files, each has its own
-    wanted = [
-        {"out": str(first / f"{name}.png"), "pixel_error": t} for name, t in PIXEL_ERRORS.items()
-    ]
+    wanted = [{"out": str(first / f"{t:g}px.png"), "pixel_error": t} for t in pixel_errors]
     views.write_text(json.dumps(wanted), "utf-8")
     command = ["/usr/bin/python3", str(ADDON / "batch.py"), "render", *map(str, blends)]
     command += ["--views", str(views), "--out", str(out), "--store", str(out / "store")]
@@ -75,7 +76,7 @@ def render(blends: list[Path], out: Path, size: str) -> dict[str, dict[str, dict
     for file in whole.get("files", [whole]):
         if len(file.get("pictures", ())) < len(wanted):
             sys.exit(f"real_scenes.py: {file['input']}: {file.get('message', 'no picture')}")
-        pictures = {Path(picture["picture"]).stem: picture for picture in file["pictures"]}
+        pictures = {picture["pixel_error"]: picture for picture in file["pictures"]}
         found[Path(file["input"]).stem] = pictures
     return found
 
@@ -94,16 +95,19 @@ def row(name: str, made: dict, empty: int, difference) -> str:
     )
 
 
-def table(found: dict[str, dict[str, dict]], size: str) -> str:
+def table(found: dict[str, dict[float, dict]], size: str) -> str:
+    """A row for each picture: the first of a scene is what the others are compared with."""
     sys.path.insert(0, str(ADDON))
     import lodestone_native as native
 
     empty = native.povray_empty_bytes(*map(int, size.split("x")))
     lines = [HEADER]
     for name, pictures in found.items():
-        full, one = pictures["full"], pictures["one"]
-        difference = native.image_compare(full["picture"], one["picture"])
-        lines += [row(name, full, empty, None), row(name, one, empty, difference)]
+        full, *others = pictures.values()
+        lines.append(row(name, full, empty, None))
+        for made in others:
+            difference = native.image_compare(full["picture"], made["picture"])
+            lines.append(row(name, made, empty, difference))
     return "\n".join(lines) + "\n"
 
 
@@ -120,7 +124,7 @@ def main() -> None:
         print(blend)
     if options.prepare_only:
         return
-    text = table(render(blends, out, options.size), options.size)
+    text = table(render(blends, out, options.size, PIXEL_ERRORS), options.size)
     (out / "report.md").write_text("# Real scenes\n\n" + text, "utf-8")
     print("\n" + text + f"\nreport: {out / 'report.md'}")
 
