@@ -262,6 +262,37 @@ TEST(Simplify, SmallPartsGoWholeBeforeLargeOnesLoseTheirShape) {
     EXPECT_LT(reach, 2) << "boxes left inside, or the sphere spoiled";
 }
 
+TEST(Simplify, ThousandsOfTilesGoBeforeThePlatesTheyLieOnLoseTheirShape) {
+    Mesh mesh;
+    const auto add = [&](const glm::dvec3& low, const glm::dvec3& size) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (const glm::vec3& corner :
+             {glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(1, 1, 0), glm::vec3(0, 1, 0),
+              glm::vec3(0, 0, 1), glm::vec3(1, 0, 1), glm::vec3(1, 1, 1), glm::vec3(0, 1, 1)})
+            mesh.positions.emplace_back(low + glm::dvec3(corner) * size);
+        for (const glm::uvec3& t :
+             {glm::uvec3(3, 2, 1), glm::uvec3(3, 1, 0), glm::uvec3(4, 5, 6), glm::uvec3(4, 6, 7),
+              glm::uvec3(0, 1, 5), glm::uvec3(0, 5, 4), glm::uvec3(1, 2, 6), glm::uvec3(1, 6, 5),
+              glm::uvec3(2, 3, 7), glm::uvec3(2, 7, 6), glm::uvec3(3, 0, 4), glm::uvec3(3, 4, 7)})
+            mesh.triangles.push_back({first + t.x, first + t.y, first + t.z});
+    };
+    // More than one chunk of vertices, of which one has few candidates left.
+    for (const auto& [x, length] :
+         {std::pair(-300, 196), std::pair(-96, 192), std::pair(104, 196)}) {
+        for (const int y : {-8, 6}) {
+            add({x, y, -0.4}, {length, 2, 0.405});
+            for (int i = 0; i < 2 * length; ++i)
+                add({x + i / 2 + 0.006, y + i % 2 + 0.006, -0.02}, {0.988, 0.988, 0.04});
+        }
+    }
+    const std::vector<size_t> targets{11240, 4496, 1796, 112};
+    for (const Mesh& level : simplify_chain(mesh, targets)) {
+        const Box3 box = bound_of(level.positions).box;
+        EXPECT_NEAR(box.low.z, -0.4, 0.005) << level.triangles.size() << " triangles";
+        EXPECT_NEAR(box.high.z, 0.02, 0.025) << level.triangles.size() << " triangles";
+    }
+}
+
 TEST(Simplify, FarFromTheOriginTheShapeIsTheSame) {
     const glm::dvec3 far(1e5, -1e5, 1e5);
     Mesh mesh = moved(shapes::sphere(100, 4), far);

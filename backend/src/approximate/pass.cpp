@@ -38,9 +38,13 @@ uint32_t step_of(const Candidate& candidate) {
 }
 
 /// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
-std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks) {
+/// Parts count too: a round begins with the removal of those that are cheaper than all it has.
+std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
+                                const std::vector<Part>& removable) {
     std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
-    size_t all = 0;
+    size_t all = removable.size();
+    for (const Part& part : removable)
+        ++counts[key_of_cost(static_cast<float>(part.cost)) >> kKeyShift];
     for (const Chunk& chunk : chunks) {
         for (const Candidate& candidate : chunk.candidates)
             ++counts[step_of(candidate)];
@@ -85,7 +89,7 @@ public:
         std::vector<std::vector<uint32_t>> left(chunks.size());
         std::vector<size_t> gone(chunks.size(), 0);
         uint32_t begin = 0;
-        for (const uint32_t end : rounds_of(chunks)) {
+        for (const uint32_t end : rounds_of(chunks, removable_)) {
             if (gone_ >= want_)
                 break;
             remove_parts_below(begin << kKeyShift);
