@@ -91,6 +91,55 @@ TEST_F(Layers, StartLineOnATrackDoesNotVanishAtOnePixel) {
     EXPECT_LE(quality::choose(model, from_above(0.2)).largest_error_px, 1);
 }
 
+TEST_F(Layers, FlatThingIsAsWrongAsItIsOffWhereNothingLiesOnIt) {
+    const auto largest_error = [](const Mesh* on_it, const glm::dvec3& at) {
+        Model model;
+        std::vector<Placement> placements{{models::add_leaf(model, "road", road()), {}, "road"}};
+        if (on_it != nullptr)
+            placements.push_back({models::add_leaf(model, "other", *on_it),
+                                  models::moved(at.x, at.y, at.z), "other"});
+        model.root = models::add_group(model, "scene", std::move(placements));
+        build_in(model, text("scene ", at.x, " ", at.z));
+        return model.objects[0].representations.back().summary.error;
+    };
+    const Mesh white = line();
+    const Mesh hall = shapes::box({0, 0, 0}, {2, 5, 1});
+    const double alone = largest_error(nullptr, {});
+    EXPECT_NEAR(alone, 0.08, 0.001);
+    EXPECT_NEAR(largest_error(&white, {0.1, 0, 0}) / alone, 16, 1e-6);
+    EXPECT_DOUBLE_EQ(largest_error(&white, {0.2, 0, 3}), alone) << "far above";
+    EXPECT_DOUBLE_EQ(largest_error(&white, {9, 0, 0}), alone) << "beside";
+    EXPECT_DOUBLE_EQ(largest_error(&hall, {-1, -2.5, -0.08}), alone)
+        << "what stands on it sticks out";
+}
+
+TEST_F(Layers, WhatComesToLieOnAFlatThingBuildsItAgain) {
+    Model model;
+    const ObjectIndex track = models::add_leaf(model, "track", road());
+    const ObjectIndex start = models::add_leaf(model, "start", line());
+    const auto scene_of = [&](double height) {
+        const ObjectIndex root = models::add_group(
+            model, "race", {{track, {}, "track"}, {start, models::moved(0, 0, height), "start"}});
+        return root;
+    };
+    const segment::Store store(scratch("rebuilt"));
+    const auto built = [&](ObjectIndex root) {
+        model.root = root;
+        summarize_assemblies(model, bottom_up(model));
+        Problems problems;
+        const uint64_t stale = build::estimate(model, store, {}).built;
+        const build::Report report = build::build_hierarchy(model, store, {}, problems, {});
+        EXPECT_EQ(stale, report.built);
+        return report.built;
+    };
+    const ObjectIndex above = scene_of(3);
+    const ObjectIndex upon = scene_of(0);
+    EXPECT_EQ(built(above), 3u);
+    EXPECT_EQ(built(above), 0u);
+    EXPECT_EQ(built(upon), 3u) << "both leaves, and their group";
+    EXPECT_EQ(built(upon), 0u);
+}
+
 TEST_F(Layers, BulbInAGlassGlobeIsSeenFromOutside) {
     Mesh lamp = shapes::sphere(1, 3);
     const size_t of_globe = lamp.triangles.size();

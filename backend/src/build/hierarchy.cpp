@@ -7,6 +7,7 @@
 #include "build/effort.h"
 #include "build/flatten.h"
 #include "build/followed.h"
+#include "build/layers.h"
 #include "build/stand_ins.h"
 
 #include <algorithm>
@@ -73,8 +74,19 @@ private:
     std::map<Hash, uint32_t> by_hash_;
 };
 
-Hash build_hash_of(const Object& object, Hash settings) {
-    return Hasher().value(object.source_hash).value(settings).result();
+/// `layers`: what layers_of tells of it.
+Hash build_hash_of(const Object& object, Hash settings, Hash layers) {
+    const Hash hash = Hasher().value(object.source_hash).value(settings).result();
+    return layers == 0 ? hash : Hasher().value(hash).value(layers).result();
+}
+
+/// Gives the mesh of a representation of a model, from the store where it is not resident.
+MeshSource mesh_source_of(const segment::Store& store) {
+    return [&store](const Representation& representation) {
+        if (const auto* held = std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))
+            return *held;
+        return store.load_mesh(representation.summary.hash);
+    };
 }
 
 /// Takes over a stored object's stand-ins; its finest representation stays ours.
@@ -181,7 +193,8 @@ public:
         const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
-        surroundings_ = {uses_of(model_), with_environment(model_), with_hidden(model_)};
+        surroundings_ = {uses_of(model_), with_environment(model_), with_hidden(model_),
+                         layers_of(model_, order, mesh_source(), job_)};
         const std::vector<bool> inside = within(settings_.scope, model_, order);
         const std::vector<uint8_t> deforming = with_deforming(model_);
         const Poses poses(settings_.poses);
@@ -195,7 +208,7 @@ public:
             ++report.objects;
             if (object.group() && std::isinf(object.demand))
                 continue;  // always opened
-            Hash wanted = build_hash_of(object, settings);
+            Hash wanted = build_hash_of(object, settings, surroundings_.layers[index]);
             std::optional<Bind> bind;
             if (deforming[index] != 0) {
                 if (!object.deforms || object.group() || poses.empty())
@@ -291,14 +304,7 @@ private:
         }
     }
 
-    MeshSource mesh_source() const {
-        return [this](const Representation& representation) {
-            if (const auto* held =
-                    std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))
-                return *held;
-            return store_.load_mesh(representation.summary.hash);
-        };
-    }
+    MeshSource mesh_source() const { return mesh_source_of(store_); }
 
     /// The problem of one object; throws on what concerns all of them.
     static Problem not_simplified(const Object& object, const Error& error) {
@@ -392,8 +398,8 @@ private:
             try {
                 made[i] = group ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
                                                      source, texels_, job_)
-                                : stand_ins_of_leaf(model_, object, surroundings_.uses[objects[i]],
-                                                    settings_, source, texels_, job_);
+                                : stand_ins_of_leaf(model_, objects[i], surroundings_, settings_,
+                                                    source, texels_, job_);
             } catch (const Error& error) {
                 found[i].push_back(not_simplified(object, error));
             }
@@ -406,7 +412,7 @@ private:
                 continue;
             object.attributes = made[i]->attributes;
             add(object, std::move(made[i]->candidates), model_, palette_,
-                build_hash_of(object, settings));
+                build_hash_of(object, settings, surroundings_.layers[objects[i]]));
         }
     }
 
@@ -433,6 +439,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const Hash hash = hash_of(settings);
     const std::vector<bool> inside = within(settings.scope, model, order);
     const std::vector<uint8_t> deforming = with_deforming(model);
+    const std::vector<Hash> layers = layers_of(model, order, mesh_source_of(store), {});
     const Poses poses(settings.poses);
     std::set<Hash> binds;  // counted already
     double seconds = 0;
@@ -448,7 +455,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
             if (!bind || !binds.insert(bind->hash).second ||
                 (!settings.rebuild && store.load_bound(bind->hash)))
                 continue;
-        } else if (shelf.find(build_hash_of(object, hash)) != nullptr) {
+        } else if (shelf.find(build_hash_of(object, hash, layers[index])) != nullptr) {
             continue;
         }
         ++report.built;

@@ -79,12 +79,16 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
             .attributes;
 }
 
+bool is_flat(double across, double through) {
+    return through < kFlat * kFlat * across;
+}
+
 bool is_flat(const Attributes& attributes) {
     const auto variance = [&](int axis) {
         const glm::dvec3& along = attributes.axes[axis];
         return glm::dot(along, attributes.moments * along);
     };
-    return !attributes.empty() && variance(2) < kFlat * kFlat * variance(1);
+    return !attributes.empty() && is_flat(variance(1), variance(2));
 }
 
 void Judge::count_layers() {

@@ -18,7 +18,8 @@ namespace lodestone::build {
 /// never 0, which the finest alone has.
 double counted_error(double error, bool environment, double size);
 
-/// Whether the surface is 20 times thinner than wide.
+/// Whether a surface of such variances, across and through it, is 20 times thinner than wide.
+bool is_flat(double across, double through);
 bool is_flat(const Attributes& attributes);
 
 /// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings, but one to
@@ -33,8 +34,8 @@ public:
     /// Measures the finest by rays, which attributes(), solid() and shows_as_much() need.
     void measure_finest(const Mesh& finest, const Job& job);
 
-    /// Errors of a flat thing (road, carpet, wall) count as those of environment from here on: others
-    /// lie on it in thin layers, or it lies on others. After measure_finest().
+    /// Errors of a flat thing (road, carpet, wall) that lies in layers count as those of environment
+    /// from here on. After measure_finest().
     void count_layers();
 
     const Attributes& attributes() const { return attributes_; }

@@ -115,19 +115,22 @@ approximate::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occur
 
 /// Whether one flat thing lies under most of a group, as a road lies under its markings; a town of
 /// many houses is flat too, but in no layers.
-bool lies_on_a_layer(const Model& model, const Object& object, std::set<const Object*>& asked) {
+bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Hash>& layers,
+                     std::set<ObjectIndex>& asked) {
     constexpr double kMost = 0.5;  // of the radius
-    if (!asked.insert(&object).second)
+    if (!asked.insert(index).second)
         return false;
+    const Object& object = model.objects[index];
     if (!object.group())
-        return object.attributes && is_flat(*object.attributes);
+        return (layers[index] != 0 || object.role == Role::Environment) && object.attributes &&
+               is_flat(*object.attributes);
     const std::vector<Placement>& placements = object.representations[0].assembly().placements;
     return std::any_of(placements.begin(), placements.end(), [&](const Placement& placement) {
         const Object& child = model.objects[placement.object];
         return !child.representations.empty() &&
                child.bound().radius * stretch(placement.transform) >
                    kMost * object.bound().radius &&
-               lies_on_a_layer(model, child, asked);
+               lies_on_a_layer(model, placement.object, layers, asked);
     });
 }
 
@@ -138,7 +141,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 16;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 17;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -149,10 +152,12 @@ Hash hash_of(const Settings& settings) {
         .result();
 }
 
-StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t uses,
+StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
                            const Settings& settings, const MeshSource& source,
                            image::TexelCache& texels, const Job& job) {
     StandIns out;
+    const Object& object = model.objects[leaf];
+    const uint64_t uses = surroundings.uses[leaf];
     const Representation& finest = object.representations.at(0);
     const std::shared_ptr<const Mesh> mesh = source(finest);
     if (mesh->empty())
@@ -161,7 +166,8 @@ StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t us
     Judge judge(*mesh, materials, texels, settings, object.role == Role::Environment,
                 seed_of(object, settings), 0, job);
     judge.measure_finest(*mesh, job);
-    judge.count_layers();
+    if (surroundings.layers[leaf] != 0)
+        judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
@@ -200,7 +206,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
     judge.measure_finest(reference.mesh, job);
-    if (std::set<const Object*> asked; lies_on_a_layer(model, object, asked))
+    if (std::set<ObjectIndex> asked; lies_on_a_layer(model, group, surroundings.layers, asked))
         judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())

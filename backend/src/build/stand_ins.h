@@ -25,7 +25,7 @@ using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representatio
 /// Levels and primitives of an object whose finest representation is a mesh. Something see-through
 /// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
 /// all objects of a build.
-StandIns stand_ins_of_leaf(const Model& model, const Object& object, uint64_t uses,
+StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
                            const Settings& settings, const MeshSource& source,
                            image::TexelCache& texels, const Job& job);
 
