@@ -225,6 +225,13 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     constexpr double kQuarter = 1.57079632679489661923;
     const double end_z = std::asinh(1 / bend_z);
     const double end_angle = std::asinh(kQuarter / bend_angle);
+    std::array<double, Gauss::kCount> heights;
+    std::array<double, Gauss::kCount> height_weights;
+    for (int j = 0; j < Gauss::kCount; ++j) {
+        const double t = end_z * kGauss.at[j];
+        heights[j] = std::min(1.0, bend_z * std::sinh(t));
+        height_weights[j] = kGauss.weight[j] * end_z * bend_z * std::cosh(t);
+    }
     double area = 0;
     glm::dvec3 seconds(0.0);
     for (int i = 0; i < Gauss::kCount; ++i) {
@@ -235,13 +242,11 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
         const double y = std::sin(angle);
         const double across = (b / a * x) * (b / a * x) + y * y;  // times b^2
         for (int j = 0; j < Gauss::kCount; ++j) {
-            const double t = end_z * kGauss.at[j];
-            const double z = std::min(1.0, bend_z * std::sinh(t));
+            const double z = heights[j];
             const double square = 1 - z * z;
-            const double weight = angle_weight * kGauss.weight[j] * end_z * bend_z * std::cosh(t);
             // hx hy hz |u / h| = a b c sqrt(z^2 / c^2 + ...) = a b sqrt(z^2 + (c / b)^2 ...)
-            const double patch =
-                weight * a * b * std::sqrt(z * z + bend_z * bend_z * square * across);
+            const double patch = angle_weight * height_weights[j] * a * b *
+                                 std::sqrt(z * z + bend_z * bend_z * square * across);
             area += patch;
             seconds +=
                 patch * glm::dvec3(a * a * square * x * x, b * b * square * y * y, c * c * z * z);

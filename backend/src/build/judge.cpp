@@ -75,8 +75,7 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     options.rays = rays_;
     options.seed = seed_;
     attributes_ =
-        measure::measure_visible(finest, ray::Scene(finest, skin_), skin_, options, {}, job)
-            .attributes;
+        measure::measure_visible(finest, finest_scene(), skin_, options, {}, job).attributes;
 }
 
 bool is_flat(double across, double through) {
@@ -120,19 +119,24 @@ bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
 void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless) {
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    const double own = (useless - child_error_) / counted_error(1, environment_ || layer_, 0);
-    set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job, own));
+    set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job, distance_for(useless)));
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {
     const Mesh mesh = tessellated(candidate);
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    set_error(candidate, reference_.of(mesh, {looks, &looks_, nullptr}, job));
+    set_error(candidate,
+              reference_.of(mesh, {looks, &looks_, nullptr}, job, distance_for(least_primitive_)));
+    least_primitive_ = std::min(least_primitive_, candidate.error);
 }
 
 void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
     using Pictures = measure::AgreementReference;
-    pictures_.emplace(finest, skin_, seed_, coarse ? Pictures::kCoarseSide : Pictures::kSide, job);
+    const int side = coarse ? Pictures::kCoarseSide : Pictures::kSide;
+    if (finest.triangles.size() == finest_scene().triangles())
+        pictures_.emplace(finest, finest_scene(), skin_, seed_, side, job);
+    else
+        pictures_.emplace(finest, skin_, seed_, side, job);
 }
 
 ray::SkinPtr Judge::skin_of(const Candidate& candidate) const {
@@ -218,6 +222,10 @@ std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint
         out[tag] = visible.attributes.visible_area * static_cast<double>(visible.hits_by_tag[tag]) /
                    static_cast<double>(all);
     return out;
+}
+
+double Judge::distance_for(double error) const {
+    return (error - child_error_) / counted_error(1, environment_ || layer_, 0);
 }
 
 void Judge::set_error(Candidate& candidate, const measure::Deviation& deviation) const {

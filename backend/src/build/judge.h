@@ -45,6 +45,8 @@ public:
     bool refracts() const { return skin_->transmits(); }
     /// Of the finest's materials, which levels share.
     const ray::SkinPtr& skin() const { return skin_; }
+    /// Of the finest, in its skin.
+    const ray::Scene& finest_scene() const { return reference_.scene(); }
 
     void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
 
@@ -54,10 +56,11 @@ public:
     /// larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
                       double useless = std::numeric_limits<double>::infinity());
+    /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 
     /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
-    /// that will be far from the finest.
+    /// that will be far from the finest. `finest`: all of it, or what of it can be seen.
     void take_pictures(const Mesh& finest, bool coarse, const Job& job);
     /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures. It
     /// is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
@@ -72,6 +75,8 @@ public:
 
 private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
+    /// What a distance may be where an error is at most that.
+    double distance_for(double error) const;
     ray::SkinPtr skin_of(const Candidate& candidate) const;
 
     image::TexelCache& texels_;
@@ -80,6 +85,7 @@ private:
     double child_error_;
     bool environment_;
     bool layer_ = false;
+    double least_primitive_ = std::numeric_limits<double>::infinity();  // error of those measured
     uint64_t seed_;
     uint64_t rays_;
     ray::SkinPtr skin_;

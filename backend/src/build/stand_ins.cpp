@@ -84,13 +84,12 @@ private:
 
 /// What no ray from outside reaches is left out (of the occurrences too); everything stays when
 /// nothing would, and where there is glass, which ends rays but hides nothing.
-Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const ray::SkinPtr& skin,
+Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const Judge& judge,
                     uint64_t seed, const Job& job) {
-    if (skin->transmits())
+    if (judge.refracts())
         return mesh;
-    const ray::Scene scene(mesh, skin);
     const std::vector<uint8_t> seen =
-        measure::seen_from_outside(mesh, scene, kRaysPerTriangle, seed, job);
+        measure::seen_from_outside(mesh, judge.finest_scene(), kRaysPerTriangle, seed, job);
     Mesh shell = subset(mesh, seen);
     if (shell.empty())
         return mesh;
@@ -213,7 +212,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         return out;
 
     std::vector<uint32_t> occurrence = reference.occurrence;
-    Mesh shell = without_hidden(reference.mesh, occurrence, judge.skin(), seed, job);
+    Mesh shell = without_hidden(reference.mesh, occurrence, judge, seed, job);
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.
     const Children children(model, group, reference.child_error, uses, job);

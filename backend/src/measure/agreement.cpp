@@ -160,7 +160,12 @@ glm::dvec4 total(const std::vector<glm::vec4>& samples) {
 
 AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                                        int side, const Job& job)
-    : seed_(seed), side_(side) {
+    : AgreementReference(finest, ray::Scene(finest, skin), skin, seed, side, job) {}
+
+AgreementReference::AgreementReference(const Mesh& finest, const ray::Scene& scene,
+                                       const ray::SkinPtr& skin, uint64_t seed, int side,
+                                       const Job& job)
+    : side_(side) {
     Box3 box;
     for (const Triangle& t : finest.triangles) {
         for (int corner = 0; corner < 3; ++corner) {
@@ -173,19 +178,31 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& s
         center_ = box.center();
         radius_ = kMargin * 0.5 * glm::length(box.size());
     }
-    finest_ = shown(trace(finest, skin, job), skin.get());
+    const auto row = static_cast<size_t>(side_);
+    const Sobol numbers(scramble(seed) + 7);
+    places_.resize(kViews * row * row);
+    for (size_t number = 0; number < places_.size(); ++number) {
+        const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(number));
+        const auto column = static_cast<double>(number % row);
+        const auto line = static_cast<double>(number / row % row);
+        places_[number] = {2 * (column + u[0]) / side_ - 1, 2 * (line + u[1]) / side_ - 1};
+    }
+    finest_ = shown(trace(finest, scene, job), skin.get());
 }
 
 AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::SkinPtr& skin,
                                                      const Job& job) const {
+    return trace(mesh, ray::Scene(mesh, skin), job);
+}
+
+AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::Scene& scene,
+                                                     const Job& job) const {
     Traced out(mesh);
     const auto row = static_cast<size_t>(side_);
     out.samples_.resize(kViews * row * row);
-    const ray::Scene scene(mesh, skin);
     if (mesh.empty() || !(radius_ > 0))
         return out;
     const std::vector<glm::dvec3> views = directions();
-    const Sobol numbers(scramble(seed_) + 7);
     const double lift = ray_lift(radius_);
     parallel_for(kViews * row, [&](size_t line) {
         job.check();
@@ -193,9 +210,8 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
         const View view(views[line / row], line / row);
         for (size_t column = 0; column < row; ++column) {
             const size_t number = line * row + column;
-            const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(number));
-            const double x = 2 * (static_cast<double>(column) + u[0]) / side_ - 1;
-            const double y = 2 * (static_cast<double>(line % row) + u[1]) / side_ - 1;
+            const double x = places_[number].x;
+            const double y = places_[number].y;
             if (x * x + y * y > 1)
                 continue;
             const glm::dvec3 viewer = view.frame[2];

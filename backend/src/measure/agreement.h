@@ -38,6 +38,9 @@ public:
     /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                        int side = kSide, const Job& job = {});
+    /// The same with a scene made from this mesh, and this skin, before.
+    AgreementReference(const Mesh& finest, const ray::Scene& scene, const ray::SkinPtr& skin,
+                       uint64_t seed, int side, const Job& job);
 
     /// Same bits on any number of threads. Two meshes that show nothing agree at every size; where
     /// they never agree the error is the side of the whole picture.
@@ -56,6 +59,8 @@ public:
 private:
     static constexpr size_t kViews = 13;
 
+    Traced trace(const Mesh& stand_in, const ray::Scene& scene, const Job& job) const;
+
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
     Pictures shown(const Traced& traced, const ray::Skin* skin) const;
@@ -63,8 +68,9 @@ private:
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
-    uint64_t seed_;
     int side_;
+    std::vector<glm::dvec2>
+        places_;  // of each sample in its picture, in half sides from the middle
     Pictures finest_;
 };
 

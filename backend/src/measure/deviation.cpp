@@ -35,17 +35,27 @@ double weight_of(const std::vector<Sample>& samples, const std::vector<size_t>& 
 /// The smallest distance that `share` of the weight of the samples in `order` does not exceed.
 double quantile(const std::vector<Sample>& samples, const std::vector<double>& distances,
                 std::vector<size_t> order, double share) {
+    // Mostly the farthest few decide: the rest is not sorted.
+    constexpr size_t kFirst = 32;
     const double all = weight_of(samples, order);
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const auto farther = [&](size_t a, size_t b) {
         return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
-    });
+    };
+    const auto at = [&](size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
     double above = 0;
     double out = 0;
-    for (const size_t i : order) {
-        out = distances[i];
-        above += samples[i].weight;
-        if (above > (1 - share) * all)
-            break;
+    size_t end = 0;
+    for (size_t begin = 0; begin < order.size(); begin = end) {
+        end = std::min(order.size(), std::max(kFirst, 4 * begin));
+        if (end < order.size())
+            std::nth_element(at(begin), at(end), order.end(), farther);
+        std::sort(at(begin), at(end), farther);
+        for (size_t i = begin; i < end; ++i) {
+            out = distances[order[i]];
+            above += samples[order[i]].weight;
+            if (above > (1 - share) * all)
+                return out;
+        }
     }
     return out;
 }

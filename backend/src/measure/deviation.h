@@ -53,6 +53,9 @@ public:
     /// points show, or not at all.
     void repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {}) const;
 
+    /// Of the finest, as it was made for this.
+    const ray::Scene& scene() const { return scenes_.whole(); }
+
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return visible_.size(); }
 

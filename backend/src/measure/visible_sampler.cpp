@@ -67,6 +67,7 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
         possible_area_ += part > 0 && std::isfinite(part) ? part : 0;
         area_up_to_[i] = possible_area_;
     }
+    find_steps();
     const std::vector<glm::dvec3> points = used_points(mesh);
     lift_ = ray_lift(radius_around(points));
     from_surface_ = casting != Casting::FromBound;
@@ -86,6 +87,18 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
         from_surface_ = is_surface_better(surface, line, relative_error);
     } else {
         from_surface_ = !(bound_.area() > 0);
+    }
+}
+
+void VisibleSampler::find_steps() {
+    const size_t count = area_up_to_.size();
+    steps_.assign(count + 1, static_cast<std::ptrdiff_t>(count));
+    size_t i = 0;
+    for (size_t step = 0; step < count; ++step) {
+        const double up_to = static_cast<double>(step) / static_cast<double>(count);
+        while (i < count && area_up_to_[i] <= up_to * area_up_to_.back())
+            ++i;
+        steps_[step] = static_cast<std::ptrdiff_t>(i);
     }
 }
 
@@ -153,7 +166,11 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
 
 VisiblePoint VisibleSampler::on_surface(const std::array<double, 4>& u) const {
     const double target = u[0] * area_up_to_.back();
-    auto found = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), target);
+    // Only near the step that it lies in: a step more on both sides, as rounding may have it.
+    const size_t last = steps_.size() - 1;
+    const auto step = static_cast<size_t>(std::clamp(u[0], 0.0, 1.0) * static_cast<double>(last));
+    auto found = std::upper_bound(area_up_to_.begin() + steps_[std::max<size_t>(step, 1) - 1],
+                                  area_up_to_.begin() + steps_[std::min(step + 2, last)], target);
     if (found == area_up_to_.end())
         found = std::lower_bound(area_up_to_.begin(), area_up_to_.end(), area_up_to_.back());
     const auto index = static_cast<size_t>(found - area_up_to_.begin());

@@ -81,6 +81,7 @@ private:
         /// How many rays make the estimate as sure as that, about.
         double rays_for(double relative_error) const;
     };
+    void find_steps();
     Pilot pilot(uint64_t seed);
     static bool is_surface_better(const Pilot& surface, const Pilot& line, double relative_error);
 
@@ -91,7 +92,8 @@ private:
     double possible_area_ = 0;
     double lift_ = 0;
     ConvexBound bound_;
-    std::vector<double> area_up_to_;  // sides that could be seen of each triangle and all before
+    std::vector<double> area_up_to_;     // sides that could be seen of each triangle and all before
+    std::vector<std::ptrdiff_t> steps_;  // the triangle at even steps of that area
     bool from_surface_ = false;
     bool shows_all_ = false;
     uint64_t pilot_rays_ = 0;
