@@ -26,8 +26,9 @@ struct Agreement {
 /// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
 /// how bright it is does. Orthographic pictures along 13 axes (against them the same is covered, and lit
 /// by other suns) of a diffuse surface under an even sky (a quarter of the light) and a sun that stands
-/// obliquely beside the viewer, with shadows; both meshes are sampled by the same rays. Larger pixels
-/// are means of smaller ones; differences are those of pictures without sampling noise.
+/// obliquely beside the viewer, with shadows; glass shows what lies behind it, refracted. Both meshes
+/// are sampled by the same rays. Larger pixels are means of smaller ones; differences are those of
+/// pictures without sampling noise.
 class AgreementReference {
 public:
     /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
@@ -43,7 +44,8 @@ public:
                        uint64_t seed, int side, const Job& job);
 
     /// Same bits on any number of threads. Two meshes that show nothing agree at every size; where
-    /// they never agree the error is the side of the whole picture.
+    /// they never agree the error is the side of the whole picture, up to twice as much the more they
+    /// differ.
     Agreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
 
     /// What pictures of a stand-in have where, and how much light falls on it: what all skins that
@@ -59,7 +61,8 @@ public:
 private:
     static constexpr size_t kViews = 13;
 
-    Traced trace(const Mesh& stand_in, const ray::Scene& scene, const Job& job) const;
+    Traced trace(const Mesh& stand_in, const ray::Scene& scene, const ray::SkinPtr& skin,
+                 const Job& job) const;
 
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
