@@ -133,7 +133,8 @@ bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
 /// What can be seen of the finest, in the orders that are asked for.
 class DeviationReference::Seen {
 public:
-    explicit Seen(const std::vector<Sample>& visible) : visible_(visible) {
+    Seen(const std::vector<Sample>& visible, const Looks* palette)
+        : visible_(visible), glowing_(glowing(visible, palette)) {
         // Every so many of the visible points are enough for a mean.
         constexpr size_t kMostPoints = 512;
         std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
@@ -156,6 +157,10 @@ public:
                                   Looks::light_of(visible[i].color), visible[i].look});
         }
     }
+
+    /// Whether a look is a lamp among the others: much brighter by itself than the whole is in the
+    /// mean.
+    bool glows(uint16_t look) const { return look < glowing_.size() && glowing_[look] != 0; }
 
     /// The distance to the nearest point of look `look` that can be seen, from the same side; `most`
     /// where it is not less.
@@ -228,7 +233,35 @@ private:
         uint16_t look;
     };
 
+    static std::vector<uint8_t> glowing(const std::vector<Sample>& visible, const Looks* palette) {
+        constexpr double kMuch = 2;
+        std::vector<uint8_t> out;
+        if (palette == nullptr)
+            return out;
+        const auto brightest = [](const glm::dvec3& light) {
+            return std::max({light.x, light.y, light.z});
+        };
+        double light = 0;
+        double weight = 0;
+        std::set<uint16_t> looks;
+        for (const Sample& sample : visible) {
+            if (sample.look == kAnyLook)
+                continue;
+            const double covered = sample.weight * palette->opacity(sample.look);
+            light += covered * brightest(Looks::light_of(sample.color));
+            weight += covered;
+            looks.insert(sample.look);
+        }
+        for (const uint16_t look : looks) {
+            out.resize(std::max<size_t>(out.size(), look + size_t{1}), 0);
+            const double own = brightest(palette->emission(look));
+            out[look] = own > 0 && own * weight > kMuch * light ? 1 : 0;
+        }
+        return out;
+    }
+
     const std::vector<Sample>& visible_;
+    std::vector<uint8_t> glowing_;  // by look
     std::map<uint16_t, PointTree> by_look_;
     std::vector<Mixed> mixed_;
 };
@@ -271,9 +304,14 @@ struct DeviationReference::Against {
     double moved_by(const Sample& sample, uint16_t theirs, const glm::dvec3& color) const {
         const bool mixed = !finest.has(theirs);
         double least = none;
-        if (!mixed)
+        // A lamp that is gone is missed from as far as anything is seen, though what is there
+        // instead is near.
+        const bool glows = seen.glows(sample.look);
+        if (!mixed && !glows)
             least = seen.nearest(sample, theirs, least);
         least = std::min(least, other.nearest(sample.look, sample.point, least).distance);
+        if (glows && !(glm::length(palette->emission(theirs)) > 0))
+            return least;
         return mixed ? seen.mixing_radius(sample, color, least) : least;
     }
     /// How far the same texture slid along the surface at a sample where the other shows another
@@ -295,7 +333,8 @@ struct DeviationReference::Against {
             return 0;
         bool varies = false;
         const glm::dvec3 color = color_at(at, varies);
-        if ((varies || sample.varies) && Looks::alike(color, sample.color))
+        const bool lamp = theirs != sample.look && seen.glows(sample.look);
+        if ((varies || sample.varies) && !lamp && Looks::alike(color, sample.color))
             return 0;
         return theirs == sample.look ? slid_by(sample, at, color) : moved_by(sample, theirs, color);
     }
@@ -382,7 +421,7 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
             add_visible_vertices(finest, scenes_.whole(), sampler.sides(), vertices,
                                  ray_lift(diameter_ / 2), options.seed, job, visible_);
     }
-    seen_ = std::make_unique<const Seen>(visible_);
+    seen_ = std::make_unique<const Seen>(visible_, palette_);
 }
 
 DeviationReference::~DeviationReference() = default;

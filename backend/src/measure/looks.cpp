@@ -23,21 +23,37 @@ double decode(double encoded) {
 /// What a material shows where nothing is looked up: what it mixes is mixed.
 struct Mean {
     glm::dvec3 light;  // color and emission
-    double alpha;
+    glm::dvec3 emission;
+    double opacity;
 
     explicit Mean(const Material& material)
-        : light(material.base_color + material.emission), alpha(1) {
+        : light(material.base_color + material.emission), emission(material.emission), opacity(1) {
         if (material.alpha_mode == AlphaMode::Blend)
-            alpha = material.alpha;
+            opacity = material.alpha;
         else if (material.alpha_mode == AlphaMode::Clip)
-            alpha = material.alpha_texture || material.alpha >= material.alpha_cutoff ? 1 : 0;
+            opacity = material.alpha_texture || material.alpha >= material.alpha_cutoff ? 1 : 0;
+        opacity *= 1 - material.transmission * (1 - material.metallic);
         if (material.other) {
             const Mean second(*material.other);
             light = glm::mix(light, second.light, material.mix);
-            alpha = glm::mix(alpha, second.alpha, material.mix);
+            emission = glm::mix(emission, second.emission, material.mix);
+            opacity = glm::mix(opacity, second.opacity, material.mix);
         }
     }
 };
+
+/// Lamps may be brighter than any picture shows: twice as bright is another one.
+bool emit_alike(const glm::dvec3& a, const glm::dvec3& b) {
+    constexpr double kSameLamp = 2;
+    for (int i = 0; i < 3; ++i) {
+        const double less = std::min(a[i], b[i]);
+        const double more = std::max(a[i], b[i]);
+        if (more > kSameLamp * less &&
+            (more >= 1 || encode(more) - encode(less) > Looks::kSameLook))
+            return false;
+    }
+    return true;
+}
 
 bool varies_by_texture(const Material& material) {
     return material.base_color_texture || material.emission_texture ||
@@ -78,24 +94,23 @@ bool Looks::alike(const glm::dvec3& a, const glm::dvec3& b) {
     return std::max({off.x, off.y, off.z}) <= kSameLook;
 }
 
-uint16_t Looks::add(const glm::dvec3& color, double alpha, bool varies) {
-    if (colors_.size() < std::numeric_limits<uint16_t>::max()) {
-        colors_.push_back(color);
-        alphas_.push_back(alpha);
-        varying_.push_back(varies ? 1 : 0);
-    }
-    return static_cast<uint16_t>(colors_.size() - 1);
+uint16_t Looks::add(const Look& look) {
+    if (looks_.size() < std::numeric_limits<uint16_t>::max())
+        looks_.push_back(look);
+    return static_cast<uint16_t>(looks_.size() - 1);
 }
 
 uint16_t Looks::of(const Material& material) {
     const Mean mean(material);
     const glm::dvec3 color = encoded(mean.light);
-    for (size_t i = 0; i < colors_.size(); ++i) {
-        if (varying_[i] == 0 && alike(color, colors_[i]) &&
-            std::abs(mean.alpha - alphas_[i]) <= kSameLook)
+    for (size_t i = 0; i < looks_.size(); ++i) {
+        const Look& known = looks_[i];
+        if (!known.varies && alike(color, known.color) &&
+            emit_alike(mean.emission, known.emission) &&
+            std::abs(mean.opacity - known.opacity) <= kSameLook)
             return static_cast<uint16_t>(i);
     }
-    return add(color, mean.alpha, false);
+    return add({color, mean.emission, mean.opacity, false});
 }
 
 std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> materials) {
@@ -109,7 +124,7 @@ std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> mate
         const auto [at, fresh] = by_texture_.try_emplace(hash_of(material), uint16_t{0});
         if (fresh) {
             const Mean mean(material);
-            at->second = add(encoded(mean.light), mean.alpha, true);
+            at->second = add({encoded(mean.light), mean.emission, mean.opacity, true});
         }
         by_slot.push_back(at->second);
     }

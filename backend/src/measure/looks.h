@@ -9,10 +9,10 @@
 
 namespace lodestone::measure {
 
-/// Numbers for materials; those whose display-encoded colors, and alphas, differ by at most
-/// kSameLook share one (the first seen decides, so ask for the finest's materials first). What
-/// varies by texture or vertex color has a look of its own, as long as the mesh has what it varies
-/// by; its color is the mean.
+/// Numbers for materials; those whose display-encoded colors, and what they emit and let through,
+/// differ by at most kSameLook share one (the first seen decides, so ask for the finest's materials
+/// first). What varies by texture or vertex color has a look of its own, as long as the mesh has what
+/// it varies by; its color is the mean.
 class Looks {
 public:
     static constexpr double kSameLook = 0.1;
@@ -40,14 +40,23 @@ public:
     std::vector<uint16_t> of(const Mesh& mesh, std::span<const Material> materials);
 
     /// Display-encoded, 0...1.
-    const glm::dvec3& color(uint16_t look) const { return colors_[look]; }
+    const glm::dvec3& color(uint16_t look) const { return looks_[look].color; }
+    /// What it emits, linear, the mean.
+    const glm::dvec3& emission(uint16_t look) const { return looks_[look].emission; }
+    /// How much of what is behind it is covered: alpha, without what is transmitted.
+    double opacity(uint16_t look) const { return looks_[look].opacity; }
+    size_t size() const { return looks_.size(); }
 
 private:
-    uint16_t add(const glm::dvec3& color, double alpha, bool varies);
+    struct Look {
+        glm::dvec3 color;  // display-encoded, with what it emits
+        glm::dvec3 emission;
+        double opacity;
+        bool varies;  // looks like nothing else
+    };
+    uint16_t add(const Look& look);
 
-    std::vector<glm::dvec3> colors_;  // display-encoded
-    std::vector<double> alphas_;
-    std::vector<uint8_t> varying_;  // those look like nothing else
+    std::vector<Look> looks_;
     std::map<Hash, uint16_t> by_texture_;
 };
 
