@@ -5,6 +5,7 @@
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "base/files.h"
+#include "build/candidate.h"
 #include "build/flatten.h"
 #include "build/hierarchy.h"
 #include "build/stand_ins.h"
@@ -208,4 +209,37 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
     EXPECT_EQ(flat.materials[1].base_color, flat.materials[0].base_color);
     EXPECT_EQ(flat.materials[1].alpha, flat.materials[0].alpha);
     EXPECT_TRUE(flat.materials[1].other);
+}
+
+TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) {
+    using build::Candidate;
+    Candidate mesh;
+    mesh.mesh = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
+    mesh.error = 0.1;
+    Candidate clear;
+    clear.kind = Kind::Composite;
+    Composite solids;
+    solids.solids.resize(8);
+    for (Solid& solid : solids.solids)
+        solid.primitive.half_size = glm::dvec3(0.5);
+    clear.composite = std::make_shared<const Composite>(solids);
+    clear.materials.resize(1);
+    clear.error = 0.15;
+    EXPECT_EQ(build::tracing_of(clear), 0) << "opaque";
+    EXPECT_EQ(build::tracing_of(mesh), 0);
+    clear.materials[0].alpha_mode = AlphaMode::Blend;
+    clear.materials[0].alpha = 0.4;
+    const double once = build::tracing_of(clear);
+    EXPECT_NEAR(once, 150 * 0.5 * 8 * 3.14159265 / (0.15 * 0.15), 1e-3 * once);
+    clear.error *= 2;
+    EXPECT_NEAR(build::tracing_of(clear), once / 4, 1e-9 * once);
+    clear.error /= 2;
+    for (const uint64_t uses : {1, 100}) {
+        std::vector<Candidate> both{mesh, clear};
+        build::keep_useful(both, 100000000, uses);
+        EXPECT_EQ(both.size(), uses == 1 ? 2u : 1u);
+        EXPECT_EQ(both[0].kind, Kind::Mesh);
+    }
+    clear.error = 0;
+    EXPECT_EQ(build::tracing_of(clear), 0);
 }

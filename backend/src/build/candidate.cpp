@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/candidate.h"
 
+#include "approximate/replace.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -17,9 +19,34 @@ uint64_t bytes_of(const Candidate& candidate) {
     }
 }
 
+double tracing_of(const Candidate& candidate) {
+    constexpr double kBytesPerCrossing = 150;
+    const auto clear_area = [&](const Primitive& primitive, bool box, uint16_t slot) {
+        if (slot >= candidate.materials.size() || !(candidate.error > 0))
+            return 0.0;
+        const Material& material = candidate.materials[slot];
+        if (material.alpha_mode != AlphaMode::Blend || !(material.alpha < 1))
+            return 0.0;
+        return (box ? approximate::box_shell(primitive.half_size)
+                    : approximate::ellipsoid_shell(primitive.half_size))
+            .area;
+    };
+    double area = 0;
+    if (candidate.kind == Kind::Composite) {
+        for (const Solid& solid : candidate.composite->solids)
+            area += clear_area(solid.primitive, solid.box, solid.slot);
+    } else if (candidate.kind != Kind::Mesh) {
+        area = clear_area(candidate.primitive, candidate.kind == Kind::Box, 0);
+    }
+    if (!(area > 0))
+        return 0;
+    // A convex surface shows a quarter of its area from any side, in the mean, and is crossed twice.
+    return kBytesPerCrossing * 0.5 * area / (candidate.error * candidate.error);
+}
+
 double bytes_of(const Candidate& candidate, uint64_t uses) {
     const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
-    return count * bytes_each(candidate.kind, bytes_of(candidate), uses);
+    return count * (bytes_each(candidate.kind, bytes_of(candidate), uses) + tracing_of(candidate));
 }
 
 double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses) {

@@ -2,6 +2,7 @@
 #include "build/judge.h"
 
 #include "approximate/stand_in_material.h"
+#include "build/glow.h"
 #include "measure/opacity.h"
 #include "measure/visible.h"
 
@@ -64,6 +65,7 @@ Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::Tex
       environment_(environment),
       seed_(seed),
       rays_(settings.rays),
+      materials_(materials.begin(), materials.end()),
       skin_(std::make_shared<const ray::Skin>(materials, texels)),
       finest_looks_(looks_.of(finest, materials)),
       reference_(finest, {samples_of(environment, settings), settings.samples, seed},
@@ -137,10 +139,34 @@ void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
         pictures_.emplace(finest, finest_scene(), skin_, seed_, side, job);
     else
         pictures_.emplace(finest, skin_, seed_, side, job);
+    glow_.reset();
 }
 
-ray::SkinPtr Judge::skin_of(const Candidate& candidate) const {
-    return std::make_shared<const ray::Skin>(candidate.materials, texels_);
+ray::SkinPtr Judge::skin_of(std::span<const Material> materials) const {
+    return std::make_shared<const ray::Skin>(materials, texels_);
+}
+
+void Judge::match_glow(Candidate& candidate, const measure::AgreementReference::Traced& traced,
+                       const Mesh& finest, const Job& job) {
+    constexpr double kMost = 4;
+    const auto emitted = [&](const measure::AgreementReference::Traced& pictures,
+                             std::span<const Material> materials) {
+        std::vector<Material> dark;
+        for (const Material& material : materials)
+            dark.push_back(unlit(material));
+        return pictures_->brightness_of(pictures, skin_of(dark)).light;
+    };
+    if (!glow_)
+        glow_ = emitted(pictures_->trace(finest, skin_, job), materials_);
+    const glm::dvec3 now = emitted(traced, candidate.materials);
+    glm::dvec3 more(1.0);
+    for (int i = 0; i < 3; ++i) {
+        const double ratio = now[i] / (*glow_)[i];
+        if (now[i] != 1 && (*glow_)[i] != 1 && std::isfinite(ratio))  // 1: none of that color
+            more[i] = std::clamp(ratio, 1 / kMost, kMost);
+    }
+    for (Material& material : candidate.materials)
+        emit_more(material, more);
 }
 
 void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted,
@@ -154,7 +180,7 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
         slots.resize(candidate.materials.size());
         std::iota(slots.begin(), slots.end(), uint16_t{0});
     }
-    ray::SkinPtr current = skin_of(candidate);
+    ray::SkinPtr current = skin_of(candidate.materials);
     Mesh solid;
     const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
     for (int round = 0; round < (mesh ? kRounds : 1); ++round) {
@@ -172,39 +198,54 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
         }
         if (!changed)
             break;
-        current = skin_of(candidate);
+        current = skin_of(candidate.materials);
     }
     const double error = pictures_->of(traced, current).error;
     set_error(candidate, {error, error});
     candidate.pictured = true;
 }
 
-void Judge::match_brightness(Candidate& candidate, const Mesh& finest, const Job& job) {
+void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double used_to,
+                             const Job& job) {
     constexpr double kAlikeBright = 0.01;
     constexpr double kMost = 2;
-    // What is nearer than this is used where the whole is 24 pixels large or more, and looks alike.
+    // What is used up to here is that where the whole is 24 pixels large or more, and looks alike.
     constexpr double kNear = 1.0 / 12;
-    if (candidate.pictured || environment_ || refracts() || candidate.error < kNear * size_)
+    // What glows, and what is clear, has no part in the correction: further rounds are nearer.
+    constexpr int kRounds = 3;
+    constexpr double kPictures = 0.5;
+    const bool glows = std::any_of(materials_.begin(), materials_.end(), emits);
+    if (candidate.pictured || candidate.matched || environment_ ||
+        (!glows && used_to < kNear * size_))
         return;
     if (!pictures_)
-        take_pictures(finest, true, job);
-    // What glows takes part in the light but not in the correction: a second round is nearer.
-    const bool glows =
-        std::any_of(candidate.materials.begin(), candidate.materials.end(),
-                    [](const Material& material) { return material.emission != glm::dvec3(0.0); });
-    ray::SkinPtr current = skin_of(candidate);
+        take_pictures(finest, !glows, job);
+    ray::SkinPtr current = skin_of(candidate.materials);
     Mesh solid;
     const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
-    for (int round = 0; round < (glows ? 2 : 1); ++round) {
+    if (glows) {
+        match_glow(candidate, traced, finest, job);
+        current = skin_of(candidate.materials);
+    }
+    for (int round = 0; round < kRounds; ++round) {
         const glm::dvec3 light = pictures_->brightness_of(traced, current).light;
         const glm::dvec3 off = glm::abs(light - 1.0);
         if (!(std::max({off.x, off.y, off.z}) > kAlikeBright))
-            return;
-        for (Material& material : candidate.materials)
-            approximate::brighten(material,
-                                  glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
-        current = skin_of(candidate);
+            break;
+        for (Material& material : candidate.materials) {
+            // The color of glass is that of what is seen through it.
+            if (!(material.transmission * (1 - material.metallic) > 0.5))
+                approximate::brighten(material,
+                                      glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
+        }
+        current = skin_of(candidate.materials);
     }
+    candidate.matched = true;
+    if (candidate.kind != Kind::Mesh || layer_)
+        return;
+    const double seen = pictures_->of(traced, current).error;
+    candidate.error = std::max(candidate.error, kPictures * seen + child_error_);
+    candidate.max_error = std::max(candidate.max_error, seen + child_error_);
 }
 
 std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,

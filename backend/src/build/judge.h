@@ -65,9 +65,12 @@ public:
     /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures. It
     /// is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
     void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
-    /// Makes any other candidate that is far enough off as bright as the finest, by the colors of
-    /// all its slots. Errors stay: shades that much alike are one look to them.
-    void match_brightness(Candidate& candidate, const Mesh& finest, const Job& job);
+    /// Makes any other candidate that is used from far enough (up to an error of `used_to`, where
+    /// the next one takes over) as bright as the finest, by the colors of all its slots, and lets it
+    /// glow as much. Shades that much alike are one look to errors; but where pictures, as bright as
+    /// they can be made, agree only from more than twice a mesh's error on, half of that is its error:
+    /// what is near something else may have been all that closed a gap.
+    void match_brightness(Candidate& candidate, const Mesh& finest, double used_to, const Job& job);
 
     /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
     std::vector<double> visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
@@ -77,7 +80,10 @@ private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
     /// What a distance may be where an error is at most that.
     double distance_for(double error) const;
-    ray::SkinPtr skin_of(const Candidate& candidate) const;
+    ray::SkinPtr skin_of(std::span<const Material> materials) const;
+    /// Makes what glows of a candidate glow as much as the finest does.
+    void match_glow(Candidate& candidate, const measure::AgreementReference::Traced& traced,
+                    const Mesh& finest, const Job& job);
 
     image::TexelCache& texels_;
     measure::Looks looks_;
@@ -88,10 +94,12 @@ private:
     double least_primitive_ = std::numeric_limits<double>::infinity();  // error of those measured
     uint64_t seed_;
     uint64_t rays_;
+    std::vector<Material> materials_;
     ray::SkinPtr skin_;
     std::vector<uint16_t> finest_looks_;
     measure::DeviationReference reference_;
     std::optional<measure::AgreementReference> pictures_;
+    std::optional<glm::dvec3> glow_;  // all light of the finest's pictures over what it emits
     double opacity_ = 0;
     Attributes attributes_;
 };

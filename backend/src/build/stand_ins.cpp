@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/stand_ins.h"
 
-#include "approximate/simplify.h"
 #include "build/flatten.h"
+#include "build/glow.h"
 #include "build/judge.h"
 #include "build/levels.h"
 #include "build/replacements.h"
@@ -32,7 +32,7 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
         return;
     Mesh plain;
     const Mesh& source = without_unseen_colors(mesh, materials, plain);
-    for (Mesh& level : approximate::simplify_chain(source, targets, {}, job)) {
+    for (Mesh& level : simplify_with_lamps(source, materials, targets, job)) {
         if (level.empty())
             continue;
         judge.repaint(level, job);
@@ -133,6 +133,34 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
     });
 }
 
+/// Those that `keep` leaves of all (finest first), as bright as the finest. What turns out to be
+/// farther off than it was thought is one among all again.
+std::vector<Candidate> kept_of(std::vector<Candidate> all,
+                               const std::function<void(std::vector<Candidate>&)>& keep,
+                               Judge& judge, const Mesh& finest, const Job& job) {
+    for (;;) {
+        std::vector<Candidate> kept = all;
+        keep(kept);
+        bool farther = false;
+        for (size_t i = 0; i < kept.size(); ++i) {
+            const bool last = i + 1 == kept.size();
+            const Candidate before = kept[i];
+            judge.match_brightness(
+                kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
+                job);
+            farther = farther || kept[i].error > before.error;
+            if (before.kind != Kind::Mesh || before.matched == kept[i].matched)
+                continue;
+            for (Candidate& candidate : all) {
+                if (candidate.mesh == before.mesh)
+                    candidate = kept[i];
+            }
+        }
+        if (!farther)
+            return kept;
+    }
+}
+
 uint64_t seed_of(const Object& object, const Settings& settings) {
     return Hasher().value(object.source_hash).value(settings.seed).result();
 }
@@ -179,9 +207,10 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
         add_replacements(
             out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, materials,
             settings, seed_of(object, settings), judge, job);
-    keep_useful(out.candidates, finest.summary.cost.bytes, uses);
-    for (Candidate& candidate : out.candidates)
-        judge.match_brightness(candidate, *mesh, job);
+    const auto keep = [&](std::vector<Candidate>& candidates) {
+        keep_useful(candidates, finest.summary.cost.bytes, uses);
+    };
+    out.candidates = kept_of(std::move(out.candidates), keep, judge, *mesh, job);
     return out;
 }
 
@@ -244,19 +273,22 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
     // to the next one's; what children cost is asked for half way, on a scale of powers.
-    std::vector<Candidate> useful = out.candidates;
-    keep_useful(useful, finest.cost.bytes, uses[group]);
-    double next = 0;  // 0: nothing is coarser
-    for (size_t i = useful.size(); i-- > 0;) {
-        const double own = bytes_each(useful[i].kind, bytes_of(useful[i]), uses[group]) +
-                           static_cast<double>(kBytesPerOccurrence);
-        const double error = useful[i].error;
-        const double used = next > 0 ? std::sqrt(error * next) : error;
-        if (own < drawn_within(model, group, used, uses, job).bytes)
-            next = error;
-        else
-            useful.erase(useful.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+    const auto keep = [&](std::vector<Candidate>& candidates) {
+        keep_useful(candidates, finest.cost.bytes, uses[group]);
+        double next = 0;  // 0: nothing is coarser
+        for (size_t i = candidates.size(); i-- > 0;) {
+            const double own =
+                bytes_each(candidates[i].kind, bytes_of(candidates[i]), uses[group]) +
+                tracing_of(candidates[i]) + static_cast<double>(kBytesPerOccurrence);
+            const double error = candidates[i].error;
+            const double used = next > 0 ? std::sqrt(error * next) : error;
+            if (own < drawn_within(model, group, used, uses, job).bytes)
+                next = error;
+            else
+                candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    };
+    std::vector<Candidate> useful = kept_of(out.candidates, keep, judge, reference.mesh, job);
     if (useful.empty()) {
         // Every group has a stand-in, even one that saves nothing but the occurrences: the cheapest.
         if (out.candidates.empty()) {
@@ -268,10 +300,10 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         }
         keep_useful(out.candidates, ~uint64_t{0});
         useful = {out.candidates.back()};
+        judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
+                               job);
     }
     out.candidates = std::move(useful);
-    for (Candidate& candidate : out.candidates)
-        judge.match_brightness(candidate, reference.mesh, job);
     return out;
 }
 
