@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How alike the outlines of shapes and of their replacements are: replace_shapes FILE.ply...
-// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes.
+// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes, and
+// how far off color and brightness are, in 255ths, by 16 times the rays.
 #include "approximate/composite.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
+#include "backend/rematched.h"
 #include "base/files.h"
 #include "format/ply.h"
 #include "measure/deviation.h"
@@ -151,6 +153,12 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         const double other = mesh_bytes_within(levels, errors, error);
         found[name + " bytes over a mesh's"] = std::isfinite(other) ? bytes / other : 0;
     }
+    for (const Rematched& again : rematched(mesh, false)) {
+        found[again.kind + " color off"] = again.color;
+        found[again.kind + " brightness off"] = again.brightness;
+    }
+    for (const Rematched& again : rematched(mesh, true))
+        found[again.kind + " (coarse) brightness off"] = again.brightness;
     std::printf("%s\"%s\": {\"normal moment\": %.4f", "  ", path.stem().c_str(),
                 attributes.normal_moment);
     for (const auto& [name, value] : found)

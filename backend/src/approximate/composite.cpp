@@ -22,7 +22,7 @@ namespace {
 
 constexpr uint32_t kSamples = 8192;
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
-constexpr int kRounds = 4;
+constexpr int kClearRounds = 4;
 // What solids show grows with less than the square of their size: they hide more of each other.
 constexpr double kGrowth = 0.7;
 // Of one round; more than this is no correction.
@@ -143,7 +143,7 @@ glm::dmat3 map_between(const glm::dmat3& from, const glm::dmat3& to) {
 /// Moves, stretches and scales all solids until what can be seen of them is what is wanted.
 void match_whole(Clustered& level, const Attributes& wanted, double floor,
                  const CompositeOptions& options, const Job& job) {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < options.rounds; ++round) {
         const Attributes now = measured(level, options, job);
         if (now.empty())
             return;
@@ -398,7 +398,7 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
         if (!clear)
             return out;
         double depth = 1;  // of all shells, over that of the clusters alone
-        for (int round = 0; round < kRounds; ++round) {
+        for (int round = 0; round < kClearRounds; ++round) {
             level.composite.solids.clear();
             level.opacities.clear();
             for (const Shelled& shell : shells) {
@@ -413,7 +413,7 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
                 level.composite.solids.push_back(solid);
                 level.opacities.push_back(opacity);
             }
-            if (round + 1 == kRounds)
+            if (round + 1 == kClearRounds)
                 break;
             const double now = measured(level, options, job).visible_area;
             if (!(now > 0))

@@ -24,6 +24,7 @@ struct CompositeOptions {
     uint64_t seed = 1;
     uint32_t rays = 8192;  // that each round of matching casts
     bool shape = true;     // match centroid and variances of the whole, not its area alone
+    int rounds = 4;        // of matching
 };
 
 /// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every kind of stand-in of one painted mesh, its color and brightness found again by 16 times the
+// rays. For tests and for tests/bench/replace_shapes.cpp.
+#pragma once
+
+#include "approximate/composite.h"
+#include "approximate/replace.h"
+#include "approximate/simplify.h"
+#include "approximate/stand_in_material.h"
+#include "build/judge.h"
+#include "measure/agreement.h"
+#include "measure/visible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace lodestone {
+
+/// How far off, in 255ths of display-encoded values, the worst channel.
+struct Rematched {
+    std::string kind;
+    double color = 0;       // the mean color that it was made from
+    double brightness = 0;  // all light it sends, beside the color of the whole
+};
+
+/// A color for each quarter, by slots.
+inline std::vector<Material> paint(Mesh& mesh) {
+    const glm::dvec3 middle = bound_of(mesh.positions).box.center();
+    mesh.slots.clear();
+    for (const Triangle& t : mesh.triangles) {
+        const glm::dvec3 at = (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
+                               glm::dvec3(mesh.positions[t.z])) /
+                              3.0;
+        mesh.slots.push_back(
+            static_cast<uint16_t>((at.x > middle.x ? 1 : 0) + (at.z > middle.z ? 2 : 0)));
+    }
+    std::vector<Material> out(4);
+    const glm::dvec3 colors[] = {
+        {0.5, 0.2, 0.1}, {0.15, 0.35, 0.1}, {0.7, 0.65, 0.5}, {0.1, 0.15, 0.4}};
+    for (size_t i = 0; i < out.size(); ++i)
+        out[i].base_color = colors[i];
+    return out;
+}
+
+/// `mesh` is painted. `coarse`: by pictures as a build takes them of what is far from the finest
+/// anyway, a quarter of the samples. Composites have at most `most_solids`.
+inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_solids = 32) {
+    const std::vector<Material> materials = paint(mesh);
+    image::TexelCache texels;
+    build::Settings settings;
+    build::Judge judge(mesh, materials, texels, settings, false, settings.seed, 0, {});
+    judge.measure_finest(mesh, {});
+    judge.take_pictures(mesh, coarse, {});
+    const Attributes wanted = judge.attributes();
+    const Bound bound = bound_of(mesh.positions);
+    const auto skin_of = [&](const std::vector<Material>& own) {
+        return std::make_shared<const ray::Skin>(own, texels);
+    };
+    const ray::SkinPtr skin = skin_of(materials);
+
+    measure::VisibleOptions many;
+    many.rays = 16 * settings.rays;
+    many.seed = 77;
+    const Attributes truth =
+        measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, many).attributes;
+    std::vector<measure::AgreementReference> pictures;
+    for (const uint64_t seed : {101, 102, 103, 104})  // four times the samples each
+        pictures.emplace_back(mesh, skin, seed, measure::AgreementReference::kSide);
+    const auto off = [](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 miss = glm::abs(measure::Looks::encoded(a) - measure::Looks::encoded(b));
+        return 255 * std::max({miss.x, miss.y, miss.z});
+    };
+
+    std::vector<Rematched> out;
+    const auto add = [&](const std::string& name, build::Candidate candidate, Mesh drawn) {
+        judge.match_brightness(candidate, mesh, std::numeric_limits<double>::infinity(), {});
+        glm::dvec3 light(0.0);
+        for (const measure::AgreementReference& picture : pictures)
+            light += picture.of(drawn, skin_of(candidate.materials)).light /
+                     static_cast<double>(pictures.size());
+        out.push_back(
+            {name, off(wanted.color, truth.color), off(truth.color, truth.color / light)});
+    };
+    const auto add_solid = [&](const std::string& name, Kind kind, const Primitive& primitive,
+                               double opacity) {
+        build::Candidate candidate;
+        candidate.kind = kind;
+        candidate.primitive = primitive;
+        candidate.materials = {
+            approximate::clear_material(approximate::mean_material(wanted), opacity)};
+        add(name, candidate,
+            kind == Kind::Box ? tessellate_box(primitive) : tessellate_ellipsoid(primitive, 4));
+    };
+    if (const auto box = approximate::fit_box(wanted, bound))
+        add_solid("box", Kind::Box, *box, 1);
+    if (const auto ellipsoid = approximate::fit_ellipsoid(wanted, bound))
+        add_solid("ellipsoid", Kind::Ellipsoid, *ellipsoid, 1);
+    if (const auto box = approximate::fit_clear_box(wanted, bound))
+        add_solid("clear box", Kind::Box, box->primitive, box->opacity);
+    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(wanted, bound))
+        add_solid("clear ellipsoid", Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
+    const auto add_composites = [&](const std::string& name,
+                                    const std::vector<approximate::Clustered>& levels) {
+        for (const approximate::Clustered& level : levels) {
+            if (level.composite.solids.size() > most_solids)
+                break;
+            build::Candidate candidate;
+            candidate.kind = Kind::Composite;
+            candidate.composite = std::make_shared<const Composite>(level.composite);
+            for (size_t i = 0; i < level.attributes.size(); ++i)
+                candidate.materials.push_back(approximate::clear_material(
+                    approximate::mean_material(level.attributes[i]), level.opacities[i]));
+            add(name + " " + std::to_string(level.composite.solids.size()), candidate,
+                tessellate(level.composite, 3));
+        }
+    };
+    add_composites("composite", approximate::composites(mesh, skin, wanted, {settings.seed}));
+    if (!approximate::boxlike(wanted))
+        add_composites("clear composite",
+                       approximate::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
+    build::Candidate collapsed;
+    collapsed.mesh = std::make_shared<const Mesh>(
+        approximate::simplify(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
+    collapsed.materials = materials;
+    if (judge.shows_as_much(*collapsed.mesh, {}))  // else it is none
+        add("collapsed", collapsed, *collapsed.mesh);
+    return out;
+}
+
+}  // namespace lodestone
