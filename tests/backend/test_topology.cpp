@@ -212,7 +212,7 @@ TEST(Topology, EdgeAcrossAFoldFlipsOntoIt) {
     approximate::FitPlaces places(mesh, sheet);
     const auto flips = [&] {
         approximate::FitSamples samples;
-        approximate::sample_surface(places, adjacency, 1000, {}, samples);
+        approximate::sample_surface(places, adjacency, 1000, 0, {}, samples);
         EXPECT_GT(samples.size(), 100u);
         const size_t flipped = approximate::flip_edges(places, adjacency, {}, samples);
         adjacency.build(mesh);

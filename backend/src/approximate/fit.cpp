@@ -61,9 +61,9 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
     FitSamples samples;
     std::vector<glm::vec3> moves;
     for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-        samples.clear();
-        sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kFewSamples), job,
-                       samples);
+        const size_t more = 2 * mesh.outline.size() + (options.careful ? mesh.points.size() : 0);
+        sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kFewSamples), more,
+                       job, samples);
         const bool dense = samples.size() >= kSamplesToFlip * mesh.triangles.size();
         // The last sweep only moves: what was flipped then fits, too.
         if (options.careful && dense && sweep + 1 < options.sweeps &&

@@ -27,20 +27,28 @@ public:
 
     /// A vertex of the original, in the mesh's frame.
     glm::vec3 original(uint32_t vertex) const {
-        return glm::vec3((glm::dvec3(source_.positions[vertex]) - mesh_.center) / mesh_.scale);
+        return glm::vec3((glm::dvec3(source_.positions[vertex]) - mesh_.center) * per_scale_);
+    }
+    /// Asks for what place() and original() will need.
+    void expect(uint32_t vertex) const {
+        __builtin_prefetch(&mesh_.merged[vertex]);
+        __builtin_prefetch(&source_.positions[vertex]);
     }
     /// The vertex that one of the original became; kNone when it vanished with its part.
-    uint32_t place(uint32_t vertex);
+    uint32_t place(uint32_t vertex) const { return place_of_[mesh_.merged[vertex]]; }
 
     CollapseMesh& mesh() { return mesh_; }
+    const CollapseMesh& mesh() const { return mesh_; }
     const Mesh& source() const { return source_; }
     /// The mesh's vertices; whoever moves one keeps both.
     std::vector<glm::vec3>& points() { return points_; }
+    const std::vector<glm::vec3>& points() const { return points_; }
 
 private:
     CollapseMesh& mesh_;
     const Mesh& source_;
-    std::vector<uint32_t> place_of_;
+    double per_scale_;
+    std::vector<uint32_t> place_of_;  // by what vertices were merged into in the end
     std::vector<glm::vec3> points_;
 };
 
@@ -61,9 +69,10 @@ private:
 /// Real-Time Collision Detection, 5.1.5.
 glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
-/// Appends about `want` samples of the original's surface, spread evenly over its triangles.
-void sample_surface(FitPlaces& places, const Adjacency& adjacency, size_t want, const Job& job,
-                    FitSamples& samples);
+/// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is in
+/// `samples`; room for `more` after them.
+void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
+                    const Job& job, FitSamples& samples);
 
 /// Appends samples of the edges that were open borders at first, and the borders nearest to them.
 void sample_outline(FitPlaces& places, const Adjacency& adjacency, const Job& job,

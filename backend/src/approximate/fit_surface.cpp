@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/fit_sample.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,29 +17,29 @@ struct Place {
     glm::vec3 weights{0.0f};
 };
 
+/// Triangles of the original that are sampled on one thread.
+constexpr size_t kChunk = 4096;
+constexpr size_t kAhead = 8;
+
 class SurfaceSampler {
 public:
-    SurfaceSampler(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples)
-        : places_(places),
-          mesh_(places.mesh()),
-          adjacency_(adjacency),
-          points_(places.points()),
-          samples_(samples) {}
-    void sample(size_t want, const Job& job);
+    SurfaceSampler(const FitPlaces& places, const Adjacency& adjacency)
+        : places_(places), mesh_(places.mesh()), adjacency_(adjacency), points_(places.points()) {}
+    /// Into two samples; of those that are none the triangle is kNone.
+    void sample(uint32_t source, int corner, FitSample* samples) const;
 
 private:
     void take(uint32_t source, const glm::vec3& point, uint32_t from, const glm::vec3& normal,
-              float area);
+              float area, FitSample& sample) const;
 
-    FitPlaces& places_;
+    const FitPlaces& places_;
     const CollapseMesh& mesh_;
     const Adjacency& adjacency_;
     const std::vector<glm::vec3>& points_;
-    FitSamples& samples_;
 };
 
 void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from,
-                          const glm::vec3& normal, float area) {
+                          const glm::vec3& normal, float area, FitSample& sample) const {
     if (from == kNone)
         return;
     Place best;
@@ -106,62 +107,48 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
     toward = direction;
     if (!std::isfinite(miss + toward.x + toward.y + toward.z))
         return;
-    samples_.push_back({best.triangle,
-                        source,
-                        {best.weights.x, best.weights.y, best.weights.z},
-                        toward,
-                        miss,
-                        area});
+    sample = {best.triangle, source, {best.weights.x, best.weights.y, best.weights.z},
+              toward,        miss,   area};
 }
 
-void SurfaceSampler::sample(size_t want, const Job& job) {
-    const Mesh& source = places_.source();
-    const size_t count = source.triangles.size();
-    // Vertices and middles in turn, as many as wanted, spread evenly.
-    const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
-    for (size_t n = 0;; ++n) {
-        const auto at = static_cast<size_t>(step * static_cast<double>(n));
-        if (at >= count)
-            break;
-        if ((n & 0xffffu) == 0)
-            job.check();
-        const Triangle& t = source.triangles[at];
-        const glm::vec3 a = places_.original(t.x);
-        const glm::vec3 b = places_.original(t.y);
-        const glm::vec3 c = places_.original(t.z);
-        const uint32_t from = places_.place(t.x);
-        if (from == kNone)
-            continue;
-        const glm::vec3 facet = glm::cross(b - a, c - a);
-        const float area = glm::length(facet);
-        if (!(area > 0))
-            continue;
-        take(static_cast<uint32_t>(at), (a + b + c) * (1.0f / 3), from, facet / area, 0.75f * area);
-        const auto corner = static_cast<int>(n % 3);
-        take(static_cast<uint32_t>(at), corner == 0 ? a : (corner == 1 ? b : c),
-             places_.place(t[corner]), facet / area, 0.25f * area);
-    }
+void SurfaceSampler::sample(uint32_t source, int corner, FitSample* samples) const {
+    samples[0].triangle = samples[1].triangle = kNone;
+    const Triangle& t = places_.source().triangles[source];
+    const uint32_t from = places_.place(t.x);
+    if (from == kNone)
+        return;
+    const glm::vec3 a = places_.original(t.x);
+    const glm::vec3 b = places_.original(t.y);
+    const glm::vec3 c = places_.original(t.z);
+    const glm::vec3 facet = glm::cross(b - a, c - a);
+    const float area = glm::length(facet);
+    if (!(area > 0))
+        return;
+    take(source, (a + b + c) * (1.0f / 3), from, facet / area, 0.75f * area, samples[0]);
+    take(source, corner == 0 ? a : (corner == 1 ? b : c), places_.place(t[corner]), facet / area,
+         0.25f * area, samples[1]);
 }
 
 }  // namespace
 
-FitPlaces::FitPlaces(CollapseMesh& mesh, const Mesh& source) : mesh_(mesh), source_(source) {
-    place_of_.assign(mesh.merged.size(), kNone);
+FitPlaces::FitPlaces(CollapseMesh& mesh, const Mesh& source)
+    : mesh_(mesh), source_(source), per_scale_(1 / mesh.scale) {
+    // What was merged into what was merged: now into what is left of all of them.
+    std::vector<uint32_t>& merged = mesh.merged;
+    for (uint32_t id = 0; id < merged.size(); ++id) {
+        uint32_t root = merged[id];
+        while (merged[root] != root) {
+            merged[root] = merged[merged[root]];
+            root = merged[root];
+        }
+        merged[id] = root;
+    }
+    place_of_.assign(merged.size(), kNone);
     for (uint32_t v = 0; v < mesh.ids.size(); ++v)
         place_of_[mesh.ids[v]] = v;
     points_.reserve(mesh.points.size());
     for (const glm::dvec3& point : mesh.points)
         points_.emplace_back(point);
-}
-
-uint32_t FitPlaces::place(uint32_t vertex) {
-    std::vector<uint32_t>& merged = mesh_.merged;
-    uint32_t root = vertex;
-    while (merged[root] != root) {
-        merged[root] = merged[merged[root]];
-        root = merged[root];
-    }
-    return place_of_[root];
 }
 
 SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles) {
@@ -210,9 +197,31 @@ glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec
     return {va / sum, vb / sum, vc / sum};
 }
 
-void sample_surface(FitPlaces& places, const Adjacency& adjacency, size_t want, const Job& job,
-                    FitSamples& samples) {
-    SurfaceSampler(places, adjacency, samples).sample(want, job);
+void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
+                    const Job& job, FitSamples& samples) {
+    // Vertices and middles in turn, as many as wanted, spread evenly.
+    const size_t count = places.source().triangles.size();
+    const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
+    const auto steps = static_cast<size_t>(std::ceil(static_cast<double>(count) / step));
+    const SurfaceSampler sampler(places, adjacency);
+    samples.clear();
+    samples.reserve(2 * steps + more);
+    samples.resize(2 * steps);
+    parallel_for((steps + kChunk - 1) / kChunk, [&](size_t chunk) {
+        job.check();
+        const auto nth = [&](size_t n) {
+            return std::min(static_cast<size_t>(step * static_cast<double>(n)), count - 1);
+        };
+        for (size_t n = chunk * kChunk; n < std::min(steps, (chunk + 1) * kChunk); ++n) {
+            // Scans are in no order: what comes is asked for some triangles ahead.
+            const Triangle& coming = places.source().triangles[nth(n + kAhead)];
+            for (const uint32_t vertex : {coming.x, coming.y, coming.z})
+                places.expect(vertex);
+            sampler.sample(static_cast<uint32_t>(nth(n)), static_cast<int>(n % 3), &samples[2 * n]);
+        }
+    });
+    const auto none = [](const FitSample& sample) { return sample.triangle == kNone; };
+    samples.erase(std::remove_if(samples.begin(), samples.end(), none), samples.end());
 }
 
 }  // namespace lodestone::approximate

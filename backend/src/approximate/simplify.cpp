@@ -9,7 +9,7 @@
 namespace lodestone::approximate {
 namespace {
 
-constexpr FitOptions kFastFit{8, 0.5, 1, 2, false};
+constexpr FitOptions kFastFit{8, 0.5, 1, 4, false};
 constexpr FitOptions kBestFit{20, 1, 3, 5, true};
 
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,
