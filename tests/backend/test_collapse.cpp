@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the collapse engine: modes, costs, fitting to the original, threads, fuzzed meshes.
+#include "approximate/adjacency.h"
 #include "approximate/edge_costs.h"
+#include "approximate/neighbors.h"
 #include "approximate/quadric.h"
 #include "approximate/simplify.h"
 #include "backend/grids.h"
@@ -9,9 +11,11 @@
 #include "base/random.h"
 
 #include <algorithm>
+#include <bit>
 #include <gtest/gtest.h>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 using namespace lodestone;
@@ -88,9 +92,12 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
     Random random(3);
     const auto number = [&] { return 2 * random.uniform() - 1; };
     const auto vector = [&] { return glm::dvec3(number(), number(), number()); };
+    constexpr size_t kCount = approximate::EdgeBlock::kSize;
     approximate::EdgeBlock block{};
-    double expected[approximate::EdgeBlock::kSize];
-    for (size_t i = 0; i < approximate::EdgeBlock::kSize; ++i) {
+    std::vector<approximate::VertexAround> ends(2 * kCount);
+    std::vector<approximate::Optimum> expected(kCount);
+    std::vector<glm::dvec3> froms(kCount);
+    for (size_t i = 0; i < kCount; ++i) {
         approximate::EdgeEnd a{vector(), {}, {}};
         approximate::EdgeEnd b{vector(), {}, {}};
         glm::dvec3 shared(0.0);
@@ -119,15 +126,97 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
                                              f(q.yz),
                                              f(q.zz)};
         };
-        block.in[i] = {around(a), around(b), glm::vec3(shared),
+        ends[2 * i] = around(a);
+        ends[2 * i + 1] = around(b);
+        block.in[i] = {&ends[2 * i], &ends[2 * i + 1], glm::vec3(shared),
                        held == -1 ? -1.0f : (held == 1 ? 1.0f : 0.0f)};
-        expected[i] = held == -1  ? cost_at(a, b, a.point)
-                      : held == 1 ? cost_at(a, b, b.point)
-                                  : best_point(a, b, shared).cost;
+        froms[i] = a.point;
+        if (held == -1 || held == 1)
+            expected[i].cost = cost_at(a, b, held == -1 ? a.point : b.point);
+        else
+            expected[i] = best_point(a, b, shared);
     }
     edge_costs(block);
-    for (size_t i = 0; i < approximate::EdgeBlock::kSize; ++i)
-        EXPECT_NEAR(block.cost[i], expected[i], 2e-3 * expected[i] + 1e-4) << i;
+    for (size_t i = 0; i < kCount; ++i) {
+        EXPECT_NEAR(block.cost[i], expected[i].cost, 2e-3 * expected[i].cost + 1e-4) << i;
+        if (block.in[i].held != 0)
+            continue;
+        const glm::dvec3 point = froms[i] + glm::dvec3(block.x[i], block.y[i], block.z[i]);
+        EXPECT_LT(glm::distance(point, expected[i].point), 2e-3) << i;
+    }
+    // Whatever the processor's vectors are, and how many edges: the same bits.
+    for (const size_t count : {size_t{1}, size_t{5}, kCount}) {
+        approximate::EdgeBlock by_4{};
+        std::copy(std::begin(block.in), std::end(block.in), by_4.in);
+        edge_costs_by_4(by_4, count);
+        for (size_t i = 0; i < count; ++i) {
+            EXPECT_EQ(std::bit_cast<uint32_t>(by_4.cost[i]),
+                      std::bit_cast<uint32_t>(block.cost[i]));
+            EXPECT_EQ(std::bit_cast<uint32_t>(by_4.z[i]), std::bit_cast<uint32_t>(block.z[i]));
+        }
+    }
+}
+
+TEST(Collapse, FansAreFoundAndPutInOrder) {
+    using approximate::Neighbors;
+    // Around vertex 0: triangles (0, a, b), in no order.
+    const auto around = [](std::vector<std::pair<uint32_t, uint32_t>> pairs) {
+        approximate::CollapseMesh mesh;
+        uint32_t turn = 0;
+        for (const auto& [a, b] : pairs) {
+            const Triangle turned[] = {{0, a, b}, {a, b, 0}, {b, 0, a}};
+            mesh.triangles.push_back(turned[turn++ % 3]);
+        }
+        return mesh;
+    };
+    const auto fan_of = [](const approximate::CollapseMesh& mesh, std::vector<uint32_t>& ring,
+                           bool& single) {
+        ring.resize(mesh.triangles.size());
+        std::iota(ring.begin(), ring.end(), 0u);
+        Neighbors neighbors;
+        const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, 0);
+        single = fan != Neighbors::Fan::None && neighbors.order(ring);
+        return fan;
+    };
+    std::vector<uint32_t> ring;
+    bool single = false;
+    EXPECT_EQ(fan_of(around({}), ring, single), Neighbors::Fan::None);
+    EXPECT_EQ(fan_of(around({{1, 2}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_TRUE(single);
+    const auto closed = around({{1, 2}, {4, 1}, {2, 3}, {3, 4}});
+    EXPECT_EQ(fan_of(closed, ring, single), Neighbors::Fan::Closed);
+    ASSERT_TRUE(single);
+    for (size_t i = 0; i < ring.size(); ++i)
+        EXPECT_EQ(approximate::ends_of(closed.triangles[ring[i]], 0).last,
+                  approximate::ends_of(closed.triangles[ring[(i + 1) % ring.size()]], 0).next);
+    const auto open = around({{3, 4}, {1, 2}, {2, 3}});
+    EXPECT_EQ(fan_of(open, ring, single), Neighbors::Fan::Open);
+    EXPECT_TRUE(single);
+    EXPECT_EQ(ring, (std::vector<uint32_t>{1, 2, 0}));
+    // Two closed fans, one of them next to all there are; an open and a closed one; turned over;
+    // three on an edge.
+    EXPECT_EQ(fan_of(around({{1, 2}, {4, 5}, {2, 3}, {5, 6}, {3, 1}, {6, 4}}), ring, single),
+              Neighbors::Fan::Closed);
+    EXPECT_FALSE(single);
+    EXPECT_EQ(fan_of(around({{7, 8}, {1, 2}, {2, 3}, {3, 1}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_FALSE(single);
+    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {7, 8}, {3, 1}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_FALSE(single);
+    EXPECT_EQ(fan_of(around({{1, 2}, {3, 2}}), ring, single), Neighbors::Fan::None);
+    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {2, 4}}), ring, single), Neighbors::Fan::None);
+}
+
+TEST(Collapse, CompactingFillsTheListsThatBuildingMakes) {
+    const Mesh mesh = hills(20);
+    approximate::CollapseMesh working = approximate::open(mesh, {});
+    for (size_t i = 0; i < working.triangles.size(); i += i % 7 + 2)
+        working.triangles[i].x = approximate::kNone;
+    approximate::Adjacency filled;
+    compact(working, &filled);
+    approximate::Adjacency built;
+    built.build(working);
+    EXPECT_EQ(filled.first, built.first);
+    EXPECT_EQ(filled.triangles, built.triangles);
 }
 
 TEST(Collapse, KeysSortAsCostsDo) {

@@ -11,9 +11,12 @@ namespace lodestone::approximate {
 
 struct Adjacency {
     std::vector<uint32_t> first;      // one a vertex, plus the end
-    std::vector<uint32_t> triangles;  // ascending within a vertex
+    std::vector<uint32_t> triangles;  // ascending within a vertex, until somebody orders them
 
     std::span<const uint32_t> around(uint32_t vertex) const {
+        return {triangles.data() + first[vertex], triangles.data() + first[vertex + 1]};
+    }
+    std::span<uint32_t> around(uint32_t vertex) {
         return {triangles.data() + first[vertex], triangles.data() + first[vertex + 1]};
     }
     size_t valence(uint32_t vertex) const { return first[vertex + 1] - first[vertex]; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/collapse.h"
 
+#include "approximate/neighbors.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +13,6 @@ namespace {
 constexpr size_t kMostAround = 1000;
 /// Twice the area over the longest edge squared: thinner triangles are not made from fatter ones.
 constexpr double kThin = 2e-3;
-
-double longest_square(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    return std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
-}
 
 }  // namespace
 
@@ -33,75 +31,86 @@ Collapser::Collapser(CollapseMesh& mesh, const Adjacency& adjacency, const Edges
     stamps_.assign(count_, 0);
 }
 
-bool Collapser::find_corners(uint32_t vertex, Corners& corners) const {
+bool Collapser::find_corners(uint32_t vertex, uint32_t other, Corners& corners,
+                             Corners& shared) const {
     const std::span<const uint32_t> around = adjacency_.around(vertex);
-    if (corners.room.size() < around.size())
-        corners.room.resize(2 * around.size());
-    Corner* to = corners.room.data();
+    Corner* to = corners.reserve(around.size());
+    Corner* on = shared.reserve(around.size());
     bool inside = true;
     for (const uint32_t t : around) {
         const Triangle& c = mesh_.triangles[t];
-        // No branches: which corner it is nobody can predict.
-        const bool first = c.x == vertex;
-        const bool second = c.y == vertex;
-        to->triangle = t;
-        to->next = first ? c.y : (second ? c.z : c.x);
-        to->last = first ? c.z : (second ? c.x : c.y);
+        const Ends ends = ends_of(c, vertex);
+        // Written to both, counted in one: no branches here either.
         const bool live = c.x != kNone;
-        inside &= !live || (to->next - first_ < count_ && to->last - first_ < count_);
-        to += live;
+        const bool shares = (ends.next == other) | (ends.last == other);
+        to->triangle = on->triangle = t;
+        to->at = on->at = ends.at;
+        to->next = on->next = ends.next;
+        to->last = on->last = ends.last;
+        const bool near = (ends.next - first_ < count_) & (ends.last - first_ < count_);
+        inside &= near | !live;
+        to += live & !shares;
+        on += live & shares;
     }
     corners.count = static_cast<size_t>(to - corners.room.data());
+    shared.count = static_cast<size_t>(on - shared.room.data());
     return inside;
 }
 
 bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
     now_ += 2;
-    shared_.clear();
-    left_ = 0;
-    for (const Corner& corner : around_a_) {
-        if (corner.on(b))
-            shared_.push_back(corner.triangle);
+    for (const Corner& corner : around_a_)
         stamp(corner.next) = stamp(corner.last) = now_;
-    }
+    for (const Corner& corner : shared_)
+        stamp(corner.next == b ? corner.last : corner.next) = now_;
     size_t common = 0;
-    size_t on_a = 0;
+    const auto count = [&](uint32_t vertex) {
+        uint32_t& mark = stamp(vertex);
+        const bool met = mark == now_;
+        mark += met;
+        common += met;
+    };
     for (const Corner& corner : around_b_) {
-        on_a += corner.on(a);
-        for (const uint32_t u : {corner.next, corner.last}) {
-            if (stamp(u) != now_)
-                continue;
-            stamp(u) = now_ + 1;
-            ++common;
-        }
+        count(corner.next);
+        count(corner.last);
     }
-    left_ = around_a_.count - shared_.size() + around_b_.count - on_a;
-    if (!search && common != shared_.size())
+    for (const Corner& corner : shared_)
+        count(corner.next == b ? corner.last : corner.next);
+    if (!search && common != shared_.count)
         return false;
     // A hub's coinciding triangles are left: finding them takes quadratic time.
     const bool hub = adjacency_.valence(a) + adjacency_.valence(b) > kMostAround;
-    return left_ > 0 && (hub || !find_coinciding(a, b)) && common == shared_.size();
+    const bool left = around_a_.count + around_b_.count > 0;
+    return left && (hub || !find_coinciding()) && common == shared_.count;
 }
 
-bool Collapser::turns_allow(const std::vector<glm::dvec3>& points,
-                            const std::vector<glm::vec3>& facets, Corners& corners, uint32_t other,
+bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corners,
                             const glm::dvec3& from, const glm::dvec3& point) {
+    const auto longest_square = [](const glm::vec3& next, const glm::vec3& last) {
+        const glm::vec3 across = last - next;
+        return static_cast<double>(
+            std::max({glm::dot(next, next), glm::dot(last, last), glm::dot(across, across)}));
+    };
     for (Corner& corner : corners) {
-        if (corner.on(other))
-            continue;
-        const glm::dvec3& next = points[corner.next];
-        const glm::dvec3& last = points[corner.last];
-        const glm::dvec3 facet = 0.5 * glm::cross(next - point, last - point);
-        corner.facet = glm::vec3(facet);
-        const glm::dvec3 old(facets[corner.triangle]);
+        const glm::dvec3& end_next = points[corner.next];
+        const glm::dvec3& end_last = points[corner.last];
+        // Differences are all that single precision is asked for; products of areas leave its range.
+        const glm::vec3 next(end_next - point);
+        const glm::vec3 last(end_last - point);
+        const glm::vec3 facet = 0.5f * glm::cross(next, last);
+        corner.facet = facet;
+        // Not read: it lies where nothing else is needed from.
+        const glm::vec3 old_next(end_next - from);
+        const glm::vec3 old_last(end_last - from);
+        const glm::vec3 old = 0.5f * glm::cross(old_next, old_last);
         const double square = glm::dot(facet, facet);
         const double old_square = glm::dot(old, old);
-        const double longest = longest_square(point, next, last);
+        const double longest = longest_square(next, last);
         const double dot = glm::dot(facet, old);
         const double thin = kThin * kThin * longest * longest;
         if (dot > 0 && dot * dot >= square_cosine_ * square * old_square && 4 * square >= thin)
             continue;
-        const double old_longest = longest_square(from, next, last);
+        const double old_longest = longest_square(old_next, old_last);
         // Where there was no area there is no side to keep.
         if (old_square <= 1e-20 * old_longest * old_longest)
             continue;
@@ -117,26 +126,25 @@ bool Collapser::turns_allow(const std::vector<glm::dvec3>& points,
 }
 
 bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point) {
-    const auto both = [&](const std::vector<glm::dvec3>& points,
-                          const std::vector<glm::vec3>& facets, const glm::dvec3& to) {
-        return turns_allow(points, facets, around_a_, b, points[a], to) &&
-               turns_allow(points, facets, around_b_, a, points[b], to);
+    const auto both = [&](const std::vector<glm::dvec3>& points, const glm::dvec3& to) {
+        return turns_allow(points, around_a_, points[a], to) &&
+               turns_allow(points, around_b_, points[b], to);
     };
     for (size_t i = 0; i < others_.size(); ++i) {
-        if (!both(mesh_.others[i].points, mesh_.others[i].facets, others_[i]))
+        if (!both(mesh_.others[i].points, others_[i]))
             return false;
     }
-    return both(mesh_.points, mesh_.facets, point);  // last: its area vectors are kept
+    return both(mesh_.points, point);  // last: its area vectors are kept
 }
 
-bool Collapser::find_coinciding(uint32_t a, uint32_t b) {
+bool Collapser::find_coinciding() {
     doomed_.clear();
     const auto near_a = [&](uint32_t u) { return stamp(u) - now_ <= 1; };
     for (const Corner& corner : around_b_) {
-        if (corner.on(a) || !near_a(corner.next) || !near_a(corner.last))
+        if (!near_a(corner.next) || !near_a(corner.last))
             continue;
         for (const Corner& other : around_a_) {
-            if (!other.on(corner.next) || !other.on(corner.last) || other.on(b) ||
+            if (!other.on(corner.next) || !other.on(corner.last) ||
                 std::find(doomed_.begin(), doomed_.end(), other.triangle) != doomed_.end())
                 continue;
             doomed_.push_back(corner.triangle);
@@ -148,62 +156,64 @@ bool Collapser::find_coinciding(uint32_t a, uint32_t b) {
     return !doomed_.empty();
 }
 
-size_t Collapser::collapse(uint32_t a, uint32_t b) {
+size_t Collapser::collapse(const Candidate& edge) {
+    const uint32_t a = edge.a;
+    const uint32_t b = edge.b;
     const size_t around = adjacency_.valence(a) + adjacency_.valence(b);
     work_ += around;
     if (around > kMostAround && effort_ < Effort::Anything)
         return 0;
-    if (!find_corners(a, around_a_) || !find_corners(b, around_b_))
+    if (!find_corners(a, b, around_a_, shared_) || !find_corners(b, a, around_b_, shared_b_))
         return kOutside;
+    // An earlier collapse of this pass took the edge's triangles: it is none any more.
+    if (shared_.count == 0)
+        return 0;
     doomed_.clear();
     const bool fits = link_allows(a, b, effort_ >= Effort::Topology);
     if (effort_ < Effort::Topology && !fits)
         return 0;
-    if (left_ <= doomed_.size())
+    if (around_a_.count + around_b_.count <= doomed_.size())
         return 0;
-    // An earlier collapse of this pass took the edge's triangles: it is none any more.
-    if (shared_.empty())
-        return 0;
-    const glm::dvec3 point = edges_.optimum(mesh_, a, b, shared_, effort_).point;
-    edges_.other_points(mesh_, a, b, shared_, effort_, others_);
+    const glm::dvec3 point = edges_.point(mesh_, edge, effort_);
+    if (!mesh_.others.empty()) {
+        std::vector<uint32_t> shared;
+        for (const Corner& corner : shared_)
+            shared.push_back(corner.triangle);
+        edges_.other_points(mesh_, a, b, shared, effort_, others_);
+    }
     if (effort_ < Effort::Anything && !all_turns_allow(a, b, point))
         return 0;
     const bool carried = !mesh_.wedges.empty();
     if (carried && !wedges_.plan(mesh_, adjacency_, a, b, point, effort_ >= Effort::Rough))
         return 0;
-    size_t gone = 0;
-    for (const uint32_t t : doomed_) {
+    for (const uint32_t t : doomed_)
         mesh_.triangles[t].x = kNone;
-        ++gone;
-    }
+    for (const Corner& corner : shared_)
+        mesh_.triangles[corner.triangle].x = kNone;
     mesh_.points[a] = point;
     for (size_t i = 0; i < others_.size(); ++i)
         mesh_.others[i].points[a] = others_[i];
     mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
-    for (const uint32_t end : {a, b}) {
-        for (const Corner& corner : end == a ? around_a_ : around_b_) {
+    for (Corners* corners : {&around_a_, &around_b_}) {
+        for (const Corner& corner : *corners) {
             const uint32_t t = corner.triangle;
-            Triangle& corners = mesh_.triangles[t];
-            if (corners.x == kNone)  // doomed, or on the edge and met before
+            Triangle& ends = mesh_.triangles[t];
+            if (ends.x == kNone)  // doomed
                 continue;
-            if (corner.on(end == a ? b : a)) {
-                corners.x = kNone;
-                ++gone;
-                continue;
+            (&ends.x)[corner.at] = a;
+            if (carried) {
+                uint32_t& wedge = (&mesh_.wedges[t].x)[corner.at];
+                wedge = wedges_.wedge_of(wedge);
             }
-            const int at = corners.x == end ? 0 : (corners.y == end ? 1 : 2);
-            corners[at] = a;
-            if (carried)
-                mesh_.wedges[t][at] = wedges_.wedge_of(mesh_.wedges[t][at]);
             mesh_.facets[t] =
-                effort_ < Effort::Anything ? corner.facet : glm::vec3(mesh_.facet_of(corners));
+                effort_ < Effort::Anything ? corner.facet : glm::vec3(mesh_.facet_of(ends));
             for (OtherPose& other : mesh_.others)
-                other.facets[t] = glm::vec3(CollapseMesh::facet_of(other.points, corners));
+                other.facets[t] = glm::vec3(CollapseMesh::facet_of(other.points, ends));
         }
     }
     if (carried)
         wedges_.apply(mesh_);
-    return gone;
+    return doomed_.size() + shared_.count;
 }
 
 }  // namespace lodestone::approximate

@@ -20,9 +20,9 @@ public:
 
     /// What collapse() returns where it would have to reach beyond the chunk.
     static constexpr size_t kOutside = ~size_t{0};
-    /// Collapses a and b into a where that costs least, or changes nothing and returns 0. Returns
-    /// how many triangles went; of the mesh, `live` still counts them.
-    size_t collapse(uint32_t a, uint32_t b);
+    /// Collapses the edge into its end a, or changes nothing and returns 0. Returns how many
+    /// triangles went; of the mesh, `live` still counts them.
+    size_t collapse(const Candidate& edge);
 
     /// Asks for what collapse() of this edge will need: what it reads lies anywhere, and waiting for
     /// memory is most of its time. First for the lists, some edges later for the triangles in them.
@@ -43,9 +43,9 @@ public:
 
 private:
     static constexpr size_t kMostExpected = 8;
-    /// A live triangle around a vertex: after it come the corners next and last.
+    /// A live triangle around a vertex, which is its corner `at`: after it come next and last.
     struct Corner {
-        uint32_t triangle, next, last;
+        uint32_t triangle, at, next, last;
         glm::vec3 facet;  // its area vector after the collapse; by turns_allow
         bool on(uint32_t vertex) const { return next == vertex || last == vertex; }
     };
@@ -54,21 +54,27 @@ private:
         size_t count = 0;
         Corner* begin() { return room.data(); }
         Corner* end() { return room.data() + count; }
+        /// Empty, with room for one more than `most`.
+        Corner* reserve(size_t most) {
+            if (room.size() <= most)
+                room.resize(2 * most + 1);
+            return room.data();
+        }
     };
-    /// False: one of them is not in the chunk.
-    bool find_corners(uint32_t vertex, Corners& corners) const;
-    /// True when the surface stays as connected as it was. Counts left_ and shared_; fills doomed_
-    /// if it could be true, or always with `search`.
+    /// Around an end of the edge: triangles on the edge, and the others. False: one of their corners
+    /// is not in the chunk.
+    bool find_corners(uint32_t vertex, uint32_t other, Corners& corners, Corners& shared) const;
+    /// True when the surface stays as connected as it was. Fills doomed_ if it could be true, or
+    /// always with `search`.
     bool link_allows(uint32_t a, uint32_t b, bool search);
     uint32_t& stamp(uint32_t vertex) { return stamps_[vertex - first_]; }
     /// In one pose: `from` is where the corners' vertex is. Sets the corners' new area vectors.
-    bool turns_allow(const std::vector<glm::dvec3>& points, const std::vector<glm::vec3>& facets,
-                     Corners& corners, uint32_t other, const glm::dvec3& from,
-                     const glm::dvec3& point);
+    bool turns_allow(const std::vector<glm::dvec3>& points, Corners& corners,
+                     const glm::dvec3& from, const glm::dvec3& point);
     /// Both ends, in all poses.
     bool all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point);
     /// Fills doomed_ with triangles that would coincide: opposite pairs vanish, copies stay once.
-    bool find_coinciding(uint32_t a, uint32_t b);
+    bool find_coinciding();
 
     CollapseMesh& mesh_;
     const Adjacency& adjacency_;
@@ -77,15 +83,15 @@ private:
     uint32_t first_;  // vertices it may touch, and how many
     uint32_t count_;
     double square_cosine_;
-    Corners around_a_;
+    Corners around_a_;  // without those on the edge
     Corners around_b_;
+    Corners shared_;  // triangles on the edge, as a sees them
+    Corners shared_b_;
     std::vector<uint32_t> stamps_;  // now_: near a; now_ + 1: near both
     uint32_t now_ = 0;
     WedgeMerge wedges_;
     std::vector<uint32_t> doomed_;
-    std::vector<uint32_t> shared_;    // triangles on the edge
     std::vector<glm::dvec3> others_;  // where it goes in the mesh's other poses
-    size_t left_ = 0;                 // triangles around the edge that are not on it
     size_t work_ = 0;
 };
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/collapse_mesh.h"
 
+#include "approximate/adjacency.h"
 #include "approximate/curve.h"
 #include "approximate/sheets.h"
 #include "approximate/wedges.h"
+#include "base/parallel.h"
 
 #include <glm/common.hpp>
 
@@ -174,9 +176,13 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     split_fans(mesh);
     job.check();
     find_parts(mesh);
-    mesh.facets.reserve(mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles)
-        mesh.facets.emplace_back(mesh.facet_of(t));
+    mesh.facets.resize(mesh.triangles.size());
+    constexpr size_t kChunk = 16384;
+    parallel_for((mesh.triangles.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
+        const size_t end = std::min(mesh.triangles.size(), (chunk + 1) * kChunk);
+        for (size_t i = chunk * kChunk; i < end; ++i)
+            mesh.facets[i] = glm::vec3(mesh.facet_of(mesh.triangles[i]));
+    });
     for (OtherPose& other : mesh.others) {
         other.facets.reserve(mesh.triangles.size());
         for (const Triangle& t : mesh.triangles)
@@ -190,14 +196,14 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     return mesh;
 }
 
-void compact(CollapseMesh& mesh) {
-    std::vector<uint32_t> moved(mesh.points.size(), kNone);
+void compact(CollapseMesh& mesh, Adjacency* adjacency) {
+    std::vector<uint32_t> moved(mesh.points.size(), 0);  // first how many triangles use it
     size_t kept = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i))
             continue;
         for (int corner = 0; corner < 3; ++corner)
-            moved[mesh.triangles[i][corner]] = 0;
+            ++moved[mesh.triangles[i][corner]];
         mesh.triangles[kept] = mesh.triangles[i];
         mesh.facets[kept] = mesh.facets[i];
         for (OtherPose& other : mesh.others)
@@ -218,9 +224,16 @@ void compact(CollapseMesh& mesh) {
         mesh.slots.resize(kept);
     mesh.live = kept;
     uint32_t count = 0;
+    uint32_t uses = 0;
+    if (adjacency != nullptr)
+        adjacency->first.assign(mesh.points.size() + 1, 0);
     for (size_t v = 0; v < moved.size(); ++v) {
-        if (moved[v] == kNone)
+        if (moved[v] == 0)
             continue;
+        // Shifted by one, as in Adjacency::build().
+        if (adjacency != nullptr)
+            adjacency->first[count + 1] = uses;
+        uses += moved[v];
         mesh.points[count] = mesh.points[v];
         for (OtherPose& other : mesh.others)
             other.points[count] = other.points[v];
@@ -235,6 +248,14 @@ void compact(CollapseMesh& mesh) {
     mesh.parts.resize(count);
     for (Triangle& t : mesh.triangles)
         t = Triangle(moved[t.x], moved[t.y], moved[t.z]);
+    if (adjacency == nullptr)
+        return;
+    adjacency->first.resize(count + 1);
+    adjacency->triangles.resize(uses);
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (int corner = 0; corner < 3; ++corner)
+            adjacency->triangles[adjacency->first[mesh.triangles[i][corner] + 1]++] = i;
+    }
 }
 
 void shrink(CollapseMesh& mesh) {

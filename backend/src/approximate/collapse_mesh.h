@@ -64,8 +64,11 @@ using OtherPositions = std::span<const std::vector<glm::vec3>>;
 /// Leaves out triangles with non-finite vertices and those with two corners in one place.
 CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {});
 
-/// Drops dead triangles and the vertices nothing uses, keeping order.
-void compact(CollapseMesh& mesh);
+struct Adjacency;
+
+/// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when given,
+/// which takes less time than building it afterwards.
+void compact(CollapseMesh& mesh, Adjacency* adjacency = nullptr);
 
 /// Gives back the memory that dead triangles and unused vertices took before they were dropped.
 void shrink(CollapseMesh& mesh);

@@ -19,21 +19,29 @@ struct VertexAround {
 
 /// An edge's two ends, the sum of the area vectors of the triangles on it, and which end is held
 /// (-1: a, 1: b, 0: none).
-struct alignas(16) EdgeInput {
-    VertexAround a;
-    VertexAround b;
+struct EdgeInput {
+    const VertexAround* a;
+    const VertexAround* b;
     glm::vec3 shared{0.0f};
     float held = 0;
 };
 
-/// As best_point and cost_at of quadric.h, in single precision. What is not filled in is arbitrary.
+/// As best_point and cost_at of quadric.h, in single precision.
 struct EdgeBlock {
     static constexpr size_t kSize = 64;
     EdgeInput in[kSize];
     float cost[kSize];
+    float x[kSize], y[kSize], z[kSize];  // where it goes, from a; unless an end is held
 };
 
-void edge_costs(EdgeBlock& block);
+/// Of the first `count` edges; those after them up to the next eight must be there, too.
+void edge_costs(EdgeBlock& block, size_t count = EdgeBlock::kSize);
+
+/// The same bits, by the processor's vectors; of eight only where it has AVX2.
+void edge_costs_by_4(EdgeBlock& block, size_t count);
+#ifdef LODESTONE_AVX2
+void edge_costs_by_8(EdgeBlock& block, size_t count);
+#endif
 
 /// Costs are never negative: their bits sort as they do. Above all of them:
 inline constexpr uint32_t kImpossible = 0x7f800000;

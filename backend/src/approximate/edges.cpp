@@ -72,9 +72,43 @@ Quadric quadric_of(const VertexAround& around) {
     return {around.xx, around.xy, around.xz, around.yy, around.yz, around.zz};
 }
 
+void add(VertexAround& around, const Quadric& q) {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    around.xx += f(q.xx);
+    around.xy += f(q.xy);
+    around.xz += f(q.xz);
+    around.yy += f(q.yy);
+    around.yz += f(q.yz);
+    around.zz += f(q.zz);
+}
+
+using Lanes = float __attribute__((vector_size(16)));
+
+/// Of a vertex at `point`, as the planes of its triangles have it.
+VertexAround around_of(const glm::dvec3& point, const std::vector<glm::vec3>& facets,
+                       std::span<const uint32_t> ring) {
+    Lanes sum{};
+    Lanes squares{};   // xx, yy, zz
+    Lanes products{};  // xy, yz, zx
+    for (const uint32_t t : ring) {
+        const glm::vec3& facet = facets[t];
+        const float square = facet.x * facet.x + facet.y * facet.y + facet.z * facet.z;
+        const float weight = square > 1e-37f ? 1 / std::sqrt(square) : 0.0f;
+        const Lanes f{facet.x, facet.y, facet.z, 0};
+        const Lanes weighted = weight * f;
+        sum += f;
+        squares += f * weighted;
+        products += f * __builtin_shufflevector(weighted, weighted, 1, 2, 0, 3);
+    }
+    return {glm::vec3(point), glm::vec3(sum[0], sum[1], sum[2]),
+            squares[0],       products[0],
+            products[2],      squares[1],
+            products[1],      squares[2]};
+}
+
 constexpr uint32_t kChunk = 8192;
 /// Vertices whose edges are asked what they cost before all are.
-constexpr uint32_t kSampled = 2048;
+constexpr uint32_t kSampled = 512;
 constexpr uint32_t kRun = 8;  // of them in a row
 
 /// The bits by which candidates are ordered, and how many values these have.
@@ -82,48 +116,42 @@ constexpr size_t kSteps = (kImpossible >> kKeyShift) + 1;
 
 }  // namespace
 
-void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
-                  const SimplifyOptions& options, uint32_t vertex, Neighbors& neighbors,
-                  Chunk* borders) {
-    const std::span<const uint32_t> ring = adjacency.around(vertex);
+void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
+                  uint32_t vertex, Neighbors& neighbors, Chunk* borders) {
+    const std::span<uint32_t> ring = adjacency.around(vertex);
     for (const uint32_t t : adjacency.ahead(vertex)) {
         __builtin_prefetch(&mesh.triangles[t]);
         __builtin_prefetch(&mesh.facets[t]);
     }
-    const auto add_planes = [&](const std::vector<glm::vec3>& facets, Quadric& quadric) {
-        glm::vec3 sum(0.0f);
-        float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-        for (const uint32_t t : ring) {
-            // By the component: copies of vectors go through memory, and wait for it.
-            const float x = facets[t].x;
-            const float y = facets[t].y;
-            const float z = facets[t].z;
-            sum += glm::vec3(x, y, z);
-            const float square = x * x + y * y + z * z;
-            const float weight = square > 1e-37f ? 1 / std::sqrt(square) : 0.0f;
-            const float wx = weight * x;
-            const float wy = weight * y;
-            const float wz = weight * z;
-            xx += x * wx;
-            xy += x * wy;
-            xz += x * wz;
-            yy += y * wy;
-            yz += y * wz;
-            zz += z * wz;
-        }
-        quadric += Quadric{xx, xy, xz, yy, yz, zz};
-        return sum;
-    };
+    own_[vertex] = around_of(mesh.points[vertex], mesh.facets, ring);
+    for (size_t i = 0; i < others_.size(); ++i)
+        others_[i][vertex] = around_of(mesh.others[i].points[vertex], mesh.others[i].facets, ring);
+    const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, vertex);
+    const bool closed = fan == Neighbors::Fan::Closed;
+    const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
+    if (closed && plain) {
+        kinds_[vertex] = neighbors.order(ring) ? VertexKind::FreeFan : VertexKind::Free;
+        return;
+    }
+    if (fan == Neighbors::Fan::Open && plain && others_.empty() && neighbors.order(ring)) {
+        Quadric quadric;
+        const auto border = [&](uint32_t neighbor, uint32_t triangle) {
+            if (neighbor > vertex && borders != nullptr)
+                borders->borders.emplace_back(vertex, neighbor);
+            hold_edge(quadric, mesh.points[neighbor] - mesh.points[vertex],
+                      glm::dvec3(mesh.facets[triangle]), options.boundary_weight);
+        };
+        border(neighbors.first_corner(), ring.front());
+        border(neighbors.last_corner(), ring.back());
+        add(own_[vertex], quadric);
+        kinds_[vertex] = VertexKind::CurveFan;
+        return;
+    }
     Quadric quadric;
-    const glm::vec3 sum = add_planes(mesh.facets, quadric);
     std::vector<Quadric> quadrics(others_.size());
-    const bool fan = neighbors.find_fan(mesh, ring, vertex);
-    const bool plain = fan && mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
     int open = 0;
-    std::span<const Neighbors::Neighbor> found;
-    if (!plain)
-        found = neighbors.find(mesh, ring, vertex, fan);
-    for (const Neighbors::Neighbor& n : found) {
+    bool holds = false;
+    for (const Neighbors::Neighbor& n : neighbors.find(mesh, ring, vertex, closed)) {
         const bool two = n.uses == 2;
         if (!two && n.vertex > vertex && borders != nullptr)
             borders->borders.emplace_back(vertex, n.vertex);
@@ -152,6 +180,7 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
                 weight = std::max(weight, kink * options.boundary_weight);
         }
         if (weight > 0) {
+            holds = true;
             const auto hold = [&](const std::vector<glm::dvec3>& points,
                                   const std::vector<glm::vec3>& facets, Quadric& held) {
                 const glm::dvec3 edge = points[n.vertex] - points[vertex];
@@ -164,23 +193,20 @@ void Edges::visit(const CollapseMesh& mesh, const Adjacency& adjacency,
                 hold(mesh.others[i].points, mesh.others[i].facets, quadrics[i]);
         }
     }
-    const auto around = [](const glm::dvec3& point, const glm::vec3& facet, const Quadric& q) {
-        const auto f = [](double value) { return static_cast<float>(value); };
-        return VertexAround{glm::vec3(point), facet,   f(q.xx), f(q.xy),
-                            f(q.xz),          f(q.yy), f(q.yz), f(q.zz)};
-    };
-    own_[vertex] = around(mesh.points[vertex], sum, quadric);
-    for (size_t i = 0; i < others_.size(); ++i) {
-        const glm::vec3 other_sum = add_planes(mesh.others[i].facets, quadrics[i]);
-        others_[i][vertex] = around(mesh.others[i].points[vertex], other_sum, quadrics[i]);
+    if (holds) {
+        add(own_[vertex], quadric);
+        for (size_t i = 0; i < others_.size(); ++i)
+            add(others_[i][vertex], quadrics[i]);
     }
     kinds_[vertex] = open == 0   ? VertexKind::Free
                      : open == 2 ? VertexKind::Curve
                                  : VertexKind::Fixed;
+    if (closed && neighbors.order(ring))
+        kinds_[vertex] = VertexKind::FreeFan;
 }
 
-void Edges::build(const CollapseMesh& mesh, const Adjacency& adjacency,
-                  const SimplifyOptions& options, bool borders, const Job& job) {
+void Edges::build(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
+                  bool borders, const Job& job) {
     const size_t vertices = mesh.points.size();
     own_.resize(vertices);
     others_.resize(mesh.others.size());
@@ -220,35 +246,54 @@ public:
         const std::span<const uint32_t> ring = adjacency_.around(vertex);
         for (const uint32_t t : adjacency_.ahead(vertex))
             __builtin_prefetch(&mesh_.triangles[t]);
-        if (neighbors_.find_fan(mesh_, ring, vertex)) {
-            for (uint32_t i = 0; i < ring.size(); ++i) {
-                if (neighbors_.corner(i) > vertex)
-                    price(vertex, neighbors_.corner(i), ring[i], ring[neighbors_.before(i)], take);
+        if (count_ + ring.size() >= kWaiting)
+            flush(take);
+        const VertexKind kind = edges_.kinds_[vertex];
+        const bool curve = kind == VertexKind::CurveFan;
+        if ((kind != VertexKind::FreeFan && !curve) || !edges_.others_.empty()) {
+            for (const Neighbors::Neighbor& n : neighbors_.find(mesh_, ring, vertex, false)) {
+                if (n.vertex > vertex)
+                    price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
             }
             return;
         }
-        for (const Neighbors::Neighbor& n : neighbors_.find(mesh_, ring, vertex, false)) {
-            if (n.vertex > vertex)
-                price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
+        // Fans have fewer triangles than there is room for edges: all of them find some. What they
+        // are priced by is only asked for: it has come when a block of edges is full.
+        uint32_t before = curve ? kNone : ring.back();
+        uint32_t last = 0;
+        for (const uint32_t t : ring) {
+            const Ends ends = ends_of(mesh_.triangles[t], vertex);
+            last = ends.last;
+            __builtin_prefetch(&edges_.own_[ends.next]);
+            __builtin_prefetch(&mesh_.facets[t]);
+            waiting_[count_] = {vertex, ends.next, t, before};
+            count_ += ends.next > vertex &&
+                      (!curve || edges_.allowed(vertex, ends.next, before == kNone, effort_));
+            before = t;
         }
+        if (curve && last > vertex && edges_.allowed(vertex, last, true, effort_))
+            waiting_[count_++] = {vertex, last, ring.back(), kNone};
     }
 
     template <typename Take>
     void flush(const Take& take) {
-        if (count_ == 0)
-            return;
-        for (size_t i = 0; i < count_; ++i)
-            block_.in[i] = input_of(waiting_[i]);
-        edge_costs(block_);
-        for (size_t i = 0; i < count_; ++i) {
-            const uint32_t key = key_of_cost(block_.cost[i]);
-            if (key < kImpossible)
-                take(Candidate{waiting_[i].a, waiting_[i].b, key});
+        for (size_t begin = 0; begin < count_; begin += EdgeBlock::kSize) {
+            const size_t count = std::min(EdgeBlock::kSize, count_ - begin);
+            const Waiting* waiting = waiting_.data() + begin;
+            for (size_t i = 0; i < count; ++i)
+                block_.in[i] = input_of(waiting[i]);
+            for (size_t i = count; i % 8 != 0; ++i)
+                block_.in[i] = block_.in[0];
+            edge_costs(block_, count);
+            for (size_t i = 0; i < count; ++i)
+                take(Candidate{waiting[i].a, waiting[i].b, key_of_cost(block_.cost[i]),
+                               glm::vec3(block_.x[i], block_.y[i], block_.z[i])});
         }
         count_ = 0;
     }
 
 private:
+    static constexpr size_t kWaiting = 2 * EdgeBlock::kSize;
     struct Waiting {
         uint32_t a, b, t0, t1;
     };
@@ -258,37 +303,24 @@ private:
         if (!edges_.allowed(a, b, t1 == kNone, effort_))
             return;
         if (edges_.others_.empty()) {
-            add(a, b, t0, t1);
-            if (count_ == EdgeBlock::kSize)
+            if (count_ == kWaiting)
                 flush(take);
+            waiting_[count_++] = {a, b, t0, t1};
             return;
         }
         const uint32_t shared[2] = {t0, t1};
         const std::span<const uint32_t> on(shared, t1 == kNone ? 1 : 2);
-        const double cost = edges_.optimum(mesh_, a, b, on, effort_).cost;
-        const uint32_t key = key_of_cost(static_cast<float>(cost));
-        if (key < kImpossible)
-            take(Candidate{a, b, key});
-    }
-
-    /// Only asks for what it is priced by: that has come when a block of edges is full.
-    void add(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1) {
-        __builtin_prefetch(&edges_.own_[b]);
-        __builtin_prefetch(&mesh_.facets[t0]);
-        if (t1 != kNone)
-            __builtin_prefetch(&mesh_.facets[t1]);
-        waiting_[count_++] = {a, b, t0, t1};
+        const Optimum best = edges_.optimum(mesh_, a, b, on, effort_);
+        take(Candidate{a, b, key_of_cost(static_cast<float>(best.cost)),
+                       glm::vec3(best.point - mesh_.points[a])});
     }
 
     EdgeInput input_of(const Waiting& edge) const {
         glm::vec3 shared = mesh_.facets[edge.t0];
         if (edge.t1 != kNone)
             shared += mesh_.facets[edge.t1];
-        const bool fixed_a = edges_.kinds_[edge.a] == VertexKind::Fixed;
-        const bool fixed_b = edges_.kinds_[edge.b] == VertexKind::Fixed;
-        const bool held = fixed_a != fixed_b || (fixed_a && effort_ < Effort::Topology);
-        return {edges_.own_[edge.a], edges_.own_[edge.b], shared,
-                held ? (fixed_a ? -1.0f : 1.0f) : 0.0f};
+        return {&edges_.own_[edge.a], &edges_.own_[edge.b], shared,
+                static_cast<float>(edges_.held(edge.a, edge.b, effort_))};
     }
 
     const Edges& edges_;
@@ -297,7 +329,7 @@ private:
     Effort effort_;
     Neighbors neighbors_;
     EdgeBlock block_{};
-    std::array<Waiting, EdgeBlock::kSize> waiting_;
+    std::array<Waiting, kWaiting + 1> waiting_;
     size_t count_ = 0;
 };
 
@@ -307,7 +339,10 @@ uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Eff
     const uint32_t step = std::max(vertices / kSampled, 1u) * kRun;
     std::vector<uint32_t> keys;
     keys.reserve(size_t{kSampled} * 4);
-    const auto take = [&](const Candidate& candidate) { keys.push_back(candidate.key); };
+    const auto take = [&](const Candidate& candidate) {
+        if (candidate.key < kImpossible)
+            keys.push_back(candidate.key);
+    };
     Pricing pricing(*this, mesh, adjacency, effort);
     uint32_t sampled = 0;
     for (uint32_t first = 0; first < vertices; first += step) {
@@ -331,24 +366,31 @@ void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort ef
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
         Chunk& chunk = chunks_[i];
-        std::vector<Candidate> taken;
-        taken.reserve(chunk.last - chunk.first);
-        std::vector<uint32_t> starts(kSteps + 1, 0);
+        const size_t most = size_t{2} * (chunk.last - chunk.first);
+        std::vector<Candidate> taken(most / 2 + 1);
+        size_t count = 0;
         const auto take = [&](const Candidate& candidate) {
-            if (candidate.key > limit)
-                return;
-            taken.push_back(candidate);
-            ++starts[(candidate.key >> kKeyShift) + 1];
+            taken[count] = candidate;
+            count += candidate.key <= limit;
+            if (count == taken.size())
+                taken.resize(2 * count);
         };
         Pricing pricing(*this, mesh, adjacency, effort);
         for (uint32_t v = chunk.first; v < chunk.last; ++v)
             pricing.price(v, take);
         pricing.flush(take);
+        taken.resize(count);
+        std::vector<uint32_t> starts(kSteps + 1, 0);
+        for (const Candidate& candidate : taken)
+            ++starts[(candidate.key >> kKeyShift) + 1];
         for (size_t k = 0; k < kSteps; ++k)
             starts[k + 1] += starts[k];
-        chunk.candidates.resize(taken.size());
-        for (const Candidate& candidate : taken)
-            chunk.candidates[starts[candidate.key >> kKeyShift]++] = candidate;
+        chunk.candidates.resize(std::min(count, most));
+        for (const Candidate& candidate : taken) {
+            const uint32_t at = starts[candidate.key >> kKeyShift]++;
+            if (at < most)
+                chunk.candidates[at] = candidate;
+        }
     });
 }
 
@@ -358,7 +400,7 @@ bool Edges::allowed(uint32_t a, uint32_t b, bool border, Effort effort) const {
     if (kinds_[a] == VertexKind::Fixed && kinds_[b] == VertexKind::Fixed)
         return false;
     // An inner edge between two border points: collapsing it would pinch the surface.
-    return border || kinds_[a] == VertexKind::Free || kinds_[b] == VertexKind::Free;
+    return border || kinds_[a] <= VertexKind::Free || kinds_[b] <= VertexKind::Free;
 }
 
 Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
@@ -367,10 +409,8 @@ Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
                           std::span<const uint32_t> shared, Effort effort) const {
     const EdgeEnd end_a{points[a], quadric_of(around[a]), glm::dvec3(around[a].facet)};
     const EdgeEnd end_b{points[b], quadric_of(around[b]), glm::dvec3(around[b].facet)};
-    const bool fixed_a = kinds_[a] == VertexKind::Fixed;
-    const bool fixed_b = kinds_[b] == VertexKind::Fixed;
-    if (fixed_a != fixed_b || (fixed_a && effort < Effort::Topology)) {
-        const glm::dvec3& point = fixed_a ? end_a.point : end_b.point;
+    if (const int end = held(a, b, effort); end != 0) {
+        const glm::dvec3& point = end < 0 ? end_a.point : end_b.point;
         return {point, cost_at(end_a, end_b, point)};
     }
     glm::dvec3 both(0.0);

@@ -7,11 +7,11 @@ namespace lodestone::approximate {
 
 std::span<const Neighbors::Neighbor> Neighbors::find(const CollapseMesh& mesh,
                                                      std::span<const uint32_t> ring,
-                                                     uint32_t vertex, bool fan) {
+                                                     uint32_t vertex, bool closed) {
     found_.clear();
-    for (uint32_t i = 0; fan && i < ring.size(); ++i)
+    for (uint32_t i = 0; closed && i < ring.size(); ++i)
         found_.push_back({to_[i], 2, ring[i], ring[before_[i]], true, false});
-    if (!fan)
+    if (!closed)
         find_any(mesh, ring, vertex);
     return found_;
 }

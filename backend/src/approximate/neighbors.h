@@ -4,6 +4,8 @@
 
 #include "approximate/collapse_mesh.h"
 
+#include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +17,18 @@ inline int corner_of(const Triangle& t, uint32_t vertex) {
     return t.x == vertex ? 0 : (t.y == vertex ? 1 : 2);
 }
 
+/// What comes after the corner of a triangle that is `vertex`: the corner next, and the last one. No
+/// branches: which corner it is nobody can predict.
+struct Ends {
+    uint32_t at, next, last;
+};
+inline Ends ends_of(const Triangle& t, uint32_t vertex) {
+    const uint32_t* corners = &t.x;
+    const uint32_t at = static_cast<uint32_t>(t.y == vertex) + 2 * uint32_t{t.z == vertex};
+    // Of the corners 0, 1, 2 the next are 1, 2, 0 and the last 2, 0, 1: two bits each.
+    return {at, corners[0x09u >> 2 * at & 3u], corners[0x12u >> 2 * at & 3u]};
+}
+
 /// The neighbors of one vertex after the other, and the triangles they share with it.
 class Neighbors {
 public:
@@ -23,37 +37,65 @@ public:
         bool leaving0, leaving1;        // the triangle runs vertex -> neighbor
     };
 
-    /// True when the triangles form closed fans, all turned alike: the usual case. Corner i of them
-    /// is then shared by triangles i and before(i) of the ring, of which it is last.
-    bool find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
+    /// Of its triangles around a vertex, all turned alike. Closed: one fan or several, each around the
+    /// whole vertex. Open: one that begins and ends on a border. Those are the usual cases.
+    enum class Fan : uint8_t { None, Closed, Open };
+    Fan find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
         const auto count = static_cast<uint32_t>(ring.size());
-        if (count > kMost)
-            return false;
-        uint32_t from[kMost];
+        if (count > kMost || count == 0)
+            return Fan::None;
         for (uint32_t i = 0; i < count; ++i) {
-            const Triangle& t = mesh.triangles[ring[i]];
-            const bool first = t.x == vertex;
-            const bool second = t.y == vertex;
-            to_[i] = first ? t.y : (second ? t.z : t.x);
-            from[i] = first ? t.z : (second ? t.x : t.y);
-            slots_[from[i] % kSlots] = static_cast<uint8_t>(i);
+            const Ends ends = ends_of(mesh.triangles[ring[i]], vertex);
+            to_[i] = ends.next;
+            from_[i] = ends.last;
+            slots_[ends.last % kSlots] = static_cast<uint8_t>(i);
         }
         uint32_t met = 0;
-        bool fits = true;
+        uint32_t starts = 0;
+        begin_ = end_ = 0;
+        open_ = false;
         for (uint32_t i = 0; i < count; ++i) {
             const uint32_t at = slots_[to_[i] % kSlots] % kMost;
-            fits &= at < count && from[at] == to_[i];
-            met |= 1u << at;
+            const bool fits = at < count && from_[at] == to_[i];
+            met |= uint32_t{fits} << at;
+            starts += !fits;
+            begin_ = fits ? begin_ : i;
             before_[i] = at;
         }
-        return fits && met == (1u << count) - 1;
+        const uint32_t all = (1u << count) - 1;
+        if (starts == 0)
+            return met == all ? Fan::Closed : Fan::None;
+        if (starts > 1 || !std::has_single_bit(all ^ met))
+            return Fan::None;
+        end_ = static_cast<uint32_t>(std::countr_zero(all ^ met));
+        open_ = true;
+        return Fan::Open;
     }
-    uint32_t corner(uint32_t i) const { return to_[i]; }
-    uint32_t before(uint32_t i) const { return before_[i]; }
 
-    /// Of any vertex; `fan`: as find_fan() has just found.
+    /// After find_fan() has found one: puts the ring in order, so that corner next of each triangle is
+    /// the last one of that before it; a closed one begins anywhere. False, and nothing done, for
+    /// several fans.
+    bool order(std::span<uint32_t> ring) const {
+        const auto count = static_cast<uint32_t>(ring.size());
+        uint32_t ordered[kMost];
+        uint32_t at = end_;
+        for (uint32_t i = count; i-- > 0; at = before_[at]) {
+            // Back at the start of a closed one, or at that of an open one, too early.
+            if (at == begin_ && (open_ ? i > 0 : i + 1 < count))
+                return false;
+            ordered[i] = ring[at];
+        }
+        std::copy(ordered, ordered + count, ring.begin());
+        return true;
+    }
+
+    /// Of an open fan: the neighbors across its two borders, by the triangles on them.
+    uint32_t first_corner() const { return to_[begin_]; }
+    uint32_t last_corner() const { return from_[end_]; }
+
+    /// Of any vertex; `closed`: as find_fan() has just found.
     std::span<const Neighbor> find(const CollapseMesh& mesh, std::span<const uint32_t> ring,
-                                   uint32_t vertex, bool fan);
+                                   uint32_t vertex, bool closed);
 
 private:
     static constexpr uint32_t kMost = 16;
@@ -64,7 +106,11 @@ private:
     static constexpr uint32_t kSlots = 1024;
     uint8_t slots_[kSlots] = {};
     uint32_t to_[kMost] = {};
+    uint32_t from_[kMost] = {};
     uint32_t before_[kMost] = {};
+    uint32_t begin_ = 0;
+    uint32_t end_ = 0;
+    bool open_ = false;
     std::vector<Neighbor> found_;
     std::vector<std::pair<uint32_t, size_t>> uses_;
 };

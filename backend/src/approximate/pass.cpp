@@ -23,8 +23,14 @@ constexpr size_t kWork = 40;
 /// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
 constexpr Pace kFast{0.35, 2.0, 1.0 / 3};
 constexpr Pace kBest{0.12, 1.0, 0.5};
-/// Chunks go through their candidates at the same time, by so many steps of costs.
+/// Chunks go through their candidates at the same time, in so many rounds of steps of costs: that
+/// the dearest do not go in one chunk before cheaper ones in another. In one round, which spares
+/// memory going through all chunks again, where a pass is going to run out of candidates anyway:
+/// of each less than so many triangles go.
 constexpr size_t kRounds = 4;
+constexpr double kGone = 0.8;
+/// A pass that takes less than this share of what it is to take was given too few candidates.
+constexpr double kPoor = 0.35;
 /// So many edges ahead memory is asked for what they need.
 constexpr size_t kLists = 12;
 constexpr size_t kTriangles = 4;
@@ -40,7 +46,7 @@ uint32_t step_of(const Candidate& candidate) {
 /// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
 /// Parts count too: a round begins with the removal of those that are cheaper than all it has.
 std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
-                                const std::vector<Part>& removable) {
+                                const std::vector<Part>& removable, size_t want) {
     std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
     size_t all = removable.size();
     for (const Part& part : removable)
@@ -50,7 +56,8 @@ std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
             ++counts[step_of(candidate)];
         all += chunk.candidates.size();
     }
-    const size_t rounds = chunks.size() > 1 ? kRounds : 1;
+    const bool all_go = kGone * static_cast<double>(all) < static_cast<double>(want);
+    const size_t rounds = chunks.size() > 1 && !all_go ? kRounds : 1;
     std::vector<uint32_t> ends;
     size_t sum = 0;
     for (uint32_t step = 0; step < counts.size(); ++step) {
@@ -89,7 +96,8 @@ public:
         std::vector<std::vector<uint32_t>> left(chunks.size());
         std::vector<size_t> gone(chunks.size(), 0);
         uint32_t begin = 0;
-        for (const uint32_t end : rounds_of(chunks, removable_)) {
+        const std::vector<uint32_t> rounds = rounds_of(chunks, removable_, want_);
+        for (const uint32_t end : rounds) {
             if (gone_ >= want_)
                 break;
             remove_parts_below(begin << kKeyShift);
@@ -116,7 +124,7 @@ public:
                         return static_cast<size_t>(part * static_cast<double>(whole));
                     };
                     gone[i] = within(chunks[i], next[i], last[i], share(rest),
-                                     share(work_ / kRounds), left[i]);
+                                     share(work_ / rounds.size()), left[i]);
                 });
                 for (const size_t each : gone) {
                     gone_ += each;
@@ -151,7 +159,7 @@ private:
         const uint32_t part = r_.mesh_.parts[candidate.a];
         if (!doomed_.empty() && doomed_[part])
             return 0;
-        const size_t went = collapser.collapse(candidate.a, candidate.b);
+        const size_t went = collapser.collapse(candidate);
         if (went == 0 || went == Collapser::kOutside)
             return went;
         r_.used_[candidate.a] = r_.used_[candidate.b] = 1;
@@ -199,10 +207,15 @@ private:
     void across(const std::vector<Chunk>& chunks, const std::vector<std::vector<uint32_t>>& left,
                 const Job& job) {
         for (size_t i = 0; i < chunks.size(); ++i) {
-            for (const uint32_t k : left[i]) {
-                if ((k & 0xfffu) == 0)
+            for (size_t n = 0; n < left[i].size(); ++n) {
+                if ((n & 0xfffu) == 0)
                     job.check();
-                const Candidate& candidate = chunks[i].candidates[k];
+                const std::vector<Candidate>& candidates = chunks[i].candidates;
+                const Candidate& candidate = candidates[left[i][n]];
+                if (n + kLists < left[i].size())
+                    whole_.expect_lists(candidates[left[i][n + kLists]]);
+                if (n + kTriangles < left[i].size())
+                    whole_.expect_triangles(candidates[left[i][n + kTriangles]]);
                 if (r_.used_[candidate.a] || r_.used_[candidate.b])
                     continue;
                 remove_parts_below(candidate.key);
@@ -232,10 +245,9 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t before = mesh_.live;
     if (effort == Effort::Anything)
         drop_copies(mesh_);
-    compact(mesh_);
+    compact(mesh_, &adjacency_);
     if (mesh_.live <= target)
         return before - mesh_.live;
-    adjacency_.build(mesh_);
     edges_.build(mesh_, adjacency_, options_, !begun_, job);
     if (!begun_) {
         for (const Chunk& chunk : edges_.chunks()) {
@@ -252,13 +264,17 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t want = std::min(start - target, std::max<size_t>(share, 64));
     uint32_t limit = kImpossible - 1;
     if (effort == Effort::Careful) {
-        const auto enough = static_cast<size_t>(pace_.quantile * static_cast<double>(want));
+        const double quantile = reach_ * pace_.quantile;
+        const auto enough = static_cast<size_t>(quantile * static_cast<double>(want));
         const uint32_t key = edges_.key_of(mesh_, adjacency_, effort, enough);
         limit = std::min(limit, std::bit_cast<uint32_t>(static_cast<float>(pace_.slack) *
                                                         std::bit_cast<float>(key)));
     }
     edges_.take(mesh_, adjacency_, effort, limit, job);
     Batch(*this, effort, start, want).run(job);
+    // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
+    const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
+    reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);
     return before - mesh_.live;
 }
 

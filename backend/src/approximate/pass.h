@@ -38,6 +38,7 @@ private:
     Edges edges_;
     Parts parts_;
     bool begun_ = false;
+    double reach_ = 1;           // so many times more candidates
     std::vector<uint8_t> used_;  // as an end in this pass, by vertex
 };
 

@@ -2,6 +2,8 @@
 #include "approximate/sheets.h"
 
 #include "approximate/adjacency.h"
+#include "approximate/neighbors.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <numeric>
@@ -93,34 +95,6 @@ void split_layers(CollapseMesh& mesh) {
     }
 }
 
-/// One closed fan, all turned alike: nothing to split. Most vertices are that.
-bool is_closed_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
-    constexpr size_t kMost = 12;
-    const size_t count = ring.size();
-    if (count > kMost || count < 3)
-        return false;
-    uint32_t to[kMost];
-    uint32_t from[kMost];
-    for (size_t i = 0; i < count; ++i) {
-        const Triangle& t = mesh.triangles[ring[i]];
-        const bool first = t.x == vertex;
-        const bool second = t.y == vertex;
-        to[i] = first ? t.y : (second ? t.z : t.x);
-        from[i] = first ? t.z : (second ? t.x : t.y);
-    }
-    // Each triangle begins where the one before ends: the next is swapped to its place.
-    for (size_t i = 0; i + 1 < count; ++i) {
-        size_t next = i + 1;
-        while (next < count && to[next] != from[i])
-            ++next;
-        if (next == count)
-            return false;
-        to[next] = to[i + 1];
-        std::swap(from[next], from[i + 1]);
-    }
-    return from[count - 1] == to[0];
-}
-
 void split_fans(CollapseMesh& mesh) {
     Adjacency adjacency;
     adjacency.build(mesh);
@@ -129,10 +103,25 @@ void split_fans(CollapseMesh& mesh) {
     std::vector<uint32_t> parents;
     std::vector<uint32_t> copy_of_root;
     const auto vertices = static_cast<uint32_t>(mesh.points.size());
+    // One fan, all turned alike: nothing to split. Most vertices are that, and splitting others does
+    // not change it.
+    constexpr uint32_t kChunk = 8192;
+    std::vector<uint8_t> whole(vertices, 0);
+    parallel_for((vertices + kChunk - 1) / kChunk, [&](size_t chunk) {
+        Neighbors neighbors;
+        const auto first = static_cast<uint32_t>(chunk * kChunk);
+        for (uint32_t v = first; v < std::min(vertices, first + kChunk); ++v) {
+            for (const uint32_t t : adjacency.ahead(v))
+                __builtin_prefetch(&mesh.triangles[t]);
+            const std::span<uint32_t> ring = adjacency.around(v);
+            whole[v] =
+                neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None && neighbors.order(ring);
+        }
+    });
     for (uint32_t v = 0; v < vertices; ++v) {
-        const std::span<const uint32_t> ring = adjacency.around(v);
-        if (is_closed_fan(mesh, ring, v))
+        if (whole[v])
             continue;
+        const std::span<const uint32_t> ring = adjacency.around(v);
         parents.resize(ring.size());
         std::iota(parents.begin(), parents.end(), 0u);
         seen.clear();
