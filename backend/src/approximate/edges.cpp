@@ -15,6 +15,11 @@
 namespace lodestone::approximate {
 namespace {
 
+/// Of open borders, relative to those of paint: the surface ends there, and that is all one sees.
+/// (Held as much as paint they keep triangles that the surface beside them needs more: measured, on
+/// leaves, a car body and terrain.)
+constexpr double kOpen = 0.15;
+
 /// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
 void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet, double weight) {
     const double square = glm::dot(edge, edge);
@@ -139,7 +144,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
             if (neighbor > vertex && borders != nullptr)
                 borders->borders.emplace_back(vertex, neighbor);
             hold_edge(quadric, mesh.points[neighbor] - mesh.points[vertex],
-                      glm::dvec3(mesh.facets[triangle]), options.boundary_weight);
+                      glm::dvec3(mesh.facets[triangle]), kOpen * options.boundary_weight);
         };
         border(neighbors.first_corner(), ring.front());
         border(neighbors.last_corner(), ring.back());
@@ -156,7 +161,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
         if (!two && n.vertex > vertex && borders != nullptr)
             borders->borders.emplace_back(vertex, n.vertex);
         open += !two;
-        double weight = two ? 0 : options.boundary_weight;
+        double weight = two ? 0 : (n.uses == 1 ? kOpen : 1) * options.boundary_weight;
         if (two && !mesh.slots.empty() && mesh.slots[n.t0] != mesh.slots[n.t1])
             weight = options.boundary_weight;
         if (two && weight <= 0) {

@@ -18,9 +18,9 @@ enum class SimplifyMode : uint8_t { Fast, Best };
 /// The defaults are tuned on scans, CAD parts and terrain; most callers need none of these.
 struct SimplifyOptions {
     SimplifyMode mode = SimplifyMode::Fast;
-    /// How much dearer it is to move an open border, or the border between two material slots,
-    /// than the surface. Larger keeps outlines and paint lines longer and spends the triangles
-    /// there; 0 lets them shrink.
+    /// How much dearer it is to move the border between two material slots than the surface; for
+    /// open borders a seventh of it counts. Larger keeps outlines and paint lines longer and spends
+    /// the triangles there; 0 lets them shrink.
     double boundary_weight = 8;
     /// The same for texture seams and sharp (split-normal) edges. 0 lets textures slide at seams.
     double seam_weight = 1;
