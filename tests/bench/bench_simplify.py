@@ -11,7 +11,9 @@ are those from mesh in memory to mesh in memory, without files; the kinds run by
 geometric means of ratios to Blender's, over all models and targets both reached. A mesh of a
 million triangles (one of the models, cut finer) is brought to 10 % on one and on two threads within
 one process: wall and CPU seconds, and the memory above the input. Prints tables and writes JSON; no
-number makes it fail. An hour and a half; CGAL takes most of it (--slow-rounds).
+number makes it fail. An hour and a half; CGAL takes most of it (--slow-rounds). With --reuse FILE
+(the JSON of an earlier run) the peers are not run again: their errors are the same, but their CPU
+seconds are those of that hour.
 """
 
 import argparse
@@ -176,9 +178,11 @@ class Bench:
             self.keep(mode, mesh.stem, one | {"out": str(out), "in_tris": triangles})
 
     def round(self, number: int, mesh: Path, triangles: int) -> None:
-        self.run_blender(mesh)
         for mode in MODES:
             self.run_ours(mesh, triangles, mode)
+        if self.options.reuse:
+            return
+        self.run_blender(mesh)
         for program, (_, slow) in PEERS.items():
             if not (self.peers / program).is_file():
                 continue
@@ -190,12 +194,18 @@ class Bench:
 
     def judge(self, mesh: Path) -> None:
         ones = [one for (_, model, _), one in self.found.items() if model == mesh.stem]
-        ones = [one for one in ones if not one["error"]]
+        ones = [one for one in ones if not one["error"] and "judged" not in one]
         command = [self.peers / "evaluate", mesh, *(one["out"] for one in ones)]
         judged = records(run([*command, "--samples", self.options.samples]))
         by_file = {one["file"]: one for one in judged}
         for one in ones:
             one["judged"] = by_file.get(one["out"], {"error": "not judged"})
+
+    def reuse(self, file: Path) -> None:
+        """The peers' results of an earlier run of this machine, as they were judged then."""
+        for one in json.loads(file.read_text("utf-8"))["results"]:
+            if one["peer"] not in MODES and one["target"] in self.options.targets:
+                self.found[(one["peer"], one["model"], float(one["target"]))] = one
 
     def measure(self, sources: list[Path]) -> None:
         for source in sources:
@@ -349,6 +359,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--slow-rounds", type=int, default=1, help="of CGAL and OpenMesh")
     parser.add_argument("--models", nargs="+", default=[], help="stems, e.g. skull pizza_uv")
     parser.add_argument("--samples", type=int, default=100_000)
+    parser.add_argument("--reuse", type=Path, default=None, help="an earlier run's JSON")
     parser.add_argument(
         "--small", action="store_true", help="two models, two targets, a round, no slow peers"
     )
@@ -387,8 +398,11 @@ def main() -> None:
         elif slow and options.slow_rounds == 0:
             say(f"{', '.join(LABELS[mode] for mode in modes)}: skipped, slow")
     bench = Bench(options, peers)
+    if options.reuse:
+        bench.reuse(options.reuse)
     bench.measure(sources)
-    found = bench.found
+    stems = {source.stem.removesuffix("_uv") for source in sources}
+    found = {key: one for key, one in bench.found.items() if key[1] in stems}
     print(
         f"\nBlender = 1; {len(sources)} models; CPU of {options.rounds} rounds; {os.cpu_count()} "
         f"cores, load {busy:.1f} before the first\n"
