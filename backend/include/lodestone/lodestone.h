@@ -453,6 +453,10 @@ LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
 #define LDS_ANY_LEVEL UINT32_MAX
 LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
                                               double importance, uint32_t coarsest);
+/* Where the placement at `position` of a group is when the shutter closes, in the group's frame; null:
+   it rests there. For lds_modifiers.when_moving; no store keeps it. */
+LDS_API lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,
+                                            const double closing[12]);
 /* Gives a group of more than most_children (8 or more; usual 64) groups of at most so many in their
    place, to any depth: neighbors together. Occurrences stay exactly where they are; something added
    later changes only the groups around it. Call it when the group is complete. out_added may be
@@ -750,6 +754,71 @@ LDS_API lds_status lds_model_build(lds_model* model, const char* store,
 
 /* ---- Choosing ------------------------------------------------------------------------------- */
 
+typedef enum lds_lens_shape { LDS_LENS_SHAPE_SPHERE = 0, LDS_LENS_SHAPE_BOX = 1 } lds_lens_shape;
+/* What a lens does to what is not in its list. */
+typedef enum lds_lens_filter {
+    LDS_LENS_FILTER_ALL = 0,    /* there is no list: everything is refined */
+    LDS_LENS_FILTER_REFINE = 1, /* only what is listed is refined, and all that is below it */
+    LDS_LENS_FILTER_SHOW = 2    /* and nothing else is drawn whose bound has its center inside */
+} lds_lens_filter;
+/* A region of the world inside which everything is drawn `strength` times finer (below 1: coarser), less
+   so towards its rim: 1 + (strength - 1) cos(pi d / 2 radius)^falloff, where d is the distance from the
+   origin of the lens's frame (a box: the largest coordinate), 1 outside. Counts with its largest value
+   anywhere in a bound: a group that it touches is opened, and its far children are not refined. */
+typedef struct lds_lens {
+    uint32_t struct_size;
+    int32_t shape;        /* lds_lens_shape */
+    double transform[12]; /* its frame -> the world; flat: no effect */
+    double radius;        /* of the sphere, or half the box's sides, in its frame; 0: no effect */
+    double strength;      /* more than 0; usual 4 */
+    double falloff;       /* usual 1; 0: the same everywhere inside */
+    int32_t filter;       /* lds_lens_filter */
+    const char* name;     /* for messages */
+    const lds_object* objects; /* what a filter is about: objects and groups */
+    size_t object_count;
+} lds_lens;
+/* The same on the image: a disc. */
+typedef struct lds_screen_lens {
+    uint32_t struct_size;
+    int32_t in_pixels; /* 1: center and radius are pixels of the final image; 0: shares of its width
+                          and height (the radius: of its width) */
+    double center[2];  /* from the left and the top */
+    double radius;
+    double strength;
+    double falloff;
+    const char* name;
+} lds_screen_lens;
+
+/* What a level is judged by (5.2.2), and so what lds_view.pixel_error means. */
+typedef enum lds_criterion {
+    LDS_CRITERION_RESOLUTION = 0, /* pixels that its error covers */
+    LDS_CRITERION_FEATURE = 1,    /* share of the picture that its largest missing feature covers */
+    LDS_CRITERION_AREA = 2,       /* share of the picture up to which the coarsest level is used;
+                                     each finer one serves four times as much */
+    LDS_CRITERION_DISTANCE = 3    /* metres up to which the original is used; each coarser level
+                                     serves twice as far: larger is finer */
+} lds_criterion;
+
+/* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
+   stays within 1/64 to 64. */
+typedef struct lds_modifiers {
+    uint32_t struct_size;
+    int32_t criterion;      /* lds_criterion */
+    const lds_lens* lenses; /* at most 1024, of them 64 with a list */
+    size_t lens_count;
+    const lds_screen_lens* screen_lenses; /* at most 1024 */
+    size_t screen_lens_count;
+    double depth;       /* exaggeration k, 0 to 8; 1: none. Coarser by (z / depth_focus)^(k - 1) */
+    double depth_focus; /* metres */
+    int32_t
+        when_moving;   /* 1: coarser by sqrt(1 + m^2) where things cross m pixels while the shutter
+                            is open: by lds_model_move_placement, and the camera's own motion */
+    int32_t when_dark; /* 1: coarser where what the lamps and the world could light is displayed
+                            below 1/2, unless the world behind is brighter */
+    const lds_camera* closing; /* the camera when the shutter closes; null: it rests */
+} lds_modifiers;
+LDS_API lds_modifiers lds_modifiers_default(void);
+
 typedef struct lds_view {
     uint32_t struct_size;
     lds_camera camera;
@@ -759,11 +828,29 @@ typedef struct lds_view {
     uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
     int32_t border[4];  /* the part that is drawn: left, top, width, height in pixels of the final
                              image, the rest of which stays empty; width 0: all of it */
+    const lds_modifiers* modifiers; /* null: nothing bends quality */
 } lds_view;
 
 typedef struct lds_cut lds_cut;
 LDS_API lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job,
                                   lds_cut** out_cut);
+
+/* Instead of a threshold: what the cut may cost at most. */
+typedef struct lds_budget {
+    uint32_t struct_size;
+    uint64_t triangles; /* placed; 0: any number */
+    uint64_t bytes; /* POV-Ray's memory: distinct representations and occurrences; 0: any number */
+} lds_budget;
+typedef struct lds_budget_report {
+    uint32_t struct_size;
+    int32_t fits;       /* 0: even the coarsest cut costs more; it is the one made */
+    double pixel_error; /* the least threshold, not below the view's, whose cut fits */
+    uint64_t cuts;      /* that were tried */
+} lds_budget_report;
+/* The finest cut within the budget. A larger budget never gives a larger threshold. */
+LDS_API lds_status lds_cut_create_within(lds_model* model, const lds_view* view,
+                                         const lds_budget* budget, lds_job* job,
+                                         lds_budget_report* out_report, lds_cut** out_cut);
 LDS_API void lds_cut_destroy(lds_cut* cut);
 
 typedef struct lds_cut_summary {
@@ -779,6 +866,7 @@ typedef struct lds_cut_summary {
     double largest_error_px;
     const char* largest_error_name; /* path of placements */
     uint64_t composite;             /* occurrences of that kind */
+    uint64_t largest_error_choice;  /* its position among the choices */
 } lds_cut_summary;
 LDS_API lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary);
 
@@ -794,6 +882,36 @@ LDS_API lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choic
                                        size_t capacity);
 /* Names of the placements from the root, joined by '/'. */
 LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
+
+/* Why a choice is what it is: error_px * factor <= Pixel Error, and not so for the next coarser level. */
+typedef struct lds_reason {
+    uint32_t struct_size;
+    uint32_t lod;    /* as the choice's */
+    double z;        /* metres from the eye to its bound, at least the near clip */
+    double pixel;    /* size of a pixel there, metres */
+    double error;    /* metres in the object's frame */
+    double stretch;  /* by which its placements enlarge it */
+    double error_px; /* error * stretch / pixel */
+    double factor; /* all of the next seven, within 1/64 to 64; infinite: a lens hides part of it */
+    double importance; /* of its placements; this and the next three refine */
+    double demand;     /* of the most important thing below it, infinite: of a limited one */
+    double lenses;
+    double screen_lenses;
+    double depth; /* this and the next two coarsen */
+    double motion;
+    double darkness;
+    lds_object coarser_object; /* the next coarser level is this object's: the choice's own, or the
+                                  nearest group around it that has one; {0, 0}: there is none */
+    uint32_t coarser_lod;
+    int32_t coarser_kind;
+    double coarser_error;    /* metres in that object's frame */
+    double coarser_error_px; /* on screen */
+    double coarser_factor;   /* its factors together */
+    int32_t pinned;          /* 1: a decision on a placement forbids that one */
+} lds_reason;
+/* model: the cut's, its levels unchanged since. */
+LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
+                                         lds_reason* out_reason);
 
 /* ---- POV-Ray -------------------------------------------------------------------------------- */
 

@@ -13,8 +13,11 @@ from .enums import (
     Antialias,
     BakeOp,
     Channel,
+    Criterion,
     Extension,
     Kind,
+    LensFilter,
+    LensShape,
     LightKind,
     Projection,
     RayClass,
@@ -56,7 +59,7 @@ from .povray import (
 )
 from .projection import project_uvs
 from .structs import Object
-from .view import Camera, Light, View
+from .view import Budget, Camera, Lens, Light, Modifiers, ScreenLens, View
 
 __all__ = [
     "ANY_LEVEL",
@@ -64,15 +67,20 @@ __all__ = [
     "Antialias",
     "BakeOp",
     "BakeStep",
+    "Budget",
     "BuildOptions",
     "Camera",
     "Channel",
+    "Criterion",
     "Cut",
     "Extension",
     "FaceBuffers",
     "Image",
     "Job",
     "Kind",
+    "Lens",
+    "LensFilter",
+    "LensShape",
     "Light",
     "LightKind",
     "LodestoneError",
@@ -80,11 +88,13 @@ __all__ = [
     "MeasureOptions",
     "MeshBuffers",
     "Model",
+    "Modifiers",
     "Object",
     "PovrayOptions",
     "Projection",
     "RayClass",
     "Role",
+    "ScreenLens",
     "Severity",
     "SimplifyMode",
     "SimplifyOptions",

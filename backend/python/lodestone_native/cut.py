@@ -12,7 +12,7 @@ from .job import Job
 from .library import check, library
 from .model import Model
 from .structs import Object, record, text_out
-from .view import View
+from .view import Budget, View
 
 
 class Choice(NamedTuple):
@@ -24,17 +24,35 @@ class Choice(NamedTuple):
 
 
 class Cut(Handle):
-    """Keeps its model alive; close it (or leave the `with` block) to free its memory."""
+    """Keeps its model alive; close it (or leave the `with` block) to free its memory.
+
+    With a budget: the finest cut that costs no more, but not finer than the view's Pixel Error.
+    `pixel_error` is then what was found, `fits` False where even the coarsest cut
+    costs more."""
 
     _destroy = "lds_cut_destroy"
 
-    def __init__(self, model: Model, view: View, job: Job | None = None) -> None:
+    def __init__(
+        self, model: Model, view: View, job: Job | None = None, budget: Budget | None = None
+    ) -> None:
         self.model = model
         self.view = view
+        self.pixel_error = view.pixel_error
+        self.fits = True
         self._handle: ctypes.c_void_p | None = ctypes.c_void_p()
+        made, lib = ctypes.byref(self._handle), library()
+        if budget is None:
+            check(lib.lds_cut_create(model.handle, view.struct(), job, made))
+            return
+        report = structs.BudgetReport()
+        wanted = ctypes.byref(budget.struct())
         check(
-            library().lds_cut_create(model.handle, view.struct(), job, ctypes.byref(self._handle))
+            lib.lds_cut_create_within(
+                model.handle, view.struct(), wanted, job, ctypes.byref(report), made
+            )
         )
+        self.pixel_error = report.pixel_error
+        self.fits = report.fits != 0
 
     def summary(self) -> Any:
         out = structs.CutSummary()
@@ -52,6 +70,16 @@ class Cut(Handle):
         rest = ctypes.sizeof(structs.Choice) - 3 * ctypes.sizeof(ctypes.c_uint32)
         counted = Counter(struct.iter_unpack(f"=3I{rest}x", self._buffer()))
         return {(Object(*key[:2]), key[2]): number for key, number in counted.items()}
+
+    def reason(self, position: int) -> Any:
+        """Why a choice is what it is: fields as lds_reason's."""
+        out = structs.Reason()
+        check(
+            library().lds_cut_choice_reason(
+                self.model.handle, self.handle, position, ctypes.byref(out)
+            )
+        )
+        return record(out)
 
     def _buffer(self) -> Any:
         count = library().lds_cut_choice_count(self.handle)

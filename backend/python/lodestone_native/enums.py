@@ -55,6 +55,28 @@ class Kind(IntEnum):
     ASSEMBLY = 8
 
 
+class LensShape(IntEnum):
+    SPHERE = 0
+    BOX = 1
+
+
+class LensFilter(IntEnum):
+    """What a lens does to what is not in its list."""
+
+    ALL = 0
+    REFINE = 1
+    SHOW = 2
+
+
+class Criterion(IntEnum):
+    """What a level is judged by, and so what a view's Pixel Error means."""
+
+    RESOLUTION = 0
+    FEATURE = 1
+    AREA = 2
+    DISTANCE = 3
+
+
 class SimplifyMode(IntEnum):
     """How triangles are saved."""
 

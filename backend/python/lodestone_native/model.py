@@ -270,6 +270,14 @@ class Model(Handle):
         decide = library().lds_model_decide_placement
         check(decide(self.handle, group, position, importance, coarsest))
 
+    def move_placement(
+        self, group: Object, position: int, closing: tuple[float, ...] | None
+    ) -> None:
+        """Where the child at `position` is when the shutter closes, 3 x 4 by rows in the group's
+        frame; None: it rests."""
+        rows = None if closing is None else (ctypes.c_double * 12)(*closing)
+        check(library().lds_model_move_placement(self.handle, group, position, rows))
+
     def group_by_position(self, group: Object, most_children: int = 64) -> int:
         """Gives a group of more children groups of neighbors; returns how many were added."""
         added = ctypes.c_size_t()

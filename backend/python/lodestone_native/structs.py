@@ -411,6 +411,49 @@ class SimplifyReport(Sized):
     ]
 
 
+class Lens(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("shape", c_int32),
+        ("transform", c_double * 12),
+        ("radius", c_double),
+        ("strength", c_double),
+        ("falloff", c_double),
+        ("filter", c_int32),
+        ("name", c_char_p),
+        ("objects", POINTER(Object)),
+        ("object_count", c_size_t),
+    ]
+
+
+class ScreenLens(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("in_pixels", c_int32),
+        ("center", c_double * 2),
+        ("radius", c_double),
+        ("strength", c_double),
+        ("falloff", c_double),
+        ("name", c_char_p),
+    ]
+
+
+class Modifiers(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("criterion", c_int32),
+        ("lenses", POINTER(Lens)),
+        ("lens_count", c_size_t),
+        ("screen_lenses", POINTER(ScreenLens)),
+        ("screen_lens_count", c_size_t),
+        ("depth", c_double),
+        ("depth_focus", c_double),
+        ("when_moving", c_int32),
+        ("when_dark", c_int32),
+        ("closing", POINTER(Camera)),
+    ]
+
+
 class View(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -420,6 +463,7 @@ class View(Sized):
         ("pixel_error", c_double),
         ("kinds", c_uint32),
         ("border", c_int32 * 4),
+        ("modifiers", POINTER(Modifiers)),
     ]
 
 
@@ -456,6 +500,19 @@ class BuildReport(Sized):
     ]
 
 
+class Budget(Sized):
+    _fields_ = [("struct_size", c_uint32), ("triangles", c_uint64), ("bytes", c_uint64)]
+
+
+class BudgetReport(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fits", c_int32),
+        ("pixel_error", c_double),
+        ("cuts", c_uint64),
+    ]
+
+
 class CutSummary(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -470,6 +527,7 @@ class CutSummary(Sized):
         ("largest_error_px", c_double),
         ("largest_error_name", c_char_p),
         ("composite", c_uint64),
+        ("largest_error_choice", c_uint64),
     ]
 
 
@@ -480,6 +538,33 @@ class Choice(Structure):
         ("kind", c_int32),
         ("error_px", c_double),
         ("world", c_double * 12),
+    ]
+
+
+class Reason(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("lod", c_uint32),
+        ("z", c_double),
+        ("pixel", c_double),
+        ("error", c_double),
+        ("stretch", c_double),
+        ("error_px", c_double),
+        ("factor", c_double),
+        ("importance", c_double),
+        ("demand", c_double),
+        ("lenses", c_double),
+        ("screen_lenses", c_double),
+        ("depth", c_double),
+        ("motion", c_double),
+        ("darkness", c_double),
+        ("coarser_object", Object),
+        ("coarser_lod", c_uint32),
+        ("coarser_kind", c_int32),
+        ("coarser_error", c_double),
+        ("coarser_error_px", c_double),
+        ("coarser_factor", c_double),
+        ("pinned", c_int32),
     ]
 
 

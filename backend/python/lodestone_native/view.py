@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Camera and view: plain values that a cut and an export are made for."""
 
+import ctypes
 from dataclasses import dataclass
 
 from . import structs
-from .enums import LightKind
+from .enums import Criterion, LensFilter, LensShape, LightKind
 
 Vector = tuple[float, float, float]
 
@@ -64,6 +65,91 @@ class Light:
 
 
 @dataclass(frozen=True)
+class Lens:
+    """A region of the world where everything is drawn `strength` times finer (below 1: coarser),
+    less so towards its rim. The unit of its frame is the radius' unit."""
+
+    name: str
+    transform: tuple[float, ...]  # its frame -> the world, 3 x 4 by rows
+    shape: LensShape = LensShape.SPHERE
+    radius: float = 1.0  # a box: half its sides
+    strength: float = 4.0
+    falloff: float = 1.0  # 0: the same everywhere inside
+    filter: LensFilter = LensFilter.ALL
+    objects: tuple[structs.Object, ...] = ()  # what the filter is about: objects and groups
+
+    def struct(self) -> structs.Lens:
+        return structs.Lens(
+            shape=self.shape,
+            transform=self.transform,
+            radius=self.radius,
+            strength=self.strength,
+            falloff=self.falloff,
+            filter=self.filter,
+            name=structs.text_in(self.name),
+            objects=(structs.Object * len(self.objects))(*self.objects),
+            object_count=len(self.objects),
+        )
+
+
+@dataclass(frozen=True)
+class ScreenLens:
+    """The same on the image: a disc."""
+
+    name: str
+    center: tuple[float, float]  # from the left and the top
+    radius: float
+    strength: float = 4.0
+    falloff: float = 1.0
+    in_pixels: bool = False  # else shares of width and height; the radius: of the width
+
+    def struct(self) -> structs.ScreenLens:
+        values = {**vars(self), "name": structs.text_in(self.name)}
+        return structs.ScreenLens(**{**values, "in_pixels": int(self.in_pixels)})
+
+
+@dataclass(frozen=True)
+class Modifiers:
+    """All that bends quality. Factors multiply, their product stays within 1/64 to 64."""
+
+    lenses: tuple[Lens, ...] = ()
+    screen_lenses: tuple[ScreenLens, ...] = ()
+    depth: float = 1.0  # exaggeration k: coarser by (z / depth_focus)^(k - 1)
+    depth_focus: float = 10.0  # metres
+    when_moving: bool = False
+    when_dark: bool = False
+    closing: Camera | None = None  # the camera when the shutter closes
+    criterion: Criterion = Criterion.RESOLUTION
+
+    def struct(self) -> structs.Modifiers:
+        lenses = [lens.struct() for lens in self.lenses]
+        screen_lenses = [lens.struct() for lens in self.screen_lenses]
+        return structs.Modifiers(
+            criterion=self.criterion,
+            lenses=(structs.Lens * len(lenses))(*lenses),
+            lens_count=len(lenses),
+            screen_lenses=(structs.ScreenLens * len(screen_lenses))(*screen_lenses),
+            screen_lens_count=len(screen_lenses),
+            depth=self.depth,
+            depth_focus=self.depth_focus,
+            when_moving=int(self.when_moving),
+            when_dark=int(self.when_dark),
+            closing=ctypes.pointer(self.closing.struct()) if self.closing else None,
+        )
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a cut may cost at most; 0: any number."""
+
+    triangles: int = 0  # placed
+    bytes: int = 0  # in POV-Ray's memory
+
+    def struct(self) -> structs.Budget:
+        return structs.Budget(triangles=self.triangles, bytes=self.bytes)
+
+
+@dataclass(frozen=True)
 class View:
     """Pixel Error in pixels of the final image: larger is coarser and cheaper, 0 = originals."""
 
@@ -73,6 +159,7 @@ class View:
     pixel_error: float = 1.0
     kinds: int = 0  # bit (1 << Kind) for each kind the consumer can draw; 0 = all
     border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
+    modifiers: Modifiers | None = None
 
     def struct(self) -> structs.View:
         return structs.View(
@@ -82,4 +169,5 @@ class View:
             pixel_error=self.pixel_error,
             kinds=self.kinds,
             border=self.border,
+            modifiers=ctypes.pointer(self.modifiers.struct()) if self.modifiers else None,
         )

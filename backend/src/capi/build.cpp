@@ -42,7 +42,7 @@ build::Settings settings_of(const lds_model& model, const lds_build_options& opt
     if (options.view != nullptr) {
         if (!(options.share >= 0) || !std::isfinite(options.share))
             fail(Status::InvalidArgument, "share is ", options.share, "; it must be 0 or more");
-        settings.demand = build::Demand{view_of(options.view), options.share};
+        settings.demand = build::Demand{view_of(options.view, &model), options.share};
     }
     return settings;
 }

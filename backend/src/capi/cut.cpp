@@ -3,27 +3,65 @@
 #include "capi/handles.h"
 
 #include <algorithm>
+#include <cstddef>
 
 using namespace lodestone;
 using namespace lodestone::capi;
+
+namespace {
+
+constexpr size_t kFirstSummary = offsetof(lds_cut_summary, largest_error_choice);
+
+std::unique_ptr<lds_cut> finished(lds_model& model, View view, quality::Cut cut) {
+    auto made = std::make_unique<lds_cut>();
+    made->cut = std::move(cut);
+    made->view = std::move(view);
+    made->generation = model.generation;
+    for (const uint32_t index : made->cut.chosen) {
+        made->paths.push_back(quality::path_of(model.model, made->cut, index));
+        made->originals += made->cut.nodes[index].lod == 0 ? 1 : 0;
+    }
+    if (made->cut.largest_error_node != quality::kNoParent)
+        made->largest_error_name =
+            quality::path_of(model.model, made->cut, made->cut.largest_error_node);
+    return made;
+}
+
+}  // namespace
 
 lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, lds_cut** out_cut) {
     return guard([&] {
         require(model, "model");
         require(out_cut, "out_cut");
         model->summarize();
-        auto made = std::make_unique<lds_cut>();
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
-        made->cut = quality::choose(model->model, view_of(view), progress);
-        made->generation = model->generation;
-        for (const uint32_t index : made->cut.chosen) {
-            made->paths.push_back(quality::path_of(model->model, made->cut, index));
-            made->originals += made->cut.nodes[index].lod == 0 ? 1 : 0;
-        }
-        if (made->cut.largest_error_node != quality::kNoParent)
-            made->largest_error_name =
-                quality::path_of(model->model, made->cut, made->cut.largest_error_node);
+        View given = view_of(view, model);
+        quality::Cut cut = quality::choose(model->model, given, progress);
+        *out_cut = finished(*model, std::move(given), std::move(cut)).release();
+    });
+}
+
+lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const lds_budget* budget,
+                                 lds_job* job, lds_budget_report* out_report, lds_cut** out_cut) {
+    return guard([&] {
+        require(model, "model");
+        require(out_cut, "out_cut");
+        checked(out_report, "out_report");
+        const lds_budget& given = checked(budget, "budget");
+        model->summarize();
+        const Job progress = job_of(job);
+        progress.stage(Stage::Choose);
+        View made_for = view_of(view, model);
+        quality::Budgeted found = quality::choose_within(model->model, made_for,
+                                                         {given.triangles, given.bytes}, progress);
+        lds_budget_report report{};
+        report.fits = found.fits ? 1 : 0;
+        report.pixel_error = found.pixel_error;
+        report.cuts = found.cuts;
+        made_for.pixel_error = found.pixel_error;
+        auto made = finished(*model, std::move(made_for), std::move(found.cut));
+        hand_out(out_report, report, "out_report");
         *out_cut = made.release();
     });
 }
@@ -51,7 +89,11 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         out.largest_error_px = cut->cut.largest_error_px;
         out.largest_error_name = cut->largest_error_name.c_str();
         out.composite = kind(Kind::Composite);
-        hand_out(out_summary, out, "out_summary");
+        const auto& chosen = cut->cut.chosen;
+        const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->cut.largest_error_node);
+        if (cut->cut.largest_error_node != quality::kNoParent && at != chosen.end())
+            out.largest_error_choice = static_cast<uint64_t>(at - chosen.begin());
+        hand_out_grown(out_summary, out, kFirstSummary, "out_summary");
     });
 }
 
@@ -79,4 +121,49 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
 
 const char* lds_cut_choice_path(lds_cut* cut, size_t position) {
     return cut == nullptr || position >= cut->paths.size() ? "" : cut->paths[position].c_str();
+}
+
+lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
+                                 lds_reason* out_reason) {
+    return guard([&] {
+        require(model, "model");
+        require(cut, "cut");
+        if (cut->generation != model->generation)
+            fail(Status::StaleId, "the cut belongs to another model");
+        if (position >= cut->cut.chosen.size())
+            fail(Status::InvalidArgument, "choice ", position, " of ", cut->cut.chosen.size());
+        const uint32_t node = cut->cut.chosen[position];
+        const quality::Node& chosen = cut->cut.nodes[node];
+        if (chosen.object >= model->model.objects.size() ||
+            chosen.lod >= model->model.objects[chosen.object].representations.size())
+            fail(Status::StaleId, "the cut was made before the model's levels changed");
+        model->summarize();
+        const quality::Reason reason = quality::why(model->model, cut->view, cut->cut, node);
+        const quality::Factors& factors = reason.factors;
+        lds_reason out{};
+        out.lod = reason.chosen.lod;
+        out.z = reason.z;
+        out.pixel = reason.pixel;
+        out.error = reason.chosen.error;
+        out.stretch = reason.stretch;
+        out.error_px = reason.chosen.error_px;
+        out.factor = reason.chosen.total;
+        out.importance = factors.importance;
+        out.demand = factors.demand;
+        out.lenses = factors.lenses;
+        out.screen_lenses = factors.screen_lenses;
+        out.depth = factors.depth;
+        out.motion = factors.motion;
+        out.darkness = factors.darkness;
+        if (reason.coarser) {
+            out.coarser_object = model->id_of(reason.coarser->object);
+            out.coarser_lod = reason.coarser->lod;
+            out.coarser_kind = static_cast<int32_t>(reason.coarser->kind);
+            out.coarser_error = reason.coarser->error;
+            out.coarser_error_px = reason.coarser->error_px;
+            out.coarser_factor = reason.coarser->total;
+        }
+        out.pinned = reason.pinned ? 1 : 0;
+        hand_out(out_reason, out, "out_reason");
+    });
 }

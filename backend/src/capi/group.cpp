@@ -156,6 +156,25 @@ lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t
     });
 }
 
+lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,
+                                    const double closing[12]) {
+    return guard([&] {
+        require(model, "model");
+        std::vector<Placement>& placements = group_at(*model, group).placements;
+        if (position >= placements.size())
+            fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
+        if (closing == nullptr) {
+            placements[position].closing = nullptr;
+            return;
+        }
+        const Affine there = Affine::from_rows(closing);
+        if (!there.finite())
+            fail(Status::InvalidArgument, "the transform to which child ", position,
+                 " moves is not finite");
+        placements[position].closing = std::make_shared<const Affine>(there);
+    });
+}
+
 lds_status lds_model_group_by_position(lds_model* model, lds_object group, uint32_t most_children,
                                        size_t* out_added) {
     return guard([&] {

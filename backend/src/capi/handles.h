@@ -6,7 +6,7 @@
 
 #include "build/settings.h"
 #include "model/faces.h"
-#include "quality/cut.h"
+#include "quality/budget.h"
 #include "segment/store.h"
 
 #include <memory>
@@ -40,6 +40,7 @@ struct lds_model {
 
 struct lds_cut {
     lodestone::quality::Cut cut;
+    lodestone::View view;            // that it was made for, with the threshold found
     uint32_t generation = 0;         // of the model it was made from
     std::vector<std::string> paths;  // by choice
     std::string largest_error_name;
@@ -51,7 +52,12 @@ namespace lodestone::capi {
 glm::dvec3 vector(const double values[3], const char* what);
 void copy(const glm::dvec3& from, double to[3]);
 std::string name_of(const char* text);
-View view_of(const lds_view* view);
+/// `model`: whose objects lenses may list.
+View view_of(const lds_view* view, const lds_model* model);
+Camera camera_of(const lds_camera* camera);
+/// What bends quality in a picture of this size.
+Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
+                       int height);
 /// Views into the caller's memory; throws for lengths and indices that do not fit.
 Faces faces_of(const lds_faces_view* view);
 lds_model* new_model();

@@ -86,7 +86,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.false_color = given.false_color != 0;
         wanted.covered_only = given.covered_only != 0;
         const povray::ExportReport report = povray::export_scene(
-            model->model, cut->cut, view_of(view), wanted, model->problems, progress);
+            model->model, cut->cut, view_of(view, model), wanted, model->problems, progress);
         lds_export_report out{};
         out.bytes = report.bytes;
         out.files = report.files;

@@ -31,26 +31,6 @@ double between(double value, double least, double most, const char* what) {
     return value;
 }
 
-Camera camera_of(const lds_camera* camera) {
-    const lds_camera given = grown(camera, kFirstCamera, "camera");
-    Camera out;
-    out.name = name_of(given.name);
-    out.orthographic = given.orthographic != 0;
-    out.position = vector(given.position, "camera.position");
-    out.direction = vector(given.direction, "camera.direction");
-    out.right = vector(given.right, "camera.right");
-    out.up = vector(given.up, "camera.up");
-    out.near_clip = given.near_clip;
-    if (!(out.near_clip > 0) || !std::isfinite(out.near_clip))
-        fail(Status::InvalidArgument, "camera.near_clip is ", given.near_clip,
-             "; it must be more than 0");
-    if (glm::length(glm::cross(out.right, out.up)) == 0 || glm::length(out.direction) == 0)
-        fail(Status::InvalidArgument, "the camera's frame has no area");
-    out.focus_distance = at_least(given.focus_distance, 0, "camera.focus_distance");
-    out.aperture = at_least(given.aperture, 0, "camera.aperture");
-    return out;
-}
-
 Light light_of(const lds_light* light) {
     const lds_light given = grown(light, kFirstLight, "light");
     Light out;
@@ -88,7 +68,27 @@ Light light_of(const lds_light* light) {
 
 namespace lodestone::capi {
 
-View view_of(const lds_view* view) {
+Camera camera_of(const lds_camera* camera) {
+    const lds_camera given = grown(camera, kFirstCamera, "camera");
+    Camera out;
+    out.name = name_of(given.name);
+    out.orthographic = given.orthographic != 0;
+    out.position = vector(given.position, "camera.position");
+    out.direction = vector(given.direction, "camera.direction");
+    out.right = vector(given.right, "camera.right");
+    out.up = vector(given.up, "camera.up");
+    out.near_clip = given.near_clip;
+    if (!(out.near_clip > 0) || !std::isfinite(out.near_clip))
+        fail(Status::InvalidArgument, "camera.near_clip is ", given.near_clip,
+             "; it must be more than 0");
+    if (glm::length(glm::cross(out.right, out.up)) == 0 || glm::length(out.direction) == 0)
+        fail(Status::InvalidArgument, "the camera's frame has no area");
+    out.focus_distance = at_least(given.focus_distance, 0, "camera.focus_distance");
+    out.aperture = at_least(given.aperture, 0, "camera.aperture");
+    return out;
+}
+
+View view_of(const lds_view* view, const lds_model* model) {
     // A camera of another version is shorter or longer: the view's own fields follow it as the
     // caller knows it.
     require(view, "view");
@@ -102,7 +102,7 @@ View view_of(const lds_view* view) {
     std::memcpy(&given.width, reinterpret_cast<const char*>(view) + before,
                 std::min<size_t>(view->struct_size - before, kViewTail));
     View out;
-    out.camera = ::camera_of(&view->camera);
+    out.camera = camera_of(&view->camera);
     out.width = given.width;
     out.height = given.height;
     if (out.width < 1 || out.height < 1 || out.width > 65536 || out.height > 65536)
@@ -119,6 +119,8 @@ View view_of(const lds_view* view) {
                  height, " is no part of a picture of ", out.width, " x ", out.height, " pixels");
         out.border = Border{left, top, width, height};
     }
+    if (given.modifiers != nullptr)
+        out.modifiers = modifiers_of(given.modifiers, model, out.width, out.height);
     return out;
 }
 

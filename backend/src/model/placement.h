@@ -5,6 +5,7 @@
 #include "base/maths.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace lodestone {
@@ -35,6 +36,9 @@ struct Placement {
     /// The largest LOD number it is drawn with: groups around it are opened. 0: the original, also
     /// of all below it.
     uint32_t coarsest = kAnyLevel;
+    /// `transform` when the shutter closes; null: it rests in its group. Belongs to one frame: no
+    /// store keeps it, and no hash counts it.
+    std::shared_ptr<const Affine> closing{};
 
     /// Whether it is drawn otherwise than its object is elsewhere.
     bool decided() const { return importance != 1 || coarsest != kAnyLevel; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/maths.h"
+#include "model/lens.h"
 #include "model/picture.h"
 #include "model/representation.h"
 
@@ -70,14 +71,31 @@ struct Border {
     int height = 1;
 };
 
+/// What bends quality. Every factor counts by itself; all together stay within 1/64 ... 64.
+struct Modifiers {
+    Criterion criterion = Criterion::Resolution;
+    std::vector<DetailLens> lenses;
+    std::vector<ScreenLens> screen_lenses;
+    /// Depth exaggeration: coarser by (z / depth_focus)^(depth - 1); 1: none.
+    double depth = 1;
+    double depth_focus = 10;  // metres
+    /// Coarser where things cross the screen while the shutter is open, by motion of the camera (to
+    /// `closing`) or of placements.
+    bool when_moving = false;
+    std::optional<Camera> closing;
+    /// Coarser where little light falls, unless the world behind is bright.
+    bool when_dark = false;
+};
+
 /// Everything but the model.
 struct View {
     Camera camera;
     int width = 640;  // pixels of the final image
     int height = 360;
-    double pixel_error = 1;      // T; 0 = originals
+    double pixel_error = 1;      // T; 0 = originals. Of other criteria: the threshold
     KindMask kinds = kAllKinds;  // what the consumer can draw
     std::optional<Border> border;
+    Modifiers modifiers;
 };
 
 }  // namespace lodestone

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lodestone::quality {
 
@@ -29,6 +30,61 @@ bool good_enough(const View& view, double error, double stretch, double z, doubl
     if (std::isinf(refine))
         return false;
     return error * stretch * refine <= view.pixel_error * pixel_size(view, z);
+}
+
+double picture_area(const View& view, double z) {
+    const double frame = glm::length(glm::cross(view.camera.right, view.camera.up));
+    const double depth = view.camera.orthographic ? 1 : std::max(z, view.camera.near_clip);
+    return frame * depth * depth;
+}
+
+double threshold_for(const View& view, const Sight& sight, double error, size_t lod,
+                     size_t levels) {
+    const double refine = sight.total;
+    if (std::isinf(refine))
+        return refine;
+    switch (view.modifiers.criterion) {
+        case Criterion::Feature: {
+            const double feature = error * sight.stretch * refine;
+            return feature * feature / picture_area(view, sight.z);
+        }
+        case Criterion::Area:
+            return lod == 0 ? 0
+                            : std::ldexp(sight.share * refine * refine,
+                                         -2 * static_cast<int>(levels - 1 - lod));
+        case Criterion::Distance:
+            return lod == 0 ? std::numeric_limits<double>::infinity()
+                            : std::ldexp(sight.z / refine, 1 - static_cast<int>(lod));
+        case Criterion::Resolution:
+            break;
+    }
+    return error_on_screen(view, error, sight.stretch, sight.z) * refine;
+}
+
+bool good_enough(const View& view, const Sight& sight, double error, size_t lod, size_t levels) {
+    const double refine = sight.total;
+    if (view.modifiers.criterion == Criterion::Resolution)
+        return good_enough(view, error, sight.stretch, sight.z, refine);
+    if (std::isinf(refine))
+        return false;
+    const double threshold = view.pixel_error;
+    switch (view.modifiers.criterion) {
+        case Criterion::Feature: {
+            const double feature = error * sight.stretch * refine;
+            return feature * feature <= threshold * picture_area(view, sight.z);
+        }
+        case Criterion::Area: {
+            const double serves = std::ldexp(threshold, 2 * static_cast<int>(levels - 1 - lod));
+            return lod > 0 && sight.share * refine * refine <= serves;
+        }
+        case Criterion::Distance: {
+            const double serves = std::ldexp(threshold, static_cast<int>(lod) - 1);
+            return lod > 0 && sight.z >= serves * refine;
+        }
+        case Criterion::Resolution:
+            break;
+    }
+    return false;
 }
 
 }  // namespace lodestone::quality

@@ -20,4 +20,22 @@ double total_refinement(double factors);
 /// error * stretch * refine <= T * p(z); T = 0 asks for error 0.
 bool good_enough(const View& view, double error, double stretch, double z, double refine = 1);
 
+/// How an occurrence is seen: what its levels are judged by.
+struct Sight {
+    double z = 0;        // metres from the eye to its bound
+    double stretch = 1;  // of its transform
+    double total = 1;    // total_refinement of all factors
+    double share = 0;    // of the picture, covered by the image of its box; Criterion::Area only
+};
+
+/// Whether LOD number `lod` of `levels` is good enough by the view's criterion (5.2.2): by resolution as
+/// above; else as Criterion says, the threshold divided by the refinement (of areas: by its square).
+bool good_enough(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+
+/// The least threshold that this is good enough for (of Criterion::Distance: the greatest).
+double threshold_for(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+
+/// Square metres that the whole picture covers at distance z.
+double picture_area(const View& view, double z);
+
 }  // namespace lodestone::quality

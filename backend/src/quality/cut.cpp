@@ -3,9 +3,13 @@
 
 #include "base/hash_set.h"
 #include "quality/criterion.h"
+#include "quality/factors.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace lodestone::quality {
 namespace {
@@ -22,9 +26,8 @@ struct Pick {
 
 /// The cheapest good representation that the view can draw, or the finest drawable one, or none.
 /// Representations are ordered finest first with strictly rising errors and falling costs.
-Pick pick(const Object& object, const View& view, const Node& node, double enlarge, double z) {
+Pick pick(const Object& object, const View& view, const Node& node, const Sight& sight) {
     const Representation* finest = nullptr;
-    const double refine = total_refinement(node.importance * object.demand);
     const size_t levels =
         std::min<size_t>(object.representations.size(), node.coarsest + size_t{1});
     for (size_t i = levels; i-- > 0;) {
@@ -33,10 +36,36 @@ Pick pick(const Object& object, const View& view, const Node& node, double enlar
             (view.kinds & mask_of(candidate.summary.kind)) == 0)
             continue;
         finest = &candidate;
-        if (good_enough(view, candidate.summary.error, enlarge, z, refine))
+        if (good_enough(view, sight, candidate.summary.error, i, object.representations.size()))
             return {finest, true};
     }
     return {finest, false};
+}
+
+/// How a node is seen; nothing when a lens hides it. `path` becomes that of what is below it.
+std::optional<Sight> seen(const Model& model, const View& view, FactorField& field,
+                          const Node& node, FactorField::Path& path, Factors& factors) {
+    const Object& object = model.objects[node.object];
+    Sight sight;
+    sight.stretch = stretch(node.world);
+    const Bound bound = transformed(object.bound(), node.world, sight.stretch);
+    sight.z = distance(bound, view.camera.position);
+    bool open = false;
+    if (field.bends()) {
+        const FactorField::Effect effect =
+            field.at(node.object, object.bound(), node.world, bound, sight.z, path);
+        if (effect.gone)
+            return std::nullopt;
+        factors = effect.factors;
+        open = effect.open;
+    }
+    factors.importance = node.importance;
+    factors.demand = object.demand;
+    sight.total = open ? std::numeric_limits<double>::infinity() : factors.total();
+    if (view.modifiers.criterion == Criterion::Area)
+        sight.share = field.frame().rect_of_box(bound).area() /
+                      (field.frame().width() * field.frame().height());
+    return sight;
 }
 
 /// Whether a group's children could cost less than this stand-in of theirs.
@@ -51,7 +80,7 @@ bool worth_opening(const Object& object, const Representation& stand_in) {
 class Chooser {
 public:
     Chooser(const Model& model, const View& view, const Job& job)
-        : model_(model), view_(view), job_(job) {}
+        : model_(model), view_(view), job_(job), field_(model, view) {}
 
     Cut run(ObjectIndex root) {
         visit(root);
@@ -61,29 +90,39 @@ public:
     }
 
 private:
+    struct Pending {
+        Node node;
+        FactorField::Path path;
+    };
+
     void visit(ObjectIndex root) {
-        std::vector<Node> stack(1);
-        stack.back().object = root;
+        std::vector<Pending> stack(1);
+        stack.back().node.object = root;
+        stack.back().path = field_.root();
         while (!stack.empty()) {
-            Node node = stack.back();
+            auto [node, path] = stack.back();
             stack.pop_back();
             if ((nodes_.size() & 1023u) == 0)
                 job_.check();
             const Object& object = model_.objects.at(node.object);
             if (object.representations.empty())
                 continue;
-            const double enlarge = stretch(node.world);
-            const double z =
-                distance(transformed(object.bound(), node.world, enlarge), view_.camera.position);
-            const Pick picked = pick(object, view_, node, enlarge, z);
+            Factors factors;
+            const std::optional<Sight> sight = seen(model_, view_, field_, node, path, factors);
+            if (!sight)
+                continue;
+            const Pick picked = pick(object, view_, node, *sight);
             if (picked.choice == nullptr)
                 continue;
             const Summary& summary = picked.choice->summary;
             node.lod = static_cast<uint32_t>(picked.choice - object.representations.data());
             node.kind = summary.kind;
             node.opened = node.kind == Kind::Assembly;
+            node.need = !picked.good ? 0
+                                     : threshold_for(view_, *sight, summary.error, node.lod,
+                                                     object.representations.size());
             if (!node.opened)
-                node.error_px = error_on_screen(view_, summary.error, enlarge, z);
+                node.error_px = error_on_screen(view_, summary.error, sight->stretch, sight->z);
             const bool enter =
                 node.opened || (picked.good && worth_opening(object, *picked.choice));
             const auto index = static_cast<uint32_t>(nodes_.size());
@@ -94,7 +133,8 @@ private:
             const std::vector<Placement>& placements =
                 object.representations[0].assembly().placements;
             for (size_t i = placements.size(); i-- > 0;) {
-                Node child;
+                Pending pending;
+                Node& child = pending.node;
                 child.object = placements[i].object;
                 child.parent = index;
                 child.placement = static_cast<uint32_t>(i);
@@ -102,8 +142,10 @@ private:
                 child.hidden = static_cast<RayMask>(node.hidden | placements[i].hidden);
                 child.importance = node.importance * placements[i].importance;
                 child.coarsest = node.coarsest == 0 ? 0 : placements[i].coarsest;
-                if (child.hidden != kAllRays)  // else nothing would show it
-                    stack.push_back(child);
+                if (child.hidden == kAllRays)  // nothing would show it
+                    continue;
+                pending.path = field_.below(path, node.world, placements[i]);
+                stack.push_back(std::move(pending));
             }
         }
     }
@@ -192,6 +234,7 @@ private:
     const Model& model_;
     const View& view_;
     const Job& job_;
+    FactorField field_;
     std::vector<Node> nodes_;       // a node's own come right after it
     std::vector<uint8_t> entered_;  // whether its children are there, and count
 };
@@ -204,12 +247,66 @@ Cut choose(const Model& model, const View& view, const Job& job) {
     return choose_below(model, model.root, view, job);
 }
 
+Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index) {
+    // The path from the root, so that the lenses that touch it are found as when it was chosen.
+    std::vector<uint32_t> way;
+    for (uint32_t at = index; at != kNoParent; at = cut.nodes.at(at).parent)
+        way.push_back(at);
+    FactorField field(model, view);
+    FactorField::Path path = field.root();
+    Reason reason;
+    for (size_t i = way.size(); i-- > 0;) {
+        const Node& node = cut.nodes[way[i]];
+        if (i + 1 < way.size()) {
+            const Node& group = cut.nodes[node.parent];
+            path = field.below(path, group.world,
+                               model.objects.at(group.object)
+                                   .representations.at(0)
+                                   .assembly()
+                                   .placements.at(node.placement));
+        }
+        Factors factors;
+        const Object& object = model.objects.at(node.object);
+        const std::optional<Sight> sight = seen(model, view, field, node, path, factors);
+        if (!sight)
+            fail(Status::InvalidArgument, "the cut was made for another view");
+        const size_t first = i == 0 ? node.lod + size_t{1} : size_t{1};
+        for (size_t lod = first; lod < object.representations.size(); ++lod) {
+            const Summary& summary = object.representations[lod].summary;
+            if ((view.kinds & mask_of(summary.kind)) == 0)
+                continue;
+            reason.coarser =
+                Reason::Level{node.object,
+                              static_cast<uint32_t>(lod),
+                              summary.kind,
+                              summary.error,
+                              error_on_screen(view, summary.error, sight->stretch, sight->z),
+                              sight->total};
+            reason.pinned = lod > node.coarsest;
+            break;
+        }
+        if (i > 0)
+            continue;
+        const Summary& summary = object.representations.at(node.lod).summary;
+        reason.z = std::max(sight->z, view.camera.near_clip);
+        reason.pixel = pixel_size(view, sight->z);
+        reason.stretch = sight->stretch;
+        reason.factors = factors;
+        reason.chosen = {node.object,   node.lod,      node.kind,
+                         summary.error, node.error_px, sight->total};
+    }
+    return reason;
+}
+
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
     if (view.width <= 0 || view.height <= 0)
         fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
     if (!(view.pixel_error >= 0))
         fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
              "; it must be 0 or more");
+    const glm::dvec3& eye = view.camera.position;
+    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
+        fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
     return Chooser(model, view, job).run(root);
 }
 

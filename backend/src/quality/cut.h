@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "quality/factors.h"
 
 #include <map>
 #include <string>
@@ -22,6 +23,7 @@ struct Node {
     Kind kind = Kind::Assembly;   // of the choice
     bool opened = false;
     double error_px = 0;    // on screen; 0 when opened
+    double need = 0;        // what of the threshold its choice takes: the least that allows it
     double importance = 1;  // its placements' together
     uint32_t coarsest = kAnyLevel;
     RayMask hidden = 0;  // ray classes that do not see it: its placements' together
@@ -50,6 +52,31 @@ Cut choose(const Model& model, const View& view, const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
+
+/// Why a node is drawn as it is.
+struct Reason {
+    struct Level {
+        ObjectIndex object = kNoObject;
+        uint32_t lod = 0;
+        Kind kind = Kind::Mesh;
+        double error = 0;     // metres, object's frame
+        double error_px = 0;  // on screen
+        double total = 1;  // its factors together: error_px * total is what is held to Pixel Error
+    };
+    Level chosen;
+    double z = 0;        // metres from the eye
+    double pixel = 0;    // size of a pixel there, metres
+    double stretch = 1;  // of its transform
+    Factors factors;
+    /// The next coarser level of the same object, else the finest stand-in of the nearest group around
+    /// it that has one.
+    std::optional<Level> coarser;
+    bool pinned = false;  // that one is not allowed, by a decision on the placement
+};
+
+/// Of a node of a cut for this model and view, with the numbers it was chosen by. Throws
+/// Error(InvalidArgument) for a cut of another view whose lenses hide it.
+Reason why(const Model& model, const View& view, const Cut& cut, uint32_t node);
 
 /// Names of the placements from the root to a node, joined by '/'.
 std::string path_of(const Model& model, const Cut& cut, uint32_t node);

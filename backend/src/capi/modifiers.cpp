@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What bends quality, in the C interface: translation; what makes no sense is refused when choosing.
+#include "capi/guard.h"
+#include "capi/handles.h"
+
+namespace lodestone::capi {
+namespace {
+
+constexpr size_t kFirstModifiers = sizeof(lds_modifiers);
+
+/// Elements of an array whose struct may have grown: each as long as the first says.
+template <typename Struct>
+const Struct& element(const Struct* first, size_t position, const char* what) {
+    require(first, what);
+    require_size(first, sizeof(Struct), what);
+    const auto* at = reinterpret_cast<const char*>(first) + position * first->struct_size;
+    return checked(reinterpret_cast<const Struct*>(at), what);
+}
+
+DetailLens lens_of(const lds_lens& given, const lds_model* model) {
+    DetailLens lens;
+    lens.name = name_of(given.name);
+    if (given.shape != LDS_LENS_SHAPE_SPHERE && given.shape != LDS_LENS_SHAPE_BOX)
+        fail(Status::InvalidArgument, "lens '", lens.name, "' has shape ", given.shape,
+             "; 0 (sphere) or 1 (box) expected");
+    if (given.filter < LDS_LENS_FILTER_ALL || given.filter > LDS_LENS_FILTER_SHOW)
+        fail(Status::InvalidArgument, "lens '", lens.name, "' has filter ", given.filter,
+             "; 0 to 2 expected");
+    lens.shape = static_cast<LensShape>(given.shape);
+    lens.filter = static_cast<LensFilter>(given.filter);
+    lens.transform = Affine::from_rows(given.transform);
+    lens.radius = given.radius;
+    lens.strength = given.strength;
+    lens.falloff = given.falloff;
+    if (given.object_count > 0)
+        require(given.objects, "lens.objects");
+    for (size_t i = 0; i < given.object_count; ++i)
+        lens.objects.push_back(model->index_of(given.objects[i]));
+    return lens;
+}
+
+ScreenLens screen_lens_of(const lds_screen_lens& given, int width, int height) {
+    ScreenLens lens;
+    lens.name = name_of(given.name);
+    const bool shares = given.in_pixels == 0;
+    lens.center = {given.center[0] * (shares ? width : 1), given.center[1] * (shares ? height : 1)};
+    lens.radius = given.radius * (shares ? width : 1);
+    lens.strength = given.strength;
+    lens.falloff = given.falloff;
+    return lens;
+}
+
+}  // namespace
+
+Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
+                       int height) {
+    const lds_modifiers given = grown(modifiers, kFirstModifiers, "modifiers");
+    Modifiers out;
+    if (given.criterion < LDS_CRITERION_RESOLUTION || given.criterion > LDS_CRITERION_DISTANCE)
+        fail(Status::InvalidArgument, "modifiers.criterion is ", given.criterion,
+             "; 0 to 3 expected");
+    out.criterion = static_cast<Criterion>(given.criterion);
+    if (given.lens_count > quality::kMostLenses || given.screen_lens_count > quality::kMostLenses)
+        fail(Status::InvalidArgument, std::max(given.lens_count, given.screen_lens_count),
+             " lenses; at most ", quality::kMostLenses);
+    for (size_t i = 0; i < given.lens_count; ++i)
+        out.lenses.push_back(lens_of(element(given.lenses, i, "modifiers.lenses"), model));
+    for (size_t i = 0; i < given.screen_lens_count; ++i)
+        out.screen_lenses.push_back(screen_lens_of(
+            element(given.screen_lenses, i, "modifiers.screen_lenses"), width, height));
+    out.depth = given.depth;
+    out.depth_focus = given.depth_focus;
+    out.when_moving = given.when_moving != 0;
+    out.when_dark = given.when_dark != 0;
+    if (given.closing != nullptr)
+        out.closing = camera_of(given.closing);
+    return out;
+}
+
+}  // namespace lodestone::capi
+
+using namespace lodestone;
+using namespace lodestone::capi;
+
+lds_modifiers lds_modifiers_default(void) {
+    const Modifiers defaults;
+    lds_modifiers modifiers{};
+    modifiers.struct_size = sizeof modifiers;
+    modifiers.depth = defaults.depth;
+    modifiers.depth_focus = defaults.depth_focus;
+    return modifiers;
+}

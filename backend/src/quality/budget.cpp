@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::quality {
+namespace {
+
+constexpr int kFinestPower = -10;  // 1/1024 px: below it the eye, and POV-Ray, see nothing
+constexpr int kCoarsestPower = 40;
+constexpr double kClose = 1 + 1e-9;  // thresholds nearer than this are one
+constexpr int kMostSteps = 64;
+
+class Search {
+public:
+    Search(const Model& model, const View& view, const Budget& budget, const Job& job)
+        : model_(model), view_(view), budget_(budget), job_(job) {}
+
+    Budgeted run() {
+        if (try_at(view_.pixel_error))
+            return std::move(best_);
+        double fails = view_.pixel_error;
+        const int first =
+            std::max(kFinestPower,
+                     fails > 0 ? static_cast<int>(std::floor(std::log2(fails))) + 1 : kFinestPower);
+        bool found = false;
+        for (int power = first; power <= kCoarsestPower && !found; ++power) {
+            found = try_at(std::ldexp(1, power));
+            if (!found)
+                fails = std::ldexp(1, power);
+        }
+        if (!found && !try_at(std::numeric_limits<double>::infinity())) {
+            best_ = {coarsest(), 0, false, best_.cuts + 1};
+            best_.pixel_error = need(best_.cut);
+            return std::move(best_);
+        }
+        bisect(fails);
+        snap(fails);
+        return std::move(best_);
+    }
+
+private:
+    Cut cut_at(double threshold) {
+        job_.check();
+        View view = view_;
+        view.pixel_error = threshold;
+        return choose(model_, view, job_);
+    }
+    Cut coarsest() { return cut_at(std::numeric_limits<double>::infinity()); }
+
+    bool try_at(double threshold) {
+        Cut cut = cut_at(threshold);
+        ++best_.cuts;
+        if (!budget_.fits(cut))
+            return false;
+        best_.cut = std::move(cut);
+        best_.pixel_error = threshold;
+        best_.fits = true;
+        return true;
+    }
+
+    /// Leaves in best_ the finest that fits, in `fails` the threshold just below that does not.
+    void bisect(double& fails) {
+        for (int step = 0; step < kMostSteps; ++step) {
+            const double least = fails > 0 ? fails : std::ldexp(1, kFinestPower - kMostSteps);
+            const double most = std::isinf(best_.pixel_error) ? std::ldexp(1, 2 * kCoarsestPower)
+                                                              : best_.pixel_error;
+            if (most <= least * kClose)
+                return;
+            const double middle = std::sqrt(least * most);
+            if (!try_at(middle))
+                fails = middle;
+        }
+    }
+
+    /// The least threshold that gives the cut found, to the last bit.
+    void snap(double fails) {
+        double exact = need(best_.cut);
+        for (int step = 0; step < 4 && exact > fails && exact < best_.pixel_error; ++step) {
+            if (try_at(exact))
+                return;
+            exact = std::nextafter(exact, std::numeric_limits<double>::infinity());
+        }
+    }
+
+    /// What the least good of the chosen ones asks of the threshold.
+    double need(const Cut& cut) const {
+        double most = 0;
+        for (const uint32_t index : cut.chosen)
+            most = std::max(most, cut.nodes[index].need);
+        return most;
+    }
+
+    const Model& model_;
+    const View& view_;
+    const Budget& budget_;
+    const Job& job_;
+    Budgeted best_;
+};
+
+}  // namespace
+
+Budgeted choose_within(const Model& model, const View& view, const Budget& budget, const Job& job) {
+    if (view.modifiers.criterion == Criterion::Distance)
+        fail(Status::InvalidArgument, "a budget cannot be kept by distances");
+    return Search(model, view, budget, job).run();
+}
+
+}  // namespace lodestone::quality
