@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // povray: a picture of a store or model, without Blender.
 #include "cameras.h"
+#include "choosing.h"
 #include "report.h"
 #include "session.h"
 #include "terminal.h"
@@ -130,6 +131,7 @@ int run_povray(const Arguments& arguments) {
     lds_view view = view_of(arguments, model.get(), true);
     view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID |
                  1u << LDS_KIND_COMPOSITE;
+    Choosing choosing(arguments, view);
     const SceneFolder folder(arguments.text("scene"));
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;
@@ -141,9 +143,7 @@ int run_povray(const Arguments& arguments) {
     std::string largest;
     {
         Progress progress("exporting");
-        lds_cut* made = nullptr;
-        check(lds_cut_create(model.get(), &view, progress.job(), &made));
-        const CutHandle cut(made);
+        const CutHandle cut = choosing.cut(model.get(), progress.job());
         check(lds_cut_get_summary(cut.get(), &summary));
         largest = summary.largest_error_name;
         check(lds_povray_export(model.get(), cut.get(), &view, folder.path().c_str(), &options,
@@ -165,6 +165,7 @@ int run_povray(const Arguments& arguments) {
     Fields report = report_of("povray", input);
     report.push_back({"picture", *out});
     report.push_back({"pixel_error", view.pixel_error});
+    choosing.report(report);
     report.push_back({"camera", camera});
     summary.largest_error_name = largest.c_str();
     report.push_back({"cut", fields_of(summary)});

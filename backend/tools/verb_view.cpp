@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cut, compare, version.
 #include "cameras.h"
+#include "choosing.h"
 #include "report.h"
 #include "session.h"
 #include "terminal.h"
@@ -13,18 +14,16 @@ int run_cut(const Arguments& arguments) {
     const std::string& input = arguments.positional()[0];
     size_of(arguments);  // before anything is read
     const ModelHandle model = read_model(input);
-    const lds_view view = view_of(arguments, model.get(), false);
-
-    lds_cut* made = nullptr;
-    check(lds_cut_create(model.get(), &view, nullptr, &made));
-    const CutHandle cut(made);
+    lds_view view = view_of(arguments, model.get(), false);
+    Choosing choosing(arguments, view);
+    const CutHandle cut = choosing.cut(model.get(), nullptr);
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;
     check(lds_cut_get_summary(cut.get(), &summary));
     std::printf(
         "%llu occurrences (%llu originals): %llu meshes, %llu boxes, %llu ellipsoids, "
         "%llu composites; "
-        "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px (%s)\n",
+        "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px (%s); threshold %g\n",
         static_cast<unsigned long long>(summary.occurrences),
         static_cast<unsigned long long>(summary.originals),
         static_cast<unsigned long long>(summary.mesh), static_cast<unsigned long long>(summary.box),
@@ -32,9 +31,10 @@ int run_cut(const Arguments& arguments) {
         static_cast<unsigned long long>(summary.composite),
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
-        shown(summary.largest_error_name).c_str());
+        shown(summary.largest_error_name).c_str(), view.pixel_error);
     Fields report = report_of("cut", input);
     report.push_back({"pixel_error", view.pixel_error});
+    choosing.report(report);
     report.push_back({"cut", fields_of(summary)});
     if (arguments.has("list")) {
         std::vector<lds_choice> choices(lds_cut_choice_count(cut.get()));

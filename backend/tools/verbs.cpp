@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs.h"
 
+#include "choosing.h"
+
 namespace lodestone::tools {
 namespace {
 
@@ -75,6 +77,9 @@ const std::vector<Verb>& verbs() {
          "The camera is one of the store (--camera NAME), or placed by --eye and --look-at.",
          1,
          {{"pixel-error", "PX", "largest error on screen in pixels (default 1; 0 = originals)"},
+          kMaxTriangles,
+          kMaxMemory,
+          kCriterion,
           {"size", "WxH", "picture size in pixels (default 640x360)"},
           {"camera", "NAME", "a camera of the store (default: its first)"},
           {"eye", "X,Y,Z", "where the eye is"},
@@ -93,6 +98,9 @@ const std::vector<Verb>& verbs() {
          1,
          {{"out", "X.png", "the picture"},
           {"pixel-error", "PX", "largest error on screen in pixels (default 1; 0 = originals)"},
+          kMaxTriangles,
+          kMaxMemory,
+          kCriterion,
           {"size", "WxH", "picture size in pixels (default 640 wide in the camera's shape)"},
           {"camera", "NAME", "a camera of the file (default: its first)"},
           {"eye", "X,Y,Z", "where the eye is"},

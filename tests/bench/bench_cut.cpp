@@ -2,10 +2,12 @@
 // What choosing costs: `cmake --build build/release --target bench_cut`, then build/release/tests/bench_cut.
 // A plain of 4^10 = 1,048,576 houses in groups of four, each group with a stand-in; the Pixel Error is
 // such that about 20,000 things are chosen. Prints nanoseconds a visit and milliseconds a cut (goals:
-// 100 and 5), least / median / most of 21 cuts, once with every level's groups shared, once without.
+// 100 and 5), least / median / most of 21 cuts, once with every level's groups shared, once without; the
+// same through a lens around the eye; what copying the result costs, making the table (once per change
+// of the model) and finding the Pixel Error for a budget of memory.
 #include "backend/models.h"
 #include "base/clock.h"
-#include "quality/cut.h"
+#include "quality/budget.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -65,6 +67,20 @@ View view_of(double pixel_error) {
     return view;
 }
 
+/// Least / median / most of some runs, in `unit`s.
+template <typename Run>
+void print_times(int runs, double unit, const Run& run) {
+    std::vector<double> seconds;
+    for (int i = 0; i < runs; ++i) {
+        const double start = cpu_seconds();
+        run();
+        seconds.push_back(cpu_seconds() - start);
+    }
+    std::sort(seconds.begin(), seconds.end());
+    std::printf(" %.3g / %.3g / %.3g |", unit * seconds.front(), unit * seconds[seconds.size() / 2],
+                unit * seconds.back());
+}
+
 void bench(const char* what, int own) {
     Model model;
     const ObjectIndex house = models::add_leaf(model, "house", shapes::sphere(5, 2));
@@ -72,28 +88,40 @@ void bench(const char* what, int own) {
     std::vector<ObjectIndex> shared(kDepth + 1, kNoObject);
     model.root = plain(model, house, kDepth, own, shared);
     summarize_assemblies(model, bottom_up(model));
+    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
     double fine = 0;
     double coarse = 1000;
     for (int i = 0; i < 40; ++i) {
         const double middle = (fine + coarse) / 2;
-        const size_t chosen = quality::choose(model, view_of(middle)).chosen.size();
+        const size_t chosen = quality::choose(table, view_of(middle)).chosen.size();
         (chosen > kWanted ? fine : coarse) = middle;
     }
-    const View view = view_of(coarse);
-    const quality::Cut cut = quality::choose(model, view);
-    std::vector<double> seconds;
-    for (int i = 0; i < kCuts; ++i) {
-        const double start = cpu_seconds();
-        quality::choose(model, view);
-        seconds.push_back(cpu_seconds() - start);
-    }
-    std::sort(seconds.begin(), seconds.end());
-    const double visits = static_cast<double>(cut.nodes.size());
-    std::printf("| %s | %zu | %zu | %zu |", what, model.objects.size(), cut.nodes.size(),
-                cut.chosen.size());
-    for (const double unit : {1e9 / visits, 1e3})
-        std::printf(" %.3g / %.3g / %.3g |", unit * seconds.front(), unit * seconds[kCuts / 2],
-                    unit * seconds.back());
+    View view = view_of(coarse);
+    const auto row = [&](const char* how) {
+        const quality::Cut cut = quality::choose(table, view);
+        const double visits = static_cast<double>(cut.nodes.size());
+        std::printf("| %s, %s | %zu | %zu | %zu |", what, how, model.objects.size(),
+                    cut.nodes.size(), cut.chosen.size());
+        for (const double unit : {1e9 / visits, 1e3})
+            print_times(kCuts, unit, [&] { quality::choose(table, view); });
+        std::printf("\n");
+    };
+    row("plain");
+    DetailLens lens;
+    lens.transform = models::moved(150, 260, 0);
+    lens.radius = 60;
+    lens.strength = 2;
+    view.modifiers.lenses = {lens};
+    row("one lens");
+    view.modifiers.lenses.clear();
+    const quality::Cut cut = quality::choose(table, view);
+    std::printf("| %s, copying a cut's nodes | | %zu | | |", what, cut.nodes.size());
+    print_times(kCuts, 1e3, [&] { return std::vector<quality::Node>(cut.nodes).size(); });
+    std::printf("\n| %s, table | %zu | | | |", what, model.objects.size());
+    print_times(5, 1e3, [&] { quality::Table::whole(model, model.root, kAllKinds); });
+    std::printf("\n| %s, budget | %zu | | %zu | |", what, model.objects.size(), cut.chosen.size());
+    view.pixel_error = 0;
+    print_times(5, 1e3, [&] { quality::choose_within(table, view, {0, cut.bytes}); });
     std::printf("\n");
 }
 

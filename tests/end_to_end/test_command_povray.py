@@ -62,6 +62,24 @@ class CommandPovray(unittest.TestCase):
         self.assertTrue((scene / "scene.pov").is_file())
         self.assertEqual(size, (32, 18))
 
+    def test_a_budget_finds_the_pixel_error_that_fits(self):
+        store, report = self.folder / "store", self.folder / "cut.json"
+        self.assertEqual(self.run_command("build", self.model, store).returncode, 0)
+        look = (store, "--eye", "5,5,5", "--json", report)
+        plain = self.run_command("cut", *look, "--max-triangles", "12")
+        self.assertEqual(plain.returncode, 0, plain.stderr)
+        said = json.loads(report.read_text())
+        self.assertEqual((said["pixel_error"], said["cut"]["triangles"]), (0, 12))
+        self.assertEqual(said["budget"], {"triangles": 12, "bytes": 0, "fits": True})
+        done = self.run_command("cut", *look, "--max-memory", "0.000001")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("even the coarsest levels cost more", done.stderr)
+        self.assertFalse(json.loads(report.read_text())["budget"]["fits"])
+        for wrong in (("--max-triangles", "0"), ("--criterion", "beauty")):
+            done = self.run_command("cut", *look, *wrong)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(wrong[0], done.stderr)
+
     def test_mistakes_are_sentences_and_leave_the_old_picture(self):
         self.out.write_bytes(b"last night's picture")
         out = ("--out", self.out)

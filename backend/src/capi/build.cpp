@@ -101,6 +101,7 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         const ThreadLimit limit(given.threads);
         model->load_finest();
         const segment::Store target(store);
+        model->table.reset();
         const build::Report report =
             build::build_hierarchy(model->model, target, settings, model->problems, job_of(job));
         model->store.emplace(target);

@@ -33,11 +33,10 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
     return guard([&] {
         require(model, "model");
         require(out_cut, "out_cut");
-        model->summarize();
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
         View given = view_of(view, model);
-        quality::Cut cut = quality::choose(model->model, given, progress);
+        quality::Cut cut = quality::choose(model->table_for(given.kinds), given, progress);
         *out_cut = finished(*model, std::move(given), std::move(cut)).release();
     });
 }
@@ -49,7 +48,6 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         require(out_cut, "out_cut");
         checked(out_report, "out_report");
         const lds_budget& given = checked(budget, "budget");
-        model->summarize();
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
         View made_for = view_of(view, model);

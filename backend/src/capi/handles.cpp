@@ -24,6 +24,18 @@ void lds_model::summarize() {
         return;
     summarize_assemblies(model, bottom_up(model));
     summarized = true;
+    table.reset();
+}
+
+const quality::Table& lds_model::table_for(KindMask kinds) {
+    summarize();
+    if (model.root >= model.objects.size())
+        fail(Status::InvalidArgument, "the model has no root object");
+    if (!table || table->kinds() != kinds) {
+        table.reset();
+        table.emplace(quality::Table::whole(model, model.root, kinds));
+    }
+    return *table;
 }
 
 void lds_model::load(Representation& representation) {

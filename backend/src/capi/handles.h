@@ -23,6 +23,7 @@ struct lds_model {
     /// Finest meshes by content, for those that are added next.
     std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
+    std::optional<lodestone::quality::Table> table;  // for choosing; reset when the model changes
 
     /// Index of an id; throws Error(StaleId) for another model's.
     lodestone::ObjectIndex index_of(lds_object object) const;
@@ -30,6 +31,8 @@ struct lds_model {
     lodestone::Object& at(lds_object object) { return model.objects[index_of(object)]; }
     /// Brings assemblies' summaries up to date.
     void summarize();
+    /// What choosing reads, up to date.
+    const lodestone::quality::Table& table_for(lodestone::KindMask kinds);
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
     /// Makes every finest mesh and every picture resident (a model read from a store).

@@ -15,13 +15,13 @@ constexpr int kMostSteps = 64;
 
 class Search {
 public:
-    Search(const Model& model, const View& view, const Budget& budget, const Job& job)
-        : model_(model), view_(view), budget_(budget), job_(job) {}
+    Search(const Table& table, const View& view, const Budget& budget, const Job& job)
+        : table_(table), view_(view), budget_(budget), job_(job) {}
 
     Budgeted run() {
-        if (try_at(view_.pixel_error))
-            return std::move(best_);
         double fails = view_.pixel_error;
+        if (try_at(fails))
+            return std::move(best_);
         const int first =
             std::max(kFinestPower,
                      fails > 0 ? static_cast<int>(std::floor(std::log2(fails))) + 1 : kFinestPower);
@@ -32,7 +32,7 @@ public:
                 fails = std::ldexp(1, power);
         }
         if (!found && !try_at(std::numeric_limits<double>::infinity())) {
-            best_ = {coarsest(), 0, false, best_.cuts + 1};
+            best_.cut = cut_at(std::numeric_limits<double>::infinity(), {}).value();
             best_.pixel_error = need(best_.cut);
             return std::move(best_);
         }
@@ -42,20 +42,18 @@ public:
     }
 
 private:
-    Cut cut_at(double threshold) {
+    std::optional<Cut> cut_at(double threshold, const Budget& budget) {
         job_.check();
-        View view = view_;
-        view.pixel_error = threshold;
-        return choose(model_, view, job_);
+        view_.pixel_error = threshold;
+        return choose_within_budget(table_, view_, budget, job_);
     }
-    Cut coarsest() { return cut_at(std::numeric_limits<double>::infinity()); }
 
     bool try_at(double threshold) {
-        Cut cut = cut_at(threshold);
+        std::optional<Cut> cut = cut_at(threshold, budget_);
         ++best_.cuts;
-        if (!budget_.fits(cut))
+        if (!cut)
             return false;
-        best_.cut = std::move(cut);
+        best_.cut = std::move(*cut);
         best_.pixel_error = threshold;
         best_.fits = true;
         return true;
@@ -88,13 +86,13 @@ private:
     /// What the least good of the chosen ones asks of the threshold.
     double need(const Cut& cut) const {
         double most = 0;
-        for (const uint32_t index : cut.chosen)
-            most = std::max(most, cut.nodes[index].need);
+        for (const Node& node : cut.nodes)
+            most = std::max(most, node.need);
         return most;
     }
 
-    const Model& model_;
-    const View& view_;
+    const Table& table_;
+    View view_;
     const Budget& budget_;
     const Job& job_;
     Budgeted best_;
@@ -102,10 +100,16 @@ private:
 
 }  // namespace
 
-Budgeted choose_within(const Model& model, const View& view, const Budget& budget, const Job& job) {
+Budgeted choose_within(const Table& table, const View& view, const Budget& budget, const Job& job) {
     if (view.modifiers.criterion == Criterion::Distance)
         fail(Status::InvalidArgument, "a budget cannot be kept by distances");
-    return Search(model, view, budget, job).run();
+    return Search(table, view, budget, job).run();
+}
+
+Budgeted choose_within(const Model& model, const View& view, const Budget& budget, const Job& job) {
+    if (model.root >= model.objects.size())
+        fail(Status::InvalidArgument, "the model has no root object");
+    return choose_within(Table::whole(model, model.root, view.kinds), view, budget, job);
 }
 
 }  // namespace lodestone::quality

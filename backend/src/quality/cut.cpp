@@ -1,250 +1,279 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/cut.h"
 
-#include "base/hash_set.h"
 #include "quality/criterion.h"
-#include "quality/factors.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace lodestone::quality {
 namespace {
 
-// Nothing that is drawn costs less than this: a primitive, placed once.
-constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
-
 constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct Pick {
-    const Representation* choice = nullptr;  // nothing can be drawn
-    bool good = false;                       // within the error
-};
-
-/// The cheapest good representation that the view can draw, or the finest drawable one, or none.
-/// Representations are ordered finest first with strictly rising errors and falling costs.
-Pick pick(const Object& object, const View& view, const Node& node, const Sight& sight) {
-    const Representation* finest = nullptr;
-    const size_t levels =
-        std::min<size_t>(object.representations.size(), node.coarsest + size_t{1});
-    for (size_t i = levels; i-- > 0;) {
-        const Representation& candidate = object.representations[i];
-        if (candidate.summary.kind != Kind::Assembly &&
-            (view.kinds & mask_of(candidate.summary.kind)) == 0)
-            continue;
-        finest = &candidate;
-        if (good_enough(view, sight, candidate.summary.error, i, object.representations.size()))
-            return {finest, true};
-    }
-    return {finest, false};
-}
-
-/// How a node is seen; nothing when a lens hides it. `path` becomes that of what is below it.
-std::optional<Sight> seen(const Model& model, const View& view, FactorField& field,
-                          const Node& node, FactorField::Path& path, Factors& factors) {
-    const Object& object = model.objects[node.object];
-    Sight sight;
-    sight.stretch = stretch(node.world);
-    const Bound bound = transformed(object.bound(), node.world, sight.stretch);
+/// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
+bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
+         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
+    sight.stretch = enlarge;
+    const Bound bound = transformed(local, node.world, enlarge);
     sight.z = distance(bound, view.camera.position);
     bool open = false;
     if (field.bends()) {
         const FactorField::Effect effect =
-            field.at(node.object, object.bound(), node.world, bound, sight.z, path);
+            field.at(node.object, group, local, node.world, bound, sight.z, path);
         if (effect.gone)
-            return std::nullopt;
+            return false;
         factors = effect.factors;
         open = effect.open;
     }
     factors.importance = node.importance;
-    factors.demand = object.demand;
-    sight.total = open ? std::numeric_limits<double>::infinity() : factors.total();
+    factors.demand = demand;
+    sight.total = open ? kInfinity : factors.total();
     if (view.modifiers.criterion == Criterion::Area)
         sight.share = field.frame().rect_of_box(bound).area() /
                       (field.frame().width() * field.frame().height());
-    return sight;
+    return true;
 }
 
-/// Whether a group's children could cost less than this stand-in of theirs.
-bool worth_opening(const Object& object, const Representation& stand_in) {
-    return object.group() && stand_in.summary.kind != Kind::Assembly &&
-           stand_in.summary.cost.bytes + kBytesPerOccurrence >
-               kLeastBytes * object.representations[0].assembly().placements.size();
-}
-
-/// Visits what may be drawn, depth first. A group whose stand-in is good is entered nevertheless
-/// where that might be cheaper.
+/// Visits what is drawn and the groups above it, depth first, each once.
 class Chooser {
 public:
-    Chooser(const Model& model, const View& view, const Job& job)
-        : model_(model), view_(view), job_(job), field_(model, view) {}
+    /// `growing`: the same table, where rows are made on the way.
+    Chooser(const Table& table, Table* growing, const View& view, const Budget& budget,
+            const Job& job)
+        : table_(table),
+          growing_(growing),
+          view_(view),
+          budget_(budget),
+          job_(job),
+          field_(table.model(), view),
+          by_error_(view.modifiers.criterion == Criterion::Resolution ||
+                    view.modifiers.criterion == Criterion::Feature) {}
 
-    Cut run(ObjectIndex root) {
-        visit(root);
-        if (close_dear())
-            drop_unused();
-        return total();
+    /// Nothing when it is known to cost more than the budget.
+    std::optional<Cut> run(uint32_t root) {
+        job_.check();
+        const size_t expected = table_.expected();
+        cut_.nodes.reserve(expected);
+        cut_.chosen.reserve(expected);
+        Node top;
+        FactorField::Path path = field_.root();
+        visit(root, top, 1, path, 0);
+        if (!budget_.fits(cut_))
+            return std::nullopt;
+        while (!stack_.empty()) {
+            const Entry entry = stack_.back();
+            stack_.pop_back();
+            visit_child(entry);
+            if ((++visits_ & 1023u) == 0)
+                job_.check();
+            if (!budget_.fits(cut_))
+                return std::nullopt;
+        }
+        for (size_t kind = 0; kind < kKinds; ++kind) {
+            if (kinds_[kind] != 0)
+                cut_.kinds[name_of(static_cast<Kind>(kind))] = kinds_[kind];
+        }
+        table_.expect(cut_.nodes.size());
+        return std::move(cut_);
     }
 
 private:
-    struct Pending {
-        Node node;
-        FactorField::Path path;
+    struct Entry {
+        uint32_t parent;    // node
+        uint32_t child;     // of the table
+        uint32_t position;  // among the placements
+        uint32_t depth;
+    };
+    /// The group at some depth that is being visited.
+    struct Frame {
+        double stretch = 1;
+        FactorField::Path path;  // of what it places
     };
 
-    void visit(ObjectIndex root) {
-        std::vector<Pending> stack(1);
-        stack.back().node.object = root;
-        stack.back().path = field_.root();
-        while (!stack.empty()) {
-            auto [node, path] = stack.back();
-            stack.pop_back();
-            if ((nodes_.size() & 1023u) == 0)
-                job_.check();
-            const Object& object = model_.objects.at(node.object);
-            if (object.representations.empty())
+    void visit_child(const Entry& entry) {
+        const TableChild& placed = table_.child(entry.child);
+        const Node& group = cut_.nodes[entry.parent];
+        const Frame& above = frames_[entry.depth - 1];
+        Node node;
+        node.hidden = static_cast<RayMask>(group.hidden | placed.hidden);
+        if (node.hidden == kAllRays)  // nothing would show it
+            return;
+        node.parent = entry.parent;
+        node.placement = entry.position;
+        node.importance = group.importance * placed.importance;
+        node.coarsest = group.coarsest == 0 ? 0 : placed.coarsest;
+        double enlarge = above.stretch;
+        node.world.offset = group.world.linear * placed.offset + group.world.offset;
+        if (placed.linear == kUnturned) {
+            node.world.linear = group.world.linear;
+        } else {
+            node.world.linear = group.world.linear * table_.linear(placed.linear);
+            enlarge = stretch(node.world);
+        }
+        path_.lenses = above.path.lenses;
+        if (view_.modifiers.when_moving)
+            path_ = field_.below(above.path, group.world,
+                                 table_.model()
+                                     .objects[group.object]
+                                     .representations[0]
+                                     .assembly()
+                                     .placements[entry.position]);
+        visit(placed.row, node, enlarge, path_, entry.depth);
+    }
+
+    /// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly
+    /// and costs fall from finest to coarsest.
+    const TableLevel* pick(const TableRow& row, uint32_t coarsest, const Sight& sight,
+                           bool& good) const {
+        const TableLevel* finest = nullptr;
+        for (uint32_t i = row.level_count; i-- > 0;) {
+            const TableLevel& level = table_.level(row.first_level + i);
+            if (level.lod > coarsest)
                 continue;
-            Factors factors;
-            const std::optional<Sight> sight = seen(model_, view_, field_, node, path, factors);
-            if (!sight)
-                continue;
-            const Pick picked = pick(object, view_, node, *sight);
-            if (picked.choice == nullptr)
-                continue;
-            const Summary& summary = picked.choice->summary;
-            node.lod = static_cast<uint32_t>(picked.choice - object.representations.data());
-            node.kind = summary.kind;
-            node.opened = node.kind == Kind::Assembly;
-            node.need = !picked.good ? 0
-                                     : threshold_for(view_, *sight, summary.error, node.lod,
-                                                     object.representations.size());
-            if (!node.opened)
-                node.error_px = error_on_screen(view_, summary.error, sight->stretch, sight->z);
-            const bool enter =
-                node.opened || (picked.good && worth_opening(object, *picked.choice));
-            const auto index = static_cast<uint32_t>(nodes_.size());
-            nodes_.push_back(node);
-            entered_.push_back(enter ? 1 : 0);
-            if (!enter)
-                continue;
-            const std::vector<Placement>& placements =
-                object.representations[0].assembly().placements;
-            for (size_t i = placements.size(); i-- > 0;) {
-                Pending pending;
-                Node& child = pending.node;
-                child.object = placements[i].object;
-                child.parent = index;
-                child.placement = static_cast<uint32_t>(i);
-                child.world = node.world * placements[i].transform;
-                child.hidden = static_cast<RayMask>(node.hidden | placements[i].hidden);
-                child.importance = node.importance * placements[i].importance;
-                child.coarsest = node.coarsest == 0 ? 0 : placements[i].coarsest;
-                if (child.hidden == kAllRays)  // nothing would show it
-                    continue;
-                pending.path = field_.below(path, node.world, placements[i]);
-                stack.push_back(std::move(pending));
-            }
+            finest = &level;
+            good = good_enough(view_, sight, level.error, level.lod, row.all_levels);
+            if (good)
+                break;
+        }
+        return finest;
+    }
+
+    void visit(uint32_t row_index, Node& node, double enlarge, FactorField::Path& path,
+               uint32_t depth) {
+        const TableRow& row = table_.row(row_index);
+        if (!row.drawable)
+            return;
+        node.object = row.object;
+        Sight sight;
+        Factors factors;
+        if (!see(view_, field_, node, row.group, row.bound, row.demand, enlarge, path, sight,
+                 factors))
+            return;
+        bool good = false;
+        const TableLevel* level = pick(row, node.coarsest, sight, good);
+        if (level == nullptr && !row.group)
+            return;
+        const auto index = static_cast<uint32_t>(cut_.nodes.size());
+        const bool cheaper =
+            level != nullptr && good && by_error_ && level->opens_from < kInfinity &&
+            good_enough(view_, sight, level->opens_from, level->lod, row.all_levels);
+        if (level == nullptr || (row.group && (!good || cheaper))) {
+            node.opened = true;
+            if (cheaper)
+                node.need =
+                    threshold_for(view_, sight, level->opens_from, level->lod, row.all_levels);
+            cut_.nodes.push_back(node);
+            open(row_index, index, enlarge, path, depth);
+            return;
+        }
+        node.lod = level->lod;
+        node.kind = level->kind;
+        node.error_px = error_on_screen(view_, level->error, sight.stretch, sight.z);
+        if (good)
+            node.need = by_error_ && view_.modifiers.criterion == Criterion::Resolution
+                            ? node.error_px * sight.total
+                            : threshold_for(view_, sight, level->error, level->lod, row.all_levels);
+        cut_.nodes.push_back(node);
+        take(index, *level);
+    }
+
+    void open(uint32_t row_index, uint32_t index, double enlarge, const FactorField::Path& path,
+              uint32_t depth) {
+        if (growing_ != nullptr)
+            growing_->expand(row_index);
+        const TableRow& row = table_.row(row_index);
+        if (frames_.size() <= depth)
+            frames_.resize(depth + size_t{1});
+        frames_[depth].stretch = enlarge;
+        frames_[depth].path.lenses = path.lenses;
+        if (view_.modifiers.when_moving)
+            frames_[depth].path = path;
+        for (uint32_t i = row.child_count; i-- > 0;) {
+            stack_.push_back({index, row.first_child + i, i, depth + 1});
+            table_.fetch(table_.child(row.first_child + i).row);
         }
     }
 
-    /// Of everything entered, keeps the stand-in or what is below, whichever costs less. True when
-    /// something was entered in vain.
-    bool close_dear() {
-        bool vain = false;
-        std::vector<uint64_t> below(nodes_.size(), 0);
-        for (size_t i = nodes_.size(); i-- > 0;) {  // children before parents
-            Node& node = nodes_[i];
-            uint64_t bytes = below[i];
-            if (!node.opened) {
-                const uint64_t own =
-                    representation_of(node).summary.cost.bytes + kBytesPerOccurrence;
-                if (entered_[i] != 0 && below[i] < own && below[i] > 0) {
-                    node.opened = true;
-                    node.lod = 0;
-                    node.kind = Kind::Assembly;
-                    node.error_px = 0;
-                } else {
-                    vain = vain || entered_[i] != 0;
-                    entered_[i] = 0;
-                    bytes = own;
-                }
-            }
-            if (node.parent != kNoParent)
-                below[node.parent] += bytes;
+    /// Counts what is drawn.
+    void take(uint32_t index, const TableLevel& level) {
+        cut_.chosen.push_back(index);
+        cut_.triangles += level.triangles;
+        cut_.bytes += kBytesPerOccurrence;
+        if (drawn_.size() <= level.distinct)
+            drawn_.resize(std::max<size_t>(table_.distinct(), level.distinct + size_t{1}));
+        // A composite is copied for each occurrence.
+        if (!drawn_[level.distinct] || level.kind == Kind::Composite) {
+            drawn_[level.distinct] = true;
+            cut_.bytes += level.bytes;
         }
-        return vain;
+        ++kinds_[static_cast<size_t>(level.kind)];
+        const double error_px = cut_.nodes[index].error_px;
+        if (error_px > cut_.largest_error_px) {
+            cut_.largest_error_px = error_px;
+            cut_.largest_error_node = index;
+        }
     }
 
-    const Representation& representation_of(const Node& node) const {
-        return model_.objects[node.object].representations[node.lod];
-    }
-
-    /// Without what lies below closed nodes.
-    void drop_unused() {
-        std::vector<uint32_t> moved(nodes_.size(), kNoParent);
-        uint32_t kept = 0;
-        for (size_t i = 0; i < nodes_.size(); ++i) {
-            const uint32_t parent = nodes_[i].parent;
-            if (parent != kNoParent) {
-                if (entered_[parent] == 0 || moved[parent] == kNoParent)
-                    continue;
-                nodes_[i].parent = moved[parent];
-            }
-            moved[i] = kept;
-            if (kept != i)
-                nodes_[kept] = nodes_[i];
-            ++kept;
-        }
-        nodes_.resize(kept);
-    }
-
-    Cut total() {
-        Cut cut;
-        HashSet distinct(nodes_.size());
-        std::array<uint64_t, kKinds> kinds{};
-        for (size_t i = 0; i < nodes_.size(); ++i) {
-            const Node& node = nodes_[i];
-            if (node.opened)
-                continue;
-            const auto index = static_cast<uint32_t>(i);
-            const Summary& summary = representation_of(node).summary;
-            cut.chosen.push_back(index);
-            cut.triangles += summary.cost.triangles;
-            cut.bytes += kBytesPerOccurrence;
-            // A composite is copied for each occurrence.
-            if (distinct.insert(summary.hash) || summary.kind == Kind::Composite)
-                cut.bytes += summary.cost.bytes;
-            ++kinds[static_cast<size_t>(summary.kind)];
-            if (node.error_px > cut.largest_error_px) {
-                cut.largest_error_px = node.error_px;
-                cut.largest_error_node = index;
-            }
-        }
-        for (size_t kind = 0; kind < kKinds; ++kind) {
-            if (kinds[kind] != 0)
-                cut.kinds[name_of(static_cast<Kind>(kind))] = kinds[kind];
-        }
-        cut.nodes = std::move(nodes_);
-        return cut;
-    }
-
-    const Model& model_;
+    const Table& table_;
+    Table* growing_;
     const View& view_;
+    const Budget& budget_;
     const Job& job_;
     FactorField field_;
-    std::vector<Node> nodes_;       // a node's own come right after it
-    std::vector<uint8_t> entered_;  // whether its children are there, and count
+    FactorField::Path path_;  // of what is visited; of motion only where that counts
+    bool by_error_;
+    Cut cut_;
+    std::vector<Entry> stack_;
+    std::vector<Frame> frames_;  // by depth
+    std::vector<bool> drawn_;    // by TableLevel::distinct
+    std::array<uint64_t, kKinds> kinds_{};
+    size_t visits_ = 0;
 };
+
+void refuse_nonsense(const View& view) {
+    if (view.width <= 0 || view.height <= 0)
+        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
+    if (!(view.pixel_error >= 0))
+        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
+             "; it must be 0 or more");
+    const glm::dvec3& eye = view.camera.position;
+    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
+        fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
+}
+
+ObjectIndex root_of(const Model& model) {
+    if (model.root >= model.objects.size())
+        fail(Status::InvalidArgument, "the model has no root object");
+    return model.root;
+}
 
 }  // namespace
 
 Cut choose(const Model& model, const View& view, const Job& job) {
-    if (model.root >= model.objects.size())
-        fail(Status::InvalidArgument, "the model has no root object");
-    return choose_below(model, model.root, view, job);
+    return choose_below(model, root_of(model), view, job);
+}
+
+Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
+    refuse_nonsense(view);
+    Table table(model, view.kinds);
+    const uint32_t top = table.row_of(root);
+    return Chooser(table, &table, view, {}, job).run(top).value();
+}
+
+std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
+                                        const Job& job) {
+    refuse_nonsense(view);
+    if (table.kinds() != view.kinds)
+        fail(Status::Internal, "the table was made for other kinds");
+    return Chooser(table, nullptr, view, budget, job).run(table.find(root_of(table.model())));
+}
+
+Cut choose(const Table& table, const View& view, const Job& job) {
+    return choose_within_budget(table, view, {}, job).value();
 }
 
 Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index) {
@@ -266,9 +295,11 @@ Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index)
                                    .placements.at(node.placement));
         }
         Factors factors;
+        Sight seen;
+        const Sight* sight = &seen;
         const Object& object = model.objects.at(node.object);
-        const std::optional<Sight> sight = seen(model, view, field, node, path, factors);
-        if (!sight)
+        if (!see(view, field, node, object.group(), object.bound(), object.demand,
+                 stretch(node.world), path, seen, factors))
             fail(Status::InvalidArgument, "the cut was made for another view");
         const size_t first = i == 0 ? node.lod + size_t{1} : size_t{1};
         for (size_t lod = first; lod < object.representations.size(); ++lod) {
@@ -296,18 +327,6 @@ Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index)
                          summary.error, node.error_px, sight->total};
     }
     return reason;
-}
-
-Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
-    if (view.width <= 0 || view.height <= 0)
-        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
-    if (!(view.pixel_error >= 0))
-        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
-             "; it must be 0 or more");
-    const glm::dvec3& eye = view.camera.position;
-    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
-        fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
-    return Chooser(model, view, job).run(root);
 }
 
 std::string path_of(const Model& model, const Cut& cut, uint32_t node) {

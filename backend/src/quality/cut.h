@@ -5,6 +5,7 @@
 #include "base/job.h"
 #include "model/model.h"
 #include "quality/factors.h"
+#include "quality/table.h"
 
 #include <map>
 #include <string>
@@ -41,14 +42,29 @@ struct Cut {
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
 };
 
+/// What a cut may cost at most; 0: any number.
+struct Budget {
+    uint64_t triangles = 0;  // placed
+    uint64_t bytes = 0;      // in POV-Ray's memory, as Cut::bytes
+
+    bool fits(const Cut& cut) const {
+        return (triangles == 0 || cut.triangles <= triangles) && (bytes == 0 || cut.bytes <= bytes);
+    }
+};
+
 /// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. A group
 /// that is good enough is drawn by its stand-in, unless what its children would be drawn by costs
-/// less (in bytes, those of shared representations counted each time); it must be good enough for the
-/// most important thing below it. Throws
-/// Error(InvalidArgument) for a view without size or a model without root.
-/// cost: one visit per opened group and chosen occurrence, and at most so many more as primitives
-/// would cost what the chosen stand-ins do. Thread-safe on a const model.
+/// less (TableLevel::opens_from); it must be good enough for the most important thing below it.
+/// Throws Error(InvalidArgument) for a view that makes no sense or a model without root.
+/// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
 Cut choose(const Model& model, const View& view, const Job& job = {});
+
+/// The same with a whole table of the model for the view's kinds: without making one.
+Cut choose(const Table& table, const View& view, const Job& job = {});
+
+/// The same; nothing, and sooner, when it costs more than the budget.
+std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
+                                        const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});

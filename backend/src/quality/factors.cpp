@@ -160,12 +160,11 @@ FactorField::Path FactorField::below(const Path& group, const Affine& world,
     return path;
 }
 
-FactorField::Effect FactorField::at(ObjectIndex object, const Bound& local, const Affine& world,
-                                    const Bound& bound, double z, Path& path) {
+FactorField::Effect FactorField::at(ObjectIndex object, bool group, const Bound& local,
+                                    const Affine& world, const Bound& bound, double z, Path& path) {
     Effect effect;
     if (!lenses_.empty()) {
-        const LensField::Effect lens =
-            lenses_.at(object, model_.objects[object].group(), bound, path.lenses);
+        const LensField::Effect lens = lenses_.at(object, group, bound, path.lenses);
         effect.factors.lenses = lens.refine;
         effect.open = lens.open;
         effect.gone = lens.gone;

@@ -55,8 +55,8 @@ public:
         bool gone = false;
     };
     /// Occurrences in depth-first order. `path` becomes that of what is below it.
-    Effect at(ObjectIndex object, const Bound& local, const Affine& world, const Bound& bound,
-              double z, Path& path);
+    Effect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
+              const Bound& bound, double z, Path& path);
 
     const ImageFrame& frame() const { return frame_; }
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "choosing.h"
+
+#include <array>
+#include <cstdio>
+
+namespace lodestone::tools {
+
+const OptionHelp kMaxTriangles{"max-triangles", "N",
+                               "at most N triangles: the Pixel Error that fits is found"};
+const OptionHelp kMaxMemory{"max-memory", "MB", "at most so many megabytes in POV-Ray: the same"};
+const OptionHelp kCriterion{
+    "criterion", "NAME",
+    "what --pixel-error is: resolution (default, pixels), feature or area (shares of the picture), "
+    "distance (metres; larger is finer)"};
+
+Choosing::Choosing(const Arguments& arguments, lds_view& view)
+    : view_(view),
+      modifiers_(lds_modifiers_default()),
+      criterion_(arguments.text("criterion").value_or("resolution")) {
+    static constexpr std::array<const char*, 4> kNames{"resolution", "feature", "area", "distance"};
+    size_t criterion = 0;
+    while (criterion < kNames.size() && criterion_ != kNames[criterion])
+        ++criterion;
+    if (criterion == kNames.size())
+        throw UsageError("--criterion is '" + criterion_ +
+                         "'; resolution, feature, area or distance expected");
+    modifiers_.criterion = static_cast<int32_t>(criterion);
+    view_.modifiers = &modifiers_;
+    budget_.struct_size = sizeof budget_;
+    found_.struct_size = sizeof found_;
+    budget_.triangles = static_cast<uint64_t>(arguments.number("max-triangles", 0, 0, 1e15));
+    budget_.bytes = static_cast<uint64_t>(1e6 * arguments.number("max-memory", 0, 0, 1e9));
+    if (budget_.triangles == 0 && arguments.has("max-triangles"))
+        throw UsageError("--max-triangles is 0; 1 or more expected");
+    if (budget_.bytes == 0 && arguments.has("max-memory"))
+        throw UsageError("--max-memory is 0; more expected");
+    // A budget alone asks for the finest that fits.
+    if ((budget_.triangles != 0 || budget_.bytes != 0) && !arguments.has("pixel-error"))
+        view_.pixel_error = 0;
+}
+
+CutHandle Choosing::cut(lds_model* model, lds_job* job) {
+    lds_cut* made = nullptr;
+    if (budget_.triangles == 0 && budget_.bytes == 0) {
+        check(lds_cut_create(model, &view_, job, &made));
+        return CutHandle(made);
+    }
+    check(lds_cut_create_within(model, &view_, &budget_, job, &found_, &made));
+    view_.pixel_error = found_.pixel_error;
+    if (found_.fits == 0)
+        std::fprintf(stderr, "warning: even the coarsest levels cost more than the budget\n");
+    return CutHandle(made);
+}
+
+void Choosing::report(Fields& fields) const {
+    fields.push_back({"criterion", criterion_});
+    if (found_.cuts > 0)
+        fields.push_back({"budget", Fields{{"triangles", budget_.triangles},
+                                           {"bytes", budget_.bytes},
+                                           {"fits", found_.fits != 0}}});
+}
+
+}  // namespace lodestone::tools

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards budgets: the finest cut that costs no more, and what is said where there is none.
+#include "backend/bent.h"
+#include "quality/budget.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using bent::drawn;
+using models::view_from;
+
+namespace {
+
+View from(double distance) {
+    return view_from(distance, 0);
+}
+
+}  // namespace
+
+TEST(Budget, WithoutLimitsIsTheViewsOwnThreshold) {
+    const Model model = bent::pairs();
+    const quality::Budgeted found = quality::choose_within(model, from(300), {});
+    EXPECT_TRUE(found.fits);
+    EXPECT_EQ(found.pixel_error, 0);
+    EXPECT_EQ(found.cut.triangles, 4u * 1280u);
+    EXPECT_EQ(found.cuts, 1u);
+}
+
+TEST(Budget, FindsTheLeastThresholdThatFits) {
+    // Four balls of 20 triangles (LOD 2, .2 m) or two cubes of 12 (.4 m), seen from 300 m.
+    const Model model = bent::pairs();
+    const quality::Budgeted balls = quality::choose_within(model, from(301), {80, 0});
+    EXPECT_EQ(balls.cut.triangles, 80u);
+    EXPECT_NEAR(balls.pixel_error, 0.2 * 640 / 300, 1e-12);
+    const quality::Budgeted cubes = quality::choose_within(model, from(301), {79, 0});
+    EXPECT_EQ(cubes.cut.triangles, 12u + 40u);  // the far pair first: its bound is 300.02 m away
+    const quality::Budgeted both = quality::choose_within(model, from(301), {51, 0});
+    EXPECT_EQ(both.cut.triangles, 24u);
+    EXPECT_NEAR(both.pixel_error, 0.4 * 640 / 300, 1e-12);
+    View view = from(301);
+    view.pixel_error = both.pixel_error;  // to the last bit
+    EXPECT_EQ(quality::choose(model, view).triangles, 24u);
+    view.pixel_error = std::nextafter(both.pixel_error, 0);
+    EXPECT_EQ(quality::choose(model, view).triangles, 52u);
+}
+
+TEST(Budget, CountsBytesAsPovRayKeepsThem) {
+    // 20 triangles once and 1,500 bytes for each of four balls.
+    const Model model = bent::pairs();
+    const uint64_t bytes = 20 * kBytesPerTriangle + 4 * kBytesPerOccurrence;
+    const quality::Budgeted found = quality::choose_within(model, from(301), {0, bytes});
+    EXPECT_EQ(found.cut.bytes, bytes);
+    EXPECT_NEAR(found.pixel_error, 0.2 * 640 / 300, 1e-12);
+    EXPECT_LT(quality::choose_within(model, from(301), {0, bytes - 1}).cut.bytes, bytes);
+}
+
+TEST(Budget, IsNeverFinerThanTheView) {
+    const Model model = bent::pairs();
+    const quality::Budgeted found = quality::choose_within(model, view_from(301, 3), {1000000, 0});
+    EXPECT_EQ(found.pixel_error, 3);
+    EXPECT_EQ(found.cut.triangles, 24u);
+}
+
+TEST(Budget, WhereNothingFitsTheCoarsestIsMadeAndSaysSo) {
+    const Model model = bent::pairs();
+    const quality::Budgeted found = quality::choose_within(model, from(301), {23, 0});
+    EXPECT_FALSE(found.fits);
+    EXPECT_EQ(found.cut.triangles, 24u);
+    EXPECT_NEAR(found.pixel_error, 0.4 * 640 / 300, 1e-12);
+    EXPECT_FALSE(quality::choose_within(model, from(301), {0, 1}).fits);
+}
+
+TEST(Budget, IsNeverExceededAndMoreNeverMeansCoarser) {
+    Model model = bent::pairs(40);
+    for (const bool bytes : {false, true}) {
+        double last = std::numeric_limits<double>::infinity();
+        for (uint64_t most = 200; most < 80000; most = most * 6 / 5) {
+            const uint64_t limit = bytes ? 100 * most : most;
+            const quality::Budget budget{bytes ? 0 : limit, bytes ? limit : 0};
+            const quality::Budgeted found = quality::choose_within(model, from(40), budget);
+            if (found.fits) {
+                EXPECT_LE(bytes ? found.cut.bytes : found.cut.triangles, limit);
+            }
+            EXPECT_LE(found.pixel_error, last);
+            last = found.pixel_error;
+        }
+        EXPECT_EQ(last, 0);
+    }
+}
+
+TEST(Budget, OneThingThatIsTooDearDoesNotFit) {
+    Model model;
+    model.root = models::add_leaf(model, "ball", shapes::sphere(1, 3));
+    summarize_assemblies(model, bottom_up(model));
+    EXPECT_FALSE(quality::choose_within(model, from(300), {1279, 0}).fits);
+    EXPECT_TRUE(quality::choose_within(model, from(300), {1280, 0}).fits);
+}
+
+TEST(Budget, LensesKeepTheirPartOfIt) {
+    const Model model = bent::pairs();
+    View view = from(301);
+    view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
+    EXPECT_EQ(drawn(model, quality::choose_within(model, view, {120, 0}).cut),
+              "pair 0/left 1, pair 0/right 2, pair 1 1");
+}
+
+TEST(Budget, ByDistancesIsRefused) {
+    View view = from(300);
+    view.modifiers.criterion = Criterion::Distance;
+    EXPECT_THROW(quality::choose_within(bent::pairs(), view, {1, 0}), Error);
+}
+
+TEST(Budget, CancelledJobStops) {
+    const int32_t cancel = 1;
+    EXPECT_THROW(
+        quality::choose_within(bent::pairs(), from(300), {1, 0}, Job(&cancel, nullptr, nullptr)),
+        Error);
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Guards choosing from C: what bends quality is refused by name where it makes no sense, views of version 1
+   go on working, budgets say what fits, reasons name every factor. */
+#include "cube.h"
+
+#include <stddef.h>
+
+static lds_lens lens_of(double radius, double strength) {
+    lds_lens lens;
+    memset(&lens, 0, sizeof lens);
+    lens.struct_size = sizeof lens;
+    memcpy(lens.transform, kIdentity, sizeof kIdentity);
+    lens.radius = radius;
+    lens.strength = strength;
+    lens.falloff = 1;
+    lens.name = "Lens";
+    return lens;
+}
+
+/* The status of a cut with these modifiers. */
+static lds_status status_of(lds_model* model, const lds_modifiers* modifiers) {
+    lds_view view = view_before(30, 640, 360);
+    view.modifiers = modifiers;
+    lds_cut* cut = NULL;
+    const lds_status status = lds_cut_create(model, &view, NULL, &cut);
+    EXPECT((status == LDS_OK) == (cut != NULL));
+    lds_cut_destroy(cut);
+    return status;
+}
+
+static void test_a_view_without_modifiers_is_one_of_version_1(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_view view = view_before(30, 640, 360);
+    view.struct_size = offsetof(lds_view, modifiers);
+    view.modifiers = (const lds_modifiers*)1; /* not read */
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    lds_cut_summary summary;
+    memset(&summary, 0, sizeof summary);
+    summary.struct_size = offsetof(lds_cut_summary, largest_error_choice);
+    summary.largest_error_choice = 77;
+    EXPECT(lds_cut_get_summary(cut, &summary) == LDS_OK);
+    EXPECT(summary.occurrences == 2 && summary.largest_error_choice == 77);
+    lds_cut_destroy(cut);
+    lds_model_destroy(model);
+}
+
+static void test_nonsense_is_refused_by_name(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_modifiers modifiers = lds_modifiers_default();
+    EXPECT(status_of(model, &modifiers) == LDS_OK);
+    lds_lens lens = lens_of(1, 4);
+    modifiers.lenses = &lens;
+    modifiers.lens_count = 1;
+    EXPECT(status_of(model, &modifiers) == LDS_OK);
+    lens.strength = NAN;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "lens 'Lens' has a strength of") != NULL);
+    lens = lens_of(-1, 4);
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    lens = lens_of(1, 4);
+    lens.shape = 9;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    lens = lens_of(1, 4);
+    lens.filter = LDS_LENS_FILTER_REFINE;
+    lens.object_count = 1;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT); /* no list */
+    const lds_object stale = {0, 12345};
+    lens.objects = &stale;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_STALE_ID);
+    lens.objects = &cube;
+    EXPECT(status_of(model, &modifiers) == LDS_OK);
+    lens.struct_size = 4;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    modifiers.lenses = NULL;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    modifiers.lens_count = 10000;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strcmp(lds_last_error_text(), "10000 lenses; at most 1024") == 0);
+    modifiers = lds_modifiers_default();
+    modifiers.criterion = 4;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    modifiers = lds_modifiers_default();
+    modifiers.struct_size = 8;
+    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
+static void test_a_budget_says_what_fits(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_view view = view_before(30, 640, 360);
+    lds_budget budget = {sizeof budget, 24, 0};
+    lds_budget_report report;
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create_within(model, &view, &budget, NULL, &report, &cut) == LDS_OK);
+    EXPECT(report.fits == 1 && report.pixel_error == view.pixel_error);
+    lds_cut_destroy(cut);
+    cut = NULL;
+    budget.triangles = 23; /* there are no other levels */
+    EXPECT(lds_cut_create_within(model, &view, &budget, NULL, &report, &cut) == LDS_OK);
+    EXPECT(report.fits == 0 && lds_cut_choice_count(cut) == 2);
+    lds_cut_destroy(cut);
+    EXPECT(lds_cut_create_within(model, &view, NULL, NULL, &report, &cut) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
+static void test_a_reason_names_every_factor(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_lens lens = lens_of(1000, 4);
+    lens.falloff = 0;
+    lds_modifiers modifiers = lds_modifiers_default();
+    modifiers.lenses = &lens;
+    modifiers.lens_count = 1;
+    lds_view view = view_before(30, 640, 360);
+    view.modifiers = &modifiers;
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    lds_reason reason;
+    memset(&reason, 0, sizeof reason);
+    reason.struct_size = sizeof reason;
+    EXPECT(lds_cut_choice_reason(model, cut, 0, &reason) == LDS_OK);
+    EXPECT(reason.lod == 0 && reason.error == 0 && reason.lenses == 4 && reason.factor == 4);
+    EXPECT(reason.importance == 1 && reason.screen_lenses == 1 && reason.depth == 1);
+    EXPECT(reason.motion == 1 && reason.darkness == 1 && reason.z > 0 && reason.pixel > 0);
+    EXPECT(reason.coarser_object.generation == 0); /* there is none */
+    EXPECT(lds_cut_choice_reason(model, cut, 2, &reason) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_object other;
+    lds_model* foreign = two_cubes(&other);
+    EXPECT(lds_cut_choice_reason(foreign, cut, 0, &reason) == LDS_ERROR_STALE_ID);
+    EXPECT(lds_cut_choice_reason(NULL, cut, 0, &reason) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(foreign);
+    lds_cut_destroy(cut);
+    lds_model_destroy(model);
+}
+
+static void test_what_moves_is_coarser_only_where_that_counts(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_object pair = {cube.index + 1, cube.generation};
+    double there[12];
+    memcpy(there, kIdentity, sizeof there);
+    there[3] = 5 + 1; /* the right one, by a metre */
+    EXPECT(lds_model_move_placement(model, pair, 1, there) == LDS_OK);
+    EXPECT(lds_model_move_placement(model, pair, 2, there) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_move_placement(model, cube, 0, there) == LDS_ERROR_INVALID_ARGUMENT);
+    there[0] = NAN;
+    EXPECT(lds_model_move_placement(model, pair, 1, there) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_modifiers modifiers = lds_modifiers_default();
+    modifiers.when_moving = 1;
+    for (int counts = 1; counts >= 0; --counts) {
+        lds_view view = view_before(30, 640, 360);
+        view.camera.orthographic = 1; /* a metre is the picture's width */
+        view.modifiers = counts ? &modifiers : NULL;
+        lds_cut* cut = NULL;
+        lds_reason reason;
+        memset(&reason, 0, sizeof reason);
+        reason.struct_size = sizeof reason;
+        EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+        EXPECT(lds_cut_choice_reason(model, cut, 0, &reason) == LDS_OK && reason.motion == 1);
+        EXPECT(lds_cut_choice_reason(model, cut, 1, &reason) == LDS_OK);
+        EXPECT(reason.motion == (counts ? 64 : 1));
+        lds_cut_destroy(cut);
+    }
+    EXPECT(lds_model_move_placement(model, pair, 1, NULL) == LDS_OK); /* rests again */
+    lds_model_destroy(model);
+}
+
+int main(void) {
+    test_a_view_without_modifiers_is_one_of_version_1();
+    test_nonsense_is_refused_by_name();
+    test_a_budget_says_what_fits();
+    test_a_reason_names_every_factor();
+    test_what_moves_is_coarser_only_where_that_counts();
+    return finish();
+}
