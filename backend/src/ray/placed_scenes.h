@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Placed scenes: rays through many placements of few meshes, each mesh kept once.
+#pragma once
+
+#include "base/maths.h"
+#include "ray/scene.h"
+
+#include <memory>
+#include <vector>
+
+namespace lodestone::ray {
+
+/// Const methods may be called from any thread, once finish() has been.
+class PlacedScenes {
+public:
+    /// What a hit is named by. A placement that cannot be inverted or is not finite is never hit.
+    void add(std::shared_ptr<const Scene> scene, const Bound& bound, const Affine& world,
+             uint32_t name);
+    /// Sorts what was added into a tree of boxes.
+    void finish();
+
+    struct Hit {
+        bool hit = false;
+        uint32_t name = 0;
+        uint32_t triangle = kNoTriangle;
+        double u = 0;
+        double v = 0;
+        double t = std::numeric_limits<double>::infinity();  // point = origin + t direction
+    };
+    /// The nearest hit with 0 <= t <= far; among equally near ones the one that was added first.
+    Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                  double far = std::numeric_limits<double>::infinity()) const;
+    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+
+    /// Of all that was added, world frame.
+    const Box3& box() const { return all_; }
+
+private:
+    struct Placed {
+        std::shared_ptr<const Scene> scene;
+        Affine inverse;
+        Box3 box;
+        uint32_t name = 0;
+    };
+    struct Cell {
+        Box3 box;
+        uint32_t first = 0;  // of placed_; inside: the second child, the first comes right after it
+        uint32_t count = 0;  // 0: inside
+    };
+
+    void split(uint32_t first, uint32_t last);
+    template <typename Visit>
+    void walk(const glm::dvec3& origin, const glm::dvec3& direction, double& far,
+              const Visit& visit) const;
+
+    std::vector<Placed> placed_;
+    std::vector<Cell> cells_;
+    Box3 all_;
+};
+
+}  // namespace lodestone::ray
