@@ -35,9 +35,11 @@ struct Grid {
 
 class Writer {
 public:
-    Writer(std::string& out, const Light& light, Antialiasing antialiasing)
+    Writer(std::string& out, const Light& light, Antialiasing antialiasing, double steps)
         : out_(out), light_(light), soft_(antialiasing != Antialiasing::Off && light.shadow) {
         start_ = antialiasing == Antialiasing::Reference ? 1 : 0;
+        for (most_ = 3; most_ < 33 && most_ < steps; most_ = 2 * most_ - 1) {
+        }
     }
 
     void sun(const glm::dvec3& color, const Bound& bound) {
@@ -96,12 +98,13 @@ public:
         const double height = glm::length(light_.edge_v);
         const double size = width * height * (light_.round ? kPi / 4 : 1);
         double fade = 0;
-        if (!soft_)  // a disk of this size on its axis
+        const bool soft = soft_ && std::max(width, height) > kNear;
+        if (!soft)  // a disk of this size on its axis
             fade = std::sqrt(size / kPi);
         const Cone cone = spread_cone();
         fading(light_.position, color * (cone.strength / (4 * kPi)), fade);
         append_cone(cone.inner, cone.outer, cone.tightness);
-        if (soft_) {
+        if (soft) {
             Grid grid{9, 9, start_ + 1};
             const double ratio = std::max(width, height) / std::min(width, height);
             int& longer = width > height ? grid.u : grid.v;
@@ -152,7 +155,11 @@ private:
     }
 
     /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is wanted.
-    void append_grid(const glm::dvec3& u, const glm::dvec3& v, const Grid& grid) {
+    void append_grid(const glm::dvec3& u, const glm::dvec3& v, Grid grid) {
+        grid.u = std::min(grid.u, most_);
+        grid.v = std::min(grid.v, most_);
+        if (most_ == 3)
+            grid.start = std::min(grid.start, 1);
         out_ += " area_light ";
         append_vector(out_, u * ((grid.u - 1.0) / grid.u), 15);
         out_ += ',';
@@ -214,6 +221,7 @@ private:
     const Light& light_;
     bool soft_;
     int start_;
+    int most_ = 3;  // rays along an edge
 };
 
 bool placed(const Light& light) {
@@ -228,7 +236,7 @@ bool placed(const Light& light) {
 }  // namespace
 
 void append_light(std::string& out, const Light& light, const Bound& bound,
-                  Antialiasing antialiasing, Problems& problems) {
+                  Antialiasing antialiasing, Problems& problems, double steps) {
     // Cycles subtracts what a light of negative power would give, and so does POV-Ray.
     const glm::dvec3 color = light.color * light.power;
     if (!finite(color) || color == glm::dvec3(0.0))
@@ -238,7 +246,7 @@ void append_light(std::string& out, const Light& light, const Bound& bound,
                             "has no finite place or direction, so it is not used"});
         return;
     }
-    Writer writer(out, light, antialiasing);
+    Writer writer(out, light, antialiasing, steps);
     if (light.kind == LightKind::Sun)
         return writer.sun(color, bound);
     if (light.kind == LightKind::Point)

@@ -6,6 +6,7 @@
 #include "model/view.h"
 #include "povray_export/antialiasing.h"
 
+#include <limits>
 #include <string>
 
 namespace lodestone::povray {
@@ -17,9 +18,11 @@ namespace lodestone::povray {
 ///   spot   the same times cos angle smoothstep((cos angle - cos outer) / (blend (1 - cos outer)))
 ///   area   a radiance P / (4 A) of each part of it, with the cosine at both ends
 /// Their sizes are grids of rays, refined where these disagree, without noise; drafts cast one ray.
+/// A penumbra of at most `steps` steps that can be told apart needs no more rays than it has.
 /// What POV-Ray has no way for is drawn near it and becomes a problem. `bound`: of all objects;
 /// suns start outside of it, for what is behind a parallel light casts no shadow.
 void append_light(std::string& out, const Light& light, const Bound& bound,
-                  Antialiasing antialiasing, Problems& problems);
+                  Antialiasing antialiasing, Problems& problems,
+                  double steps = std::numeric_limits<double>::infinity());
 
 }  // namespace lodestone::povray

@@ -2,12 +2,12 @@
 #include "povray_export/penumbra.h"
 
 #include "quality/criterion.h"
+#include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace lodestone::povray {
@@ -35,10 +35,12 @@ double of_sun(const Light& sun, const View& view, std::span<const Bound> occlude
 double of_lamp(const Light& lamp, const View& view) {
     constexpr double kMagnified = 2;
     constexpr double kDarkest = 0.004;  // about one step of a display
-    const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * kPi);
+    const bool area = lamp.kind == LightKind::Area;
+    const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * (area ? 1 : kPi));
+    const double size = 2 * quality::extent_of(lamp);
     const double reach = std::sqrt(std::max({shining.x, shining.y, shining.z}) / kDarkest);
     const double z = std::max(0.0, glm::length(lamp.position - view.camera.position) - reach);
-    return kMagnified * 2 * lamp.radius / quality::pixel_size(view, z);
+    return kMagnified * size / quality::pixel_size(view, z);
 }
 
 }  // namespace
@@ -53,9 +55,9 @@ double widest_penumbra(const Light& light, const View& view, std::span<const Bou
         case LightKind::Spot:
             return light.radius > 0 ? of_lamp(light, view) : 0;
         case LightKind::Area:
-            break;
+            return of_lamp(light, view);
     }
-    return std::numeric_limits<double>::infinity();
+    return 0;
 }
 
 }  // namespace lodestone::povray

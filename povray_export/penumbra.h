@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Penumbra: how wide soft shadows can be in a picture. Where no pixel could tell, they are drawn
-// sharp: lights are approximated too (dissertation 5.4.1).
+// sharp, and where few could with fewer rays: lights are approximated too (dissertation 5.4.1).
 #pragma once
 
 #include "model/view.h"
@@ -13,7 +13,7 @@ namespace lodestone::povray {
 /// Sun: what stands above the lowest point of all of them by h throws its shadow at most
 /// h / sin(elevation) far, seen no nearer than its bound less that way. Point and spot: twice their
 /// size (by occluders a third of the way from the light), seen no nearer than where they still
-/// light. 0 without a size and without occluders; infinite for areas, which are no points anywhere.
+/// light; areas likewise, their diagonal for the size. 0 without a size and without occluders.
 double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders);
 
 }  // namespace lodestone::povray

@@ -5,13 +5,15 @@
 #include "base/parallel.h"
 #include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
+#include "povray_export/light_plan.h"
 #include "povray_export/light_writer.h"
 #include "povray_export/magnification.h"
 #include "povray_export/number.h"
-#include "povray_export/penumbra.h"
 #include "povray_export/representation_writer.h"
+#include "povray_export/scene_lights.h"
 #include "povray_export/sky_writer.h"
 #include "povray_export/texture_writer.h"
+#include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
 
@@ -286,35 +288,68 @@ private:
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
 
-    /// A light without its size where no pixel could tell.
-    Light seen(const Light& light, std::span<const Bound> occluders) const {
-        constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
-        Light out = light;
-        if (widest_penumbra(light, view_, occluders) <= std::max(kLeast, view_.pixel_error))
-            out.angle = out.radius = 0;
-        return out;
+    /// By which lights what is drawn; its numbers are those of the uses that are drawn.
+    LightPlan light_plan(const std::vector<Bound>& occluders) {
+        const double error = options_.light_error.value_or(view_.pixel_error);
+        report_.lamps = static_cast<uint64_t>(
+            std::count_if(model_.lights.begin(), model_.lights.end(), quality::lamp));
+        report_.lights_each = static_cast<double>(report_.lamps);
+        if (!lit() || !(error > 0) || report_.lamps < kFewLamps)
+            return {};
+        std::vector<Lit> drawn;
+        drawn.reserve(occluders.size());
+        for (const Use& use : uses_) {
+            if (includes_[use.file].drawn)
+                drawn.push_back(
+                    {includes_[use.file].representation, use.world, cut_.nodes[use.node].hidden});
+        }
+        LightPlan plan = plan_lights(model_, drawn, view_, error, problems_, job_);
+        if (!plan.empty())
+            report_.lights_each = plan.lights_each;
+        return plan;
     }
 
-    std::string drawn_objects(double times) {
+    /// Everything that is drawn, with the lights of its group around it.
+    std::string grouped_objects(const LightPlan& plan, const std::vector<std::string>& lights,
+                                double times) {
         std::string out;
+        std::vector<const Use*> drawn;
         for (const Use& use : uses_) {
             if (!includes_[use.file].drawn)
                 continue;
-            const quality::Node& node = cut_.nodes[use.node];
-            out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
-            if (options_.false_color) {
-                const Kind kind = includes_[use.file].representation->summary.kind;
-                append_flat_texture(out, color_of(kind, node.lod));
-                out += ' ';
-            }
-            append_matrix(out, magnified(use.world, times));
-            append_hidden(out, node.hidden);
-            out += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
-            append_count(out, node.lod);
-            out += '\n';
-            ++report_.occurrences;
+            drawn.push_back(&use);
+            if (plan.empty())
+                append_object(out, use, times);
         }
-        return out;
+        report_.occurrences = drawn.size();
+        std::vector<std::string> groups(plan.groups.size());
+        for (const Piece& piece : plan.pieces)
+            append_object(groups[piece.group], *drawn[piece.drawn], times, piece.within);
+        return plan.empty() ? out : grouped_text(plan, lights, groups);
+    }
+
+    /// What of it is `within` a box (world frame).
+    void append_object(std::string& out, const Use& use, double times,
+                       const std::optional<Box3>& within = {}) const {
+        const quality::Node& node = cut_.nodes[use.node];
+        out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
+        if (options_.false_color) {
+            const Kind kind = includes_[use.file].representation->summary.kind;
+            append_flat_texture(out, color_of(kind, node.lod));
+            out += ' ';
+        }
+        append_matrix(out, magnified(use.world, times));
+        append_hidden(out, node.hidden);
+        if (within) {
+            out += " clipped_by{box{";
+            append_vector(out, within->low * times, 15);
+            out += ',';
+            append_vector(out, within->high * times, 15);
+            out += "}}";
+        }
+        out += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
+        append_count(out, node.lod);
+        out += '\n';
     }
 
     std::string scene() {
@@ -329,7 +364,12 @@ private:
         }
         const double times = magnification(view_, occluders);
         bound = magnified(bound, times);
-        const std::string objects = drawn_objects(times);
+        const LightPlan plan = light_plan(occluders);
+        std::string lights;
+        const SceneLights scene_lights(view_, occluders, bound, times, options_.antialiasing,
+                                       problems_);
+        const std::vector<std::string> names = scene_lights.declare(lights, plan);
+        const std::string objects = grouped_objects(plan, names, times);
         std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
         append_number(out, view_.pixel_error, 6);
         out += "\n// ";
@@ -359,9 +399,17 @@ private:
             out += sky_.statement;
         append_camera(out, magnified(view_.camera, times), options_.antialiasing, problems_);
         if (lit()) {
-            for (const Light& light : model_.lights)
-                append_light(out, magnified(seen(light, occluders), times), bound,
-                             options_.antialiasing, problems_);
+            for (const Light& light : model_.lights) {
+                if (plan.empty() || !quality::lamp(light))
+                    scene_lights.append(out, light);
+            }
+            if (!plan.empty()) {
+                out += "// Of ";
+                append_count(out, report_.lamps);
+                out += " lamps a point is lit by ";
+                append_number(out, plan.lights_each, 3);
+                out += " lights on average, some of which stand for several\n" + lights;
+            }
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)

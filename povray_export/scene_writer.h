@@ -8,6 +8,7 @@
 #include "quality/cut.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace lodestone::povray {
 
@@ -18,6 +19,8 @@ struct ExportOptions {
     // Without Environment objects (and all below them, and stand-ins for groups that hold them),
     // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
     bool covered_only = false;
+    /// How far lights are approximated, in place of the view's Pixel Error; 0: all as they are.
+    std::optional<double> light_error;
     bool uvs =
         true;  // texture coordinates where a texture uses them; false: textures are their means
 };
@@ -28,6 +31,8 @@ struct ExportReport {
     uint64_t written = 0;  // files not found again
     uint64_t representations = 0;
     uint64_t occurrences = 0;  // objects in the scene
+    uint64_t lamps = 0;        // lights but suns
+    double lights_each = 0;    // lamps, and lights for several, that light a seen point, on average
     double cpu_s = 0;          // of all threads
 };
 

@@ -122,6 +122,8 @@ int run_povray(const Arguments& arguments) {
     options.false_color = arguments.has("false-color") ? 1 : 0;
     options.threads = static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
     options.program = program ? program->c_str() : nullptr;
+    if (arguments.has("light-error"))
+        options.light_error = arguments.number("light-error", 0, 0, 1e6);
     const char* found = nullptr;
     check(lds_povray_find(options.program, &found));
 
@@ -172,7 +174,9 @@ int run_povray(const Arguments& arguments) {
     report.push_back({"export", Fields{{"bytes", exported.bytes},
                                        {"files", exported.files},
                                        {"written", exported.written},
-                                       {"cpu_s", exported.cpu_s}}});
+                                       {"cpu_s", exported.cpu_s},
+                                       {"lamps", exported.lamps},
+                                       {"lights_each", exported.lights_each}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},
                                        {"wall_s", rendered.wall_s},

@@ -107,6 +107,8 @@ const std::vector<Verb>& verbs() {
           {"look-at", "X,Y,Z", "what it looks at (default 0,0,0)"},
           {"angle-deg", "A", "horizontal field of view (default 50)"},
           {"antialias", "HOW", "off, final (default) or reference"},
+          {"light-error", "PX",
+           "the same for lights alone (default: as pixel-error; 0 = all of them)"},
           {"false-color", "", "paint by kind and level of detail"},
           {"scene", "DIR", "keep the files for POV-Ray in this folder"},
           {"program", "POVRAY", "the program (default: $LODESTONE_POVRAY, else on the PATH)"},

@@ -3,6 +3,9 @@
    missing program. POV-Ray itself is not needed. */
 #include "cube.h"
 
+#include <math.h>
+#include <stddef.h>
+
 /* How often `part` is in the file; -1 when it cannot be read. */
 static int count_in(const char* path, const char* part) {
     FILE* file = fopen(path, "rb");
@@ -26,6 +29,7 @@ static void test_two_cubes_share_one_file(const char* folder) {
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     lds_povray_options options = lds_povray_options_default();
     EXPECT(options.antialias == LDS_ANTIALIAS_FINAL && options.false_color == 0);
+    EXPECT(options.light_error < 0); /* the view's Pixel Error */
     lds_export_report report;
     memset(&report, 0, sizeof report);
     report.struct_size = sizeof report;
@@ -34,7 +38,23 @@ static void test_two_cubes_share_one_file(const char* folder) {
            LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(report.files == 0);
     options.antialias = LDS_ANTIALIAS_OFF;
+    options.light_error = NAN;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    options.light_error = 2;
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.lamps == 0 && report.lights_each == 0);
+    /* A program built before lights were approximated. */
+    lds_povray_options old = options;
+    old.struct_size = offsetof(lds_povray_options, light_error);
+    report.struct_size = offsetof(lds_export_report, lamps);
+    report.lamps = 77;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &old, NULL, &report) == LDS_OK);
+    EXPECT(report.files == 3 && report.lamps == 77);
+    --old.struct_size;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &old, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    report.struct_size = sizeof report;
     EXPECT(report.files == 3 && report.bytes > 0); /* scene.pov, scene.ini, the cube */
     char path[512];
     snprintf(path, sizeof path, "%s/scene.pov", folder);

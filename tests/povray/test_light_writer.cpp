@@ -105,6 +105,26 @@ TEST(PovrayLight, ALongAreaCastsItsRaysAlongItsLength) {
         << written(area).text;
 }
 
+TEST(PovrayLight, FewerStepsOfAPenumbraAreFewerRays) {
+    Light area;
+    area.kind = LightKind::Area;
+    Problems problems;
+    const auto text = [&](double steps) {
+        std::string out;
+        append_light(out, area, {}, Antialiasing::Final, problems, steps);
+        return out;
+    };
+    EXPECT_NE(text(1000).find(",9,9 adaptive 1 "), std::string::npos);
+    EXPECT_NE(text(5).find(",5,5 adaptive 1 "), std::string::npos);
+    EXPECT_NE(text(1).find(",3,3 adaptive 1 "), std::string::npos);
+    // As good as a point: one ray, with the same strength.
+    const std::string before = text(1000);
+    area.edge_u *= 1e-7;
+    area.edge_v *= 1e-7;
+    EXPECT_EQ(text(1).find("area_light"), std::string::npos);
+    EXPECT_NE(text(1).find("spotlight"), std::string::npos);
+}
+
 TEST(PovrayLight, ANarrowSpreadIsBrighterAheadAndNamed) {
     Light area = light_of(LightKind::Area);
     EXPECT_TRUE(written(area).has("falloff 90 tightness 1"));

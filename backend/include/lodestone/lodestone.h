@@ -929,6 +929,9 @@ typedef struct lds_povray_options {
         covered_only;    /* 1: without environment objects and world (the mask of covered pixels) */
     int32_t threads;     /* 0 = all */
     const char* program; /* null: $LODESTONE_POVRAY, else povray on the PATH */
+    double light_error;  /* how far lights are approximated, in place of the view's Pixel Error;
+                              0: all of them light everything; negative (usual): the view's. A point
+                              differs by about as many steps of an 8-bit display on average */
 } lds_povray_options;
 LDS_API lds_povray_options lds_povray_options_default(void);
 
@@ -938,6 +941,9 @@ typedef struct lds_export_report {
     uint64_t files;
     uint64_t written; /* files that were not there yet */
     double cpu_s;
+    uint64_t lamps;     /* lights but suns */
+    double lights_each; /* lamps, and lights that stand for several, that light a point of the
+                             picture, on average */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

@@ -20,6 +20,8 @@ class PovrayOptions:
     covered_only: bool = False  # without environment objects and world
     threads: int = 0  # 0 = all
     program: str | None = None  # None: $LODESTONE_POVRAY, else povray on the PATH
+    # How far lights are approximated; 0: all light everything; negative: the view's Pixel Error.
+    light_error: float = -1.0
 
     def struct(self) -> structs.PovrayOptions:
         out = library().lds_povray_options_default()
@@ -28,6 +30,7 @@ class PovrayOptions:
         out.covered_only = int(self.covered_only)
         out.threads = self.threads
         out.program = text_in(self.program or None)
+        out.light_error = self.light_error
         return out
 
 

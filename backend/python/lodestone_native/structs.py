@@ -576,6 +576,7 @@ class PovrayOptions(Sized):
         ("covered_only", c_int32),
         ("threads", c_int32),
         ("program", c_char_p),
+        ("light_error", c_double),
     ]
 
 
@@ -586,6 +587,8 @@ class ExportReport(Sized):
         ("files", c_uint64),
         ("written", c_uint64),
         ("cpu_s", c_double),
+        ("lamps", c_uint64),
+        ("lights_each", c_double),
     ]
 
 

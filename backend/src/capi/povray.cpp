@@ -8,12 +8,17 @@
 #include "povray_export/runner.h"
 #include "povray_export/scene_writer.h"
 
+#include <cmath>
+#include <cstddef>
 #include <map>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
+
+constexpr size_t kFirstOptions = offsetof(lds_povray_options, light_error);
+constexpr size_t kFirstReport = offsetof(lds_export_report, lamps);
 
 povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
     switch (options.antialias) {
@@ -60,6 +65,7 @@ lds_povray_options lds_povray_options_default(void) {
     lds_povray_options options{};
     options.struct_size = sizeof options;
     options.antialias = LDS_ANTIALIAS_FINAL;
+    options.light_error = -1;
     return options;
 }
 
@@ -70,8 +76,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(model, "model");
         require(cut, "cut");
         require(folder, "folder");
-        checked(out_report, "out_report");
-        const lds_povray_options& given = checked(options, "options");
+        require_size(out_report, kFirstReport, "out_report");
+        const lds_povray_options given = grown(options, kFirstOptions, "options");
         if (cut->generation != model->generation)
             fail(Status::StaleId, "the cut belongs to another model");
         const ThreadLimit limit(given.threads);
@@ -85,6 +91,10 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.antialiasing = antialiasing_of(given);
         wanted.false_color = given.false_color != 0;
         wanted.covered_only = given.covered_only != 0;
+        if (std::isnan(given.light_error))
+            fail(Status::InvalidArgument, "options.light_error is not a number");
+        if (given.light_error >= 0)
+            wanted.light_error = given.light_error;
         const povray::ExportReport report = povray::export_scene(
             model->model, cut->cut, view_of(view, model), wanted, model->problems, progress);
         lds_export_report out{};
@@ -92,7 +102,9 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.files = report.files;
         out.written = report.written;
         out.cpu_s = report.cpu_s;
-        hand_out(out_report, out, "out_report");
+        out.lamps = report.lamps;
+        out.lights_each = report.lights_each;
+        hand_out_grown(out_report, out, kFirstReport, "out_report");
     });
 }
 
@@ -103,7 +115,7 @@ lds_status lds_povray_run(const char* folder, const char* picture,
         require(folder, "folder");
         require(picture, "picture");
         checked(out_report, "out_report");
-        const lds_povray_options& given = checked(options, "options");
+        const lds_povray_options given = grown(options, kFirstOptions, "options");
         povray::RunOptions wanted;
         wanted.folder = folder;
         wanted.program = given.program == nullptr ? "" : given.program;

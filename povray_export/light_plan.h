@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light plan: by which lights each object of a scene is lit, so that a view looks as with all of them.
+#pragma once
+
+#include "base/job.h"
+#include "model/model.h"
+
+#include <optional>
+#include <span>
+
+namespace lodestone::povray {
+
+/// Something that is drawn.
+struct Lit {
+    const Representation* representation = nullptr;
+    Affine world;
+    RayMask hidden = 0;
+};
+
+/// What is lit by one group of lights: a thing, or what of it is in a box (world frame).
+struct Piece {
+    uint32_t drawn = 0;
+    uint32_t group = 0;
+    std::optional<Box3> within;
+};
+
+struct LightPlan {
+    std::vector<Light> lights;  // lamps, and such that stand for several
+    std::vector<std::vector<uint32_t>>
+        groups;                 // indices of lights; the first: all lamps as they are
+    std::vector<Piece> pieces;  // in the order of things drawn, each whole
+    double lights_each = 0;     // that light a point the view shows, on average
+
+    bool empty() const { return groups.empty(); }
+};
+
+/// Below this many lamps all of them light everything.
+inline constexpr size_t kFewLamps = 8;
+
+/// Groups what is drawn by what lights it; POV-Ray shades a group with its own lamps alone, and
+/// whatever stands between casts its shadow. Points that the view shows (one in every 20 pixels, in
+/// mirrors and behind glass too) say by rays which lamps reach what, and by how much a light that
+/// stands for several differs: see quality::cut_lights. Lamps that reach none of the points of an
+/// object, nor points beside these, are not among its lights: a patch of light smaller than the
+/// distance of points can be missed. What no point lies on is lit by all lamps as they are. What
+/// many lamps light here and there (the floor of many rooms) is cut into boxes. Empty where that
+/// saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is too much to cast
+/// them at (a problem).
+LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
+                      double pixel_error, Problems& problems, const Job& job = {});
+
+}  // namespace lodestone::povray

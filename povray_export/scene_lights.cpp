@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/scene_lights.h"
+
+#include "povray_export/light_writer.h"
+#include "povray_export/magnification.h"
+#include "povray_export/number.h"
+#include "povray_export/penumbra.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lodestone::povray {
+
+void SceneLights::append(std::string& out, Light light) const {
+    constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
+    constexpr double kPoint = 1e-7;  // of an area's edges, which say where it shines
+    const double widest = widest_penumbra(light, view_, occluders_);
+    const double step = std::max(kLeast, view_.pixel_error);
+    if (widest <= step) {
+        light.angle = light.radius = 0;
+        light.edge_u *= kPoint;
+        light.edge_v *= kPoint;
+    }
+    // At Pixel Error 0 everything is as it is.
+    const double steps =
+        view_.pixel_error > 0 ? widest / step : std::numeric_limits<double>::infinity();
+    append_light(out, magnified(light, times_), bound_, antialiasing_, problems_, steps);
+}
+
+std::vector<std::string> SceneLights::declare(std::string& out, const LightPlan& plan) const {
+    std::vector<std::string> names(plan.lights.size());
+    for (size_t i = 0; i < names.size(); ++i) {
+        std::string light;
+        append(light, plan.lights[i]);
+        if (light.empty())
+            continue;
+        names[i] = "LDS_L_";
+        append_count(names[i], i);
+        out += "#declare " + names[i] + " = " + light;
+    }
+    return names;
+}
+
+std::string grouped_text(const LightPlan& plan, const std::vector<std::string>& names,
+                         const std::vector<std::string>& objects) {
+    std::string out;
+    for (size_t i = 0; i < objects.size(); ++i) {
+        std::string own;
+        for (const uint32_t light : plan.groups[i]) {
+            if (!names[light].empty())
+                own += "light_source{" + names[light] + "}\n";
+        }
+        if (objects[i].empty())
+            continue;
+        out +=
+            own.empty() ? objects[i] : "light_group{\n" + own + objects[i] + "global_lights on}\n";
+    }
+    return out;
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards approximated lights in pictures: rooms shade with their own lamps, nothing shines through
+// walls, floors of many rooms are cut, and what the number allows is all that differs.
+#include "base/parallel.h"
+#include "povray/scene.h"
+#include "povray_export/light_plan.h"
+#include "ray/scene.h"
+
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::Builder;
+
+namespace {
+
+constexpr int kRooms = 6;
+
+Affine box_at(const glm::dvec3& low, const glm::dvec3& high) {
+    Affine place;
+    for (int i = 0; i < 3; ++i)
+        place.linear[i][i] = high[i] - low[i];
+    place.offset = 0.5 * (low + high);
+    return place;
+}
+
+/// A row of rooms along x without ceilings, on one floor, with walls of their own and four lamps
+/// each; those of every other room are red.
+void add_rooms(Builder& builder) {
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
+    builder.place(box, box_at({0, 0, -0.2}, {4.0 * kRooms, 4, 0}), "floor");
+    for (int i = 0; i <= kRooms; ++i)
+        builder.place(box, box_at({4.0 * i - 0.1, 0, 0}, {4.0 * i + 0.1, 4, 3}), "wall");
+    for (int i = 0; i < kRooms; ++i) {
+        for (int k = 0; k < 4; ++k) {
+            Light lamp;
+            lamp.kind = LightKind::Point;
+            lamp.color = i % 2 == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
+            lamp.power = 8;
+            lamp.position = {4.0 * i + 1.5 + k % 2, 1.5 + k / 2, 2.5};
+            builder.model.lights.push_back(lamp);
+        }
+    }
+}
+
+View from_above(double pixel_error) {
+    View view;
+    view.width = 120;
+    view.height = 24;
+    view.camera.orthographic = true;
+    view.camera.position = {2.0 * kRooms, 2, 20};
+    view.camera.right = {4.0 * kRooms, 0, 0};
+    view.camera.up = {0, 4.8, 0};
+    view.pixel_error = pixel_error;
+    return view;
+}
+
+class PovrayRenderLights : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+    }
+};
+
+ExportOptions into(const std::string& name) {
+    ExportOptions options;
+    options.folder = scratch(name);
+    options.antialiasing = Antialiasing::Off;
+    return options;
+}
+
+double encoded(double value) {
+    const double v = std::clamp(value, 0.0, 1.0);
+    return v < 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+}
+
+size_t count_of(const std::string& text, const std::string& part) {
+    size_t count = 0;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+}  // namespace
+
+class LightPlanTest : public PovrayRenderLights {};
+
+TEST_F(LightPlanTest, AllLampsLightEverythingWhereTheyAreFewOrTheErrorIsNone) {
+    Builder builder;
+    add_rooms(builder);
+    Problems problems;
+    ExportOptions options = into("exact");
+    const Model& model = builder.finish();
+    const ExportReport exact = scenes::write(model, from_above(0), options, problems);
+    EXPECT_EQ(exact.lamps, 4u * kRooms);
+    EXPECT_EQ(exact.lights_each, 4.0 * kRooms);
+    const std::string all = read_file(options.folder / "scene.pov");
+    EXPECT_EQ(count_of(all, "light_group"), 0u);
+    EXPECT_EQ(count_of(all, "light_source"), 4u * kRooms);
+    // The override wins over the view's number, both ways.
+    options.light_error = 0;
+    scenes::write(model, from_above(1), options, problems);
+    EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
+    options.light_error = 1;
+    scenes::write(model, from_above(0), options, problems);
+    EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
+    builder.model.lights.resize(kFewLamps - 1);
+    scenes::write(builder.model, from_above(1), options, problems);
+    EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
+    EXPECT_TRUE(problems.empty());
+}
+
+TEST_F(LightPlanTest, RoomsHaveTheirOwnLampsAndTheirFloorIsCut) {
+    Builder builder;
+    add_rooms(builder);
+    Problems problems;
+    const ExportOptions options = into("rooms");
+    const ExportReport report = scenes::write(builder.finish(), from_above(1), options, problems);
+    EXPECT_LT(report.lights_each, 9);  // a wall's top may be lit from both sides
+    EXPECT_GE(report.lights_each, 1);
+    const std::string text = read_file(options.folder / "scene.pov");
+    EXPECT_GE(count_of(text, "clipped_by"), size_t{kRooms});
+    EXPECT_EQ(report.occurrences, 2u + kRooms);
+}
+
+TEST_F(LightPlanTest, IsTheSameEveryTimeAndOnOneThread) {
+    Builder builder;
+    add_rooms(builder);
+    Problems problems;
+    const ExportOptions options = into("same");
+    const Model& model = builder.finish();
+    scenes::write(model, from_above(1), options, problems);
+    const std::string once = read_file(options.folder / "scene.pov");
+    const ThreadLimit one(1);
+    scenes::write(model, from_above(1), options, problems);
+    EXPECT_EQ(once, read_file(options.folder / "scene.pov"));
+}
+
+TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
+    Builder builder;
+    add_rooms(builder);
+    builder.model.lights.push_back(scenes::sun(0.5));
+    Light lamp = builder.model.lights[0];
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    lamp.power = nan;
+    builder.model.lights.push_back(lamp);
+    lamp.power = 5;
+    lamp.position = {nan, 0, 0};
+    builder.model.lights.push_back(lamp);
+    lamp.position = {5, 2, 1};
+    lamp.power = -1;
+    builder.model.lights.push_back(lamp);
+    Problems problems;
+    const ExportOptions options = into("nonsense");
+    const ExportReport report = scenes::write(builder.finish(), from_above(1), options, problems);
+    EXPECT_EQ(report.lamps, 4u * kRooms);
+    const std::string text = read_file(options.folder / "scene.pov");
+    EXPECT_EQ(text.find("nan"), std::string::npos);
+    // The sun and what takes light away are no group's; groups let them in.
+    EXPECT_LT(text.find("parallel"), text.find("light_group"));
+    EXPECT_EQ(count_of(text, "light_group"), count_of(text, "global_lights on"));
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "bad_light");
+    // A camera inside of everything, one that looks nowhere.
+    View view = from_above(1);
+    view.camera.position = {2, 2, 0.5};
+    view.camera.direction = {0, 0, 0};
+    EXPECT_NO_THROW(plan_lights(builder.model, {}, view, 1, problems));
+}
+
+TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    add_rooms(builder);
+    const Model& model = builder.finish();
+    const scenes::Image all = scenes::render(model, from_above(0), into("all"));
+    const scenes::Image ours = scenes::render(model, from_above(1), into("ours"));
+    double sum = 0;
+    for (size_t i = 0; i < all.values.size(); ++i)
+        sum += std::abs(encoded(all.values[i]) - encoded(ours.values[i]));
+    EXPECT_LT(sum / static_cast<double>(all.values.size()), 1.0 / 255);
+    const int wide = ours.width / kRooms;
+    for (int room = 0; room < kRooms; ++room) {
+        glm::dvec3 full(0.0);
+        glm::dvec3 found(0.0);
+        for (int y = 6; y < ours.height - 6; ++y) {
+            for (int x = room * wide + 2; x < (room + 1) * wide - 2; ++x) {
+                full += all.at(x, y);
+                found += ours.at(x, y);
+            }
+        }
+        const int own = room % 2 == 0 ? 0 : 2;
+        EXPECT_GT(found[own], 1);
+        EXPECT_EQ(found[2 - own], 0);  // of the neighbors' color
+        EXPECT_NEAR(found[own], full[own], 0.02 * full[own]);
+    }
+}
+
+TEST_F(PovrayRenderLights, WhatIsHiddenFromSomeRaysOrClearKeepsItsFlags) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    add_rooms(builder);
+    Material glass;
+    glass.transmission = 1;
+    glass.roughness = 0;
+    const ObjectIndex pane = builder.mesh(shapes::cube(), {builder.material(glass)});
+    builder.place(pane, box_at({0, 0, 2.8}, {4.0 * kRooms, 4, 2.9}), "pane");
+    const ObjectIndex lid = builder.mesh(shapes::cube(), {builder.matte({0, 1, 0})});
+    builder.place(lid, box_at({0, 0, 3.5}, {4.0 * kRooms, 4, 3.6}), "lid", kCameraRays);
+    const Model& model = builder.finish();
+    const scenes::Image all = scenes::render(model, from_above(0), into("all"));
+    const ExportOptions options = into("ours");
+    const scenes::Image ours = scenes::render(model, from_above(1), options);
+    EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 1u);
+    double sum = 0;
+    double light = 0;
+    for (size_t i = 0; i < all.values.size(); ++i) {
+        sum += std::abs(encoded(all.values[i]) - encoded(ours.values[i]));
+        light += all.values[i];
+    }
+    EXPECT_GT(light, 10);
+    EXPECT_LT(sum / static_cast<double>(all.values.size()), 1.5 / 255);
+}
