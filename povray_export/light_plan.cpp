@@ -12,8 +12,9 @@
 namespace lodestone::povray {
 namespace {
 
-constexpr double kShare = 0.05;  // points to pixels
-constexpr double kRays = 2e7;    // at most: points times lamps
+constexpr double kShare = 0.05;   // points to pixels
+constexpr double kRays = 2e7;     // at most: points times lamps
+constexpr double kRooms = 12000;  // points that tell a hundred rooms from each other
 constexpr double kFewestPoints = 256;
 constexpr double kMostPoints = 65536;
 constexpr size_t kMostLamps = 20000;
@@ -88,9 +89,9 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
         return {};
     }
     const LitScene scene(model, drawn, job);
-    const double count =
-        std::clamp(std::min(kShare * view.width * view.height, kRays / static_cast<double>(lamps)),
-                   kFewestPoints, kMostPoints);
+    const double wanted = std::max(kShare * view.width * view.height, kRooms);
+    const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
+                                    kFewestPoints, kMostPoints);
     std::vector<quality::LitPoint> points = scene.points(view, static_cast<size_t>(count), job);
     if (points.empty())
         return {};

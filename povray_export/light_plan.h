@@ -38,8 +38,8 @@ struct LightPlan {
 inline constexpr size_t kFewLamps = 8;
 
 /// Groups what is drawn by what lights it; POV-Ray shades a group with its own lamps alone, and
-/// whatever stands between casts its shadow. Points that the view shows (one in every 20 pixels, in
-/// mirrors and behind glass too) say by rays which lamps reach what, and by how much a light that
+/// whatever stands between casts its shadow. Points that the view shows (one in every 20 pixels, at
+/// least 12,000, in mirrors and behind glass too) say by rays which lamps reach what, and by how much a light that
 /// stands for several differs: see quality::cut_lights. Lamps that reach none of the points of an
 /// object, nor points beside these, are not among its lights: a patch of light smaller than the
 /// distance of points can be missed. What no point lies on is lit by all lamps as they are. What

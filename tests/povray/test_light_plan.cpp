@@ -37,7 +37,7 @@ void add_rooms(Builder& builder) {
             lamp.kind = LightKind::Point;
             lamp.color = i % 2 == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
             lamp.power = 8;
-            lamp.position = {4.0 * i + 1.5 + k % 2, 1.5 + k / 2, 2.5};
+            lamp.position = {4.0 * i + 1.5 + k % 2, k < 2 ? 1.5 : 2.5, 2.5};
             builder.model.lights.push_back(lamp);
         }
     }
