@@ -13,19 +13,37 @@ const OptionHelp kCriterion{
     "criterion", "NAME",
     "what --pixel-error is: resolution (default, pixels), feature or area (shares of the picture), "
     "distance (metres; larger is finer)"};
+const OptionHelp kOffScreen{"off-screen", "HOW",
+                            "what the picture does not show: full (default), reflected (as its "
+                            "shadows and images in mirrors "
+                            "need) or shadows (images may be coarse)"};
+
+namespace {
+
+/// The place of what an option says among its words, the first by default. Throws UsageError.
+template <size_t Count>
+int32_t word_of(const Arguments& arguments, const char* option,
+                const std::array<const char*, Count>& words) {
+    const std::string wanted = arguments.text(option).value_or(words[0]);
+    std::string all;
+    for (size_t i = 0; i < Count; ++i) {
+        if (wanted == words[i])
+            return static_cast<int32_t>(i);
+        all += i == 0 ? "" : i + 1 < Count ? ", " : " or ";
+        all += words[i];
+    }
+    throw UsageError(std::string("--") + option + " is '" + wanted + "'; " + all + " expected");
+}
+
+}  // namespace
 
 Choosing::Choosing(const Arguments& arguments, lds_view& view)
     : view_(view),
       modifiers_(lds_modifiers_default()),
       criterion_(arguments.text("criterion").value_or("resolution")) {
-    static constexpr std::array<const char*, 4> kNames{"resolution", "feature", "area", "distance"};
-    size_t criterion = 0;
-    while (criterion < kNames.size() && criterion_ != kNames[criterion])
-        ++criterion;
-    if (criterion == kNames.size())
-        throw UsageError("--criterion is '" + criterion_ +
-                         "'; resolution, feature, area or distance expected");
-    modifiers_.criterion = static_cast<int32_t>(criterion);
+    modifiers_.criterion =
+        word_of<4>(arguments, "criterion", {"resolution", "feature", "area", "distance"});
+    modifiers_.off_screen = word_of<3>(arguments, "off-screen", {"full", "reflected", "shadows"});
     view_.modifiers = &modifiers_;
     budget_.struct_size = sizeof budget_;
     found_.struct_size = sizeof found_;

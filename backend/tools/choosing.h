@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing: what --max-triangles, --max-memory and --criterion mean, for every verb that makes a cut.
+// Choosing: what --max-triangles, --max-memory, --criterion and --off-screen mean, for every verb that makes a cut.
 #pragma once
 
 #include "arguments.h"
@@ -11,6 +11,7 @@ namespace lodestone::tools {
 extern const OptionHelp kMaxTriangles;
 extern const OptionHelp kMaxMemory;
 extern const OptionHelp kCriterion;
+extern const OptionHelp kOffScreen;
 
 class Choosing {
 public:

@@ -104,6 +104,7 @@ class Functions(unittest.TestCase):
             (enums.LensShape, "LDS_LENS_SHAPE_"),
             (enums.LensFilter, "LDS_LENS_FILTER_"),
             (enums.Criterion, "LDS_CRITERION_"),
+            (enums.OffScreen, "LDS_OFF_SCREEN_"),
             (enums.SimplifyMode, "LDS_SIMPLIFY_"),
             (enums.Channel, "LDS_CHANNEL_"),
             (enums.Extension, "LDS_EXTENSION_"),

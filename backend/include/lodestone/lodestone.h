@@ -799,6 +799,13 @@ typedef enum lds_criterion {
                                      serves twice as far: larger is finer */
 } lds_criterion;
 
+/* How fine things are that the picture does not show; the whole picture counts, whatever part of it is drawn. */
+typedef enum lds_off_screen {
+    LDS_OFF_SCREEN_FULL = 0,      /* as if it showed them */
+    LDS_OFF_SCREEN_REFLECTED = 1, /* as far as it shows their shadows, and mirrors or refracts them */
+    LDS_OFF_SCREEN_SHADOWS = 2    /* as far as it shows their shadows: images of them may be coarse */
+} lds_off_screen;
+
 /* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
    stays within 1/64 to 64. */
 typedef struct lds_modifiers {
@@ -816,6 +823,7 @@ typedef struct lds_modifiers {
     int32_t when_dark; /* 1: coarser where what the lamps and the world could light is displayed
                             below 1/2, unless the world behind is brighter */
     const lds_camera* closing; /* the camera when the shutter closes; null: it rests */
+    int32_t off_screen; /* lds_off_screen */
 } lds_modifiers;
 LDS_API lds_modifiers lds_modifiers_default(void);
 
@@ -892,14 +900,15 @@ typedef struct lds_reason {
     double error;    /* metres in the object's frame */
     double stretch;  /* by which its placements enlarge it */
     double error_px; /* error * stretch / pixel */
-    double factor; /* all of the next seven, within 1/64 to 64; infinite: a lens hides part of it */
+    double factor; /* all of the next eight, within 1/64 to 64; infinite: a lens hides part of it */
     double importance; /* of its placements; this and the next three refine */
     double demand;     /* of the most important thing below it, infinite: of a limited one */
     double lenses;
     double screen_lenses;
-    double depth; /* this and the next two coarsen */
+    double depth; /* this and the next three coarsen */
     double motion;
     double darkness;
+    double off_screen;
     lds_object coarser_object; /* the next coarser level is this object's: the choice's own, or the
                                   nearest group around it that has one; {0, 0}: there is none */
     uint32_t coarser_lod;

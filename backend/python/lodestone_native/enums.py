@@ -77,6 +77,14 @@ class Criterion(IntEnum):
     DISTANCE = 3
 
 
+class OffScreen(IntEnum):
+    """How fine things are that the picture does not show."""
+
+    FULL = 0  # as if it showed them
+    REFLECTED = 1  # as far as it shows their shadows, and mirrors or refracts them
+    SHADOWS = 2  # as far as it shows their shadows: images of them may be coarse
+
+
 class SimplifyMode(IntEnum):
     """How triangles are saved."""
 

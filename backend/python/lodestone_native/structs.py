@@ -451,6 +451,7 @@ class Modifiers(Sized):
         ("when_moving", c_int32),
         ("when_dark", c_int32),
         ("closing", POINTER(Camera)),
+        ("off_screen", c_int32),
     ]
 
 
@@ -558,6 +559,7 @@ class Reason(Sized):
         ("depth", c_double),
         ("motion", c_double),
         ("darkness", c_double),
+        ("off_screen", c_double),
         ("coarser_object", Object),
         ("coarser_lod", c_uint32),
         ("coarser_kind", c_int32),

@@ -5,7 +5,7 @@ import ctypes
 from dataclasses import dataclass
 
 from . import structs
-from .enums import Criterion, LensFilter, LensShape, LightKind
+from .enums import Criterion, LensFilter, LensShape, LightKind, OffScreen
 
 Vector = tuple[float, float, float]
 
@@ -118,6 +118,7 @@ class Modifiers:
     depth_focus: float = 10.0  # metres
     when_moving: bool = False
     when_dark: bool = False
+    off_screen: OffScreen = OffScreen.FULL
     closing: Camera | None = None  # the camera when the shutter closes
     criterion: Criterion = Criterion.RESOLUTION
 
@@ -134,6 +135,7 @@ class Modifiers:
             depth_focus=self.depth_focus,
             when_moving=int(self.when_moving),
             when_dark=int(self.when_dark),
+            off_screen=self.off_screen,
             closing=ctypes.pointer(self.closing.struct()) if self.closing else None,
         )
 

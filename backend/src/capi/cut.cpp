@@ -153,6 +153,7 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
         out.depth = factors.depth;
         out.motion = factors.motion;
         out.darkness = factors.darkness;
+        out.off_screen = factors.off_screen;
         if (reason.coarser) {
             out.coarser_object = model->id_of(reason.coarser->object);
             out.coarser_lod = reason.coarser->lod;

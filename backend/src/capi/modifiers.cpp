@@ -72,6 +72,10 @@ Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, i
     out.depth_focus = given.depth_focus;
     out.when_moving = given.when_moving != 0;
     out.when_dark = given.when_dark != 0;
+    if (given.off_screen < LDS_OFF_SCREEN_FULL || given.off_screen > LDS_OFF_SCREEN_SHADOWS)
+        fail(Status::InvalidArgument, "modifiers.off_screen is ", given.off_screen,
+             "; 0 to 2 expected");
+    out.off_screen = static_cast<OffScreen>(given.off_screen);
     if (given.closing != nullptr)
         out.closing = camera_of(given.closing);
     return out;

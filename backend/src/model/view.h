@@ -71,6 +71,13 @@ struct Border {
     int height = 1;
 };
 
+/// How fine things are that the picture does not show.
+enum class OffScreen : uint8_t {
+    Full = 0,       // as if it showed them
+    Reflected = 1,  // as far as it shows their shadows, and mirrors or refracts them
+    Shadows = 2,    // as far as it shows their shadows: images of them may be coarse
+};
+
 /// What bends quality. Every factor counts by itself; all together stay within 1/64 ... 64.
 struct Modifiers {
     Criterion criterion = Criterion::Resolution;
@@ -85,6 +92,7 @@ struct Modifiers {
     std::optional<Camera> closing;
     /// Coarser where little light falls, unless the world behind is bright.
     bool when_dark = false;
+    OffScreen off_screen = OffScreen::Full;
 };
 
 /// Everything but the model.

@@ -178,7 +178,7 @@ private:
                             ? node.error_px * sight.total
                             : threshold_for(view_, sight, level->error, level->lod, row.all_levels);
         cut_.nodes.push_back(node);
-        take(index, *level);
+        take(index, *level, node.error_px / factors.off_screen);
     }
 
     void open(uint32_t row_index, uint32_t index, double enlarge, const FactorField::Path& path,
@@ -198,8 +198,8 @@ private:
         }
     }
 
-    /// Counts what is drawn.
-    void take(uint32_t index, const TableLevel& level) {
+    /// Counts what is drawn. `shown_px`: what of its error the picture shows.
+    void take(uint32_t index, const TableLevel& level, double shown_px) {
         cut_.chosen.push_back(index);
         cut_.triangles += level.triangles;
         cut_.bytes += kBytesPerOccurrence;
@@ -211,9 +211,8 @@ private:
             cut_.bytes += level.bytes;
         }
         ++kinds_[static_cast<size_t>(level.kind)];
-        const double error_px = cut_.nodes[index].error_px;
-        if (error_px > cut_.largest_error_px) {
-            cut_.largest_error_px = error_px;
+        if (shown_px > cut_.largest_error_px) {
+            cut_.largest_error_px = shown_px;
             cut_.largest_error_node = index;
         }
     }

@@ -85,7 +85,7 @@ double Factors::total() const {
     const double refine = importance * demand * lenses * screen_lenses;
     if (std::isinf(refine))
         return refine;
-    return total_refinement(refine / (depth * motion * darkness));
+    return total_refinement(refine / (depth * motion * darkness * off_screen));
 }
 
 double displayed(double radiance) {
@@ -108,7 +108,10 @@ FactorField::FactorField(const Model& model, const View& view)
     const Modifiers& modifiers = view.modifiers;
     refuse_nonsense(modifiers);
     bends_ = !lenses_.empty() || !modifiers.screen_lenses.empty() || modifiers.depth != 1 ||
-             modifiers.when_moving || modifiers.when_dark;
+             modifiers.when_moving || modifiers.when_dark ||
+             modifiers.off_screen != OffScreen::Full;
+    if (modifiers.off_screen != OffScreen::Full)
+        off_screen_.emplace(model, view);
     if (modifiers.when_moving) {
         if (modifiers.closing)
             closing_.emplace(*modifiers.closing, view.width, view.height);
@@ -180,6 +183,8 @@ FactorField::Effect FactorField::at(ObjectIndex object, bool group, const Bound&
         effect.factors.motion = motion(object, local, world, path);
     if (modifiers.when_dark)
         effect.factors.darkness = darkness(object, bound);
+    if (off_screen_)
+        effect.factors.off_screen = off_screen_->coarser(bound, z);
     return effect;
 }
 

@@ -4,6 +4,7 @@
 
 #include "quality/image_frame.h"
 #include "quality/lens_field.h"
+#include "quality/off_screen.h"
 
 namespace lodestone::quality {
 
@@ -16,6 +17,7 @@ struct Factors {
     double depth = 1;
     double motion = 1;
     double darkness = 1;
+    double off_screen = 1;
 
     /// Error counts so many times: refine / coarsen, within 1/64 ... 64, or infinite.
     double total() const;
@@ -71,6 +73,7 @@ private:
     LensField lenses_;
     ImageFrame frame_;
     std::optional<ImageFrame> closing_;
+    std::optional<OffScreenField> off_screen_;
     std::vector<uint8_t> moves_below_;  // by object; when moving counts
     std::vector<uint8_t> glows_;        // by object, or below it; when darkness counts
     double background_ = 0;             // display value of the world
