@@ -15,6 +15,7 @@ constexpr double kDegrees = 180 / kPi;
 // POV-Ray's fading is 2 / (1 + (d/e)^2): with a tiny e it is an exact 1/d^2 times 2 e^2.
 constexpr double kNear = 1e-3;
 constexpr double kWideSun = 0.2;      // half angle above which the fewest first rays miss shadows
+constexpr int kMostRays = 129;        // along an edge
 constexpr double kNarrowSun = 0.009;  // half angle of a sun whose penumbra is a few pixels
 
 bool finite(const glm::dvec3& value) {
@@ -35,11 +36,12 @@ struct Grid {
 
 class Writer {
 public:
-    Writer(std::string& out, const Light& light, Antialiasing antialiasing, double steps)
-        : out_(out), light_(light), soft_(antialiasing != Antialiasing::Off && light.shadow) {
-        start_ = antialiasing == Antialiasing::Reference ? 1 : 0;
-        for (most_ = 3; most_ < 33 && most_ < steps; most_ = 2 * most_ - 1) {
-        }
+    Writer(std::string& out, const Light& light, const LightSampling& sampling)
+        : out_(out), light_(light), soft_(sampling.rays > 1 && light.shadow) {
+        rays_ = sampling.rays;
+        start_ = sampling.thorough ? 1 : 0;
+        while (most_ < kMostRays && most_ < sampling.steps)
+            most_ = 2 * most_ - 1;
     }
 
     void sun(const glm::dvec3& color, const Bound& bound) {
@@ -154,12 +156,15 @@ private:
         append_number(out_, tightness);
     }
 
+    /// Of the usual 17 along the edge of a lamp, and others in proportion: 2^n + 1, 3 or more.
+    int rays_of(int usual) const { return std::max((usual - 1) * (rays_ - 1) / 16, 2) + 1; }
+
     /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is wanted.
     void append_grid(const glm::dvec3& u, const glm::dvec3& v, Grid grid) {
-        grid.u = std::min(grid.u, most_);
-        grid.v = std::min(grid.v, most_);
-        if (most_ == 3)
-            grid.start = std::min(grid.start, 1);
+        grid.u = std::min(rays_of(grid.u), most_);
+        grid.v = std::min(rays_of(grid.v), most_);
+        while (grid.start > 0 && (1 << grid.start) >= std::min(grid.u, grid.v))
+            --grid.start;
         out_ += " area_light ";
         append_vector(out_, u * ((grid.u - 1.0) / grid.u), 15);
         out_ += ',';
@@ -220,8 +225,9 @@ private:
     std::string& out_;
     const Light& light_;
     bool soft_;
-    int start_;
-    int most_ = 3;  // rays along an edge
+    int rays_ = 17;
+    int most_ = 3;  // along an edge
+    int start_ = 0;
 };
 
 bool placed(const Light& light) {
@@ -236,7 +242,7 @@ bool placed(const Light& light) {
 }  // namespace
 
 void append_light(std::string& out, const Light& light, const Bound& bound,
-                  Antialiasing antialiasing, Problems& problems, double steps) {
+                  const LightSampling& sampling, Problems& problems) {
     // Cycles subtracts what a light of negative power would give, and so does POV-Ray.
     const glm::dvec3 color = light.color * light.power;
     if (!finite(color) || color == glm::dvec3(0.0))
@@ -246,7 +252,7 @@ void append_light(std::string& out, const Light& light, const Bound& bound,
                             "has no finite place or direction, so it is not used"});
         return;
     }
-    Writer writer(out, light, antialiasing, steps);
+    Writer writer(out, light, sampling);
     if (light.kind == LightKind::Sun)
         return writer.sun(color, bound);
     if (light.kind == LightKind::Point)

@@ -9,7 +9,9 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <unordered_set>
 
@@ -66,14 +68,35 @@ Key hue_of(Key key) {
     return rounded(key_of(glm::vec4(color), false), 257);
 }
 
+/// What a step of 1 in texture coordinates covers of a triangle, where it is most: metres. Infinite
+/// where all of it shows one place or one line of the picture.
+double metres_of_uv(const Mesh& mesh, size_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    const glm::dvec3 a = glm::dvec3(mesh.positions[t.y]) - glm::dvec3(mesh.positions[t.x]);
+    const glm::dvec3 b = glm::dvec3(mesh.positions[t.z]) - glm::dvec3(mesh.positions[t.x]);
+    const glm::dvec2 ua = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
+    const glm::dvec2 ub = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
+    const double area = ua.x * ub.y - ua.y * ub.x;
+    const glm::dvec3 along_u = (a * ub.y - b * ua.y) / area;
+    const glm::dvec3 along_v = (b * ua.x - a * ub.x) / area;
+    const double uu = glm::dot(along_u, along_u);
+    const double vv = glm::dot(along_v, along_v);
+    const double most = (uu + vv) / 2 + std::hypot((uu - vv) / 2, glm::dot(along_u, along_v));
+    return most > 0 && std::isfinite(most) ? std::sqrt(most)
+                                           : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-MeshTextures::MeshTextures(const Model& model, const Representation& representation, bool uvs,
-                           PictureWriter& pictures, const Job& job)
+MeshTextures::MeshTextures(const Model& model, const Representation& representation,
+                           const RepresentationOptions& options, PictureWriter& pictures,
+                           const Job& job)
     : mesh_(representation.mesh()), job_(job) {
-    find_slots(model, representation, uvs && !mesh_.uvs.empty());
+    find_slots(model, representation, options.uvs && !mesh_.uvs.empty());
     if (uses_uvs_)
         find_ranges();
+    if (uses_uvs_ && options.texel)
+        find_texels(std::ldexp(1.0, *options.texel));
     find_planes();
     bool corners = false;
     for (Slot& slot : slots_) {
@@ -139,6 +162,33 @@ void MeshTextures::find_ranges() {
             surface.range.low = glm::min(surface.range.low, uv);
             surface.range.high = glm::max(surface.range.high, uv);
         }
+    }
+}
+
+void MeshTextures::find_texels(double metres) {
+    constexpr double kShown = 0.999;  // of a slot's area
+    constexpr int kLeast = -64;       // exponents of what a texture coordinate of 1 covers
+    std::vector<std::array<double, 129>> areas(slots_.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        const size_t at = slot_at_[mesh_.slot(i)];
+        const double covered = metres_of_uv(mesh_, i);
+        const double area = glm::length(area_vector(mesh_, i));
+        if (!slots_[at].surface.uvs || !(area > 0))
+            continue;
+        const int exponent = std::isfinite(covered) ? std::ilogb(covered) + 1 : -kLeast;
+        areas[at][static_cast<size_t>(std::clamp(exponent, kLeast, -kLeast) - kLeast)] += area;
+    }
+    for (size_t at = 0; at < slots_.size(); ++at) {
+        double sum = 0;
+        for (const double area : areas[at])
+            sum += area;
+        double below = 0;
+        int exponent = kLeast - 1;
+        for (size_t i = 0; i < areas[at].size() && below < kShown * sum; ++i, ++exponent)
+            below += areas[at][i];
+        if (sum > 0 && exponent < -kLeast)
+            slots_[at].surface.range.texel = std::ldexp(metres, -exponent);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/representation_writer.h"
 #include "povray_export/texture_writer.h"
 
 #include <string>
@@ -21,8 +22,8 @@ public:
     static constexpr size_t kMostPlanes = 64;
 
     /// Equal looks share one text. Throws Error(InvalidArgument) for a material out of range.
-    MeshTextures(const Model& model, const Representation& representation, bool uvs,
-                 PictureWriter& pictures, const Job& job);
+    MeshTextures(const Model& model, const Representation& representation,
+                 const RepresentationOptions& options, PictureWriter& pictures, const Job& job);
 
     const std::vector<std::string>& texts() const { return texts_; }
     bool uses_uvs() const { return uses_uvs_; }
@@ -48,6 +49,7 @@ private:
 
     void find_slots(const Model& model, const Representation& representation, bool uvs);
     void find_ranges();
+    void find_texels(double metres);
     void find_planes();
     bool plane_of(size_t triangle, Slot& slot, uint8_t& plane) const;
     std::vector<uint64_t> color_keys(glm::dvec3& hue) const;

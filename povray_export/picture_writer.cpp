@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -57,10 +58,47 @@ bool usable_as_is(const Texture& texture, Content content) {
     return texture.channel != Channel::Alpha && type == 0;
 }
 
-std::string baked(const Texture& texture, Content content) {
+int halved(int side, int halvings) {
+    return std::max(1, side >> halvings);
+}
+
+/// The mean of what each new texel covers.
+image::Image halved(const image::Image& from, int halvings) {
+    image::Image to;
+    to.width = halved(from.width, halvings);
+    to.height = halved(from.height, halvings);
+    to.pixels.resize(4 * to.size());
+    const auto begin = [](int at, int count, int size) {
+        return static_cast<int>(static_cast<int64_t>(at) * size / count);
+    };
+    for (int y = 0; y < to.height; ++y) {
+        const int top = begin(y, to.height, from.height);
+        const int bottom = std::max(top + 1, begin(y + 1, to.height, from.height));
+        for (int x = 0; x < to.width; ++x) {
+            const int left = begin(x, to.width, from.width);
+            const int right = std::max(left + 1, begin(x + 1, to.width, from.width));
+            std::array<double, 4> sum{};
+            for (int v = top; v < bottom; ++v) {
+                const size_t row = static_cast<size_t>(v) * static_cast<size_t>(from.width);
+                for (int u = left; u < right; ++u) {
+                    for (size_t c = 0; c < 4; ++c)
+                        sum[c] += from.pixels[4 * (row + static_cast<size_t>(u)) + c];
+                }
+            }
+            const double count = static_cast<double>(bottom - top) * (right - left);
+            const size_t at = static_cast<size_t>(y) * static_cast<size_t>(to.width);
+            for (size_t c = 0; c < 4; ++c)
+                to.pixels[4 * (at + static_cast<size_t>(x)) + c] =
+                    static_cast<float>(sum[c] / count);
+        }
+    }
+    return to;
+}
+
+std::string baked(const Texture& texture, Content content, int halvings) {
     if (content == Content::Height)
         return png_of(*height_map(texture));
-    const image::Image from = image::decoded(*texture.picture);
+    image::Image from = image::decoded(*texture.picture);
     image::Image to;
     to.width = from.width;
     to.height = from.height;
@@ -71,14 +109,22 @@ std::string baked(const Texture& texture, Content content) {
         if (content != Content::Number) {
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
-                to.pixels[i + static_cast<size_t>(c)] =
-                    image::encode_srgb(static_cast<float>(color[c]));
+                to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
         } else {
             const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
             for (size_t c = 0; c < 3; ++c)
                 to.pixels[i + c] = static_cast<float>(number);
         }
         to.pixels[i + 3] = 1;
+    }
+    from.pixels.clear();
+    if (halvings > 0)
+        to = halved(to, halvings);
+    if (content != Content::Number) {
+        for (size_t i = 0; i < to.pixels.size(); ++i) {
+            if (i % 4 != 3)
+                to.pixels[i] = image::encode_srgb(to.pixels[i]);
+        }
     }
     return image::png_bytes(to);
 }
@@ -154,17 +200,32 @@ std::string mapping(const Texture& texture) {
 
 }  // namespace
 
-std::string PictureWriter::file_of(const Texture& texture, Content content) {
+int halvings_of(const Texture& texture, double texel) {
+    if (!(texel > 0) || texture.interpolation != Interpolation::Linear)
+        return 0;
+    const std::array<double, 6>& m = texture.to_picture;
+    const double most = std::min(texel * std::hypot(m[0], m[1]) * texture.picture->width,
+                                 texel * std::hypot(m[3], m[4]) * texture.picture->height);
+    const int side = std::min(texture.picture->width, texture.picture->height);
+    int halvings = 0;
+    while ((side >> (halvings + 1)) > 0 && std::ldexp(1.0, halvings + 1) <= most)
+        ++halvings;
+    return halvings;
+}
+
+std::string PictureWriter::file_of(const Texture& texture, Content content, int halvings) {
     const Picture& picture = *texture.picture;
     if (picture.bytes.empty())
         fail(Status::Internal, "the picture '", picture.name, "' is not resident");
-    File file{texture, content, usable_as_is(texture, content)};
+    File file{texture, content, halvings == 0 && usable_as_is(texture, content), halvings};
     Hasher hasher;
     hasher.value(picture.hash);
     if (!file.as_is) {
         hasher.value(kBakeVersion)
             .value(content == Content::Filter ? Content::Color : content)
             .value(texture.channel);
+        if (halvings > 0)
+            hasher.value(halvings);
         for (int i = 0; i < 3; ++i)
             hasher.value(texture.scale[i]).value(texture.offset[i]);
     }
@@ -174,8 +235,8 @@ std::string PictureWriter::file_of(const Texture& texture, Content content) {
     return name;
 }
 
-std::string PictureWriter::file_reference(const Texture& texture, Content content) {
-    const std::string name = file_of(texture, content);
+std::string PictureWriter::file_reference(const Texture& texture, Content content, int halvings) {
+    const std::string name = file_of(texture, content, halvings);
     const File& file = files_.at(name);
     const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
     const bool encoded = file.as_is ? texture.picture->space == ColorSpace::Srgb
@@ -184,7 +245,8 @@ std::string PictureWriter::file_reference(const Texture& texture, Content conten
 }
 
 std::string PictureWriter::pigment(const Texture& texture, Content content, const UvRange& range) {
-    const std::string reference = file_reference(texture, content);
+    const int halvings = content == Content::Height ? 0 : halvings_of(texture, range.texel);
+    const std::string reference = file_reference(texture, content, halvings);
     const bool repeats = texture.extension == Extension::Repeat;
     // `once` keeps the interpolation at a border from reaching over to the opposite one.
     const std::string image =
@@ -197,8 +259,8 @@ std::string PictureWriter::pigment(const Texture& texture, Content content, cons
     if (!repeats && leaves(texture, range)) {
         switch (texture.extension) {
             case Extension::Extend:
-                out = extended(extended(out, 'x', texture.picture->width), 'y',
-                               texture.picture->height);
+                out = extended(extended(out, 'x', halved(texture.picture->width, halvings)), 'y',
+                               halved(texture.picture->height, halvings));
                 break;
             case Extension::Clip:
                 out = clipped(out);
@@ -231,7 +293,8 @@ std::string PictureWriter::declarations() const {
 void PictureWriter::write(PictureFolder& folder) const {
     for (const auto& [name, file] : files_)
         folder.add(name, [&file = file] {
-            return file.as_is ? file.texture.picture->bytes : baked(file.texture, file.content);
+            return file.as_is ? file.texture.picture->bytes
+                              : baked(file.texture, file.content, file.halvings);
         });
 }
 

@@ -27,6 +27,8 @@ enum class Content : uint8_t {
 struct UvRange {
     glm::dvec2 low{0.0};
     glm::dvec2 high{1.0};
+    double texel =
+        0;  // what one may cover, in texture coordinates: larger pictures are made smaller
 };
 
 /// The folder i/ below a scene's folder; all threads of one export share it.
@@ -59,8 +61,8 @@ public:
     /// uv_mapping. Throws Error(Internal) for a picture that is not resident.
     std::string pigment(const Texture& texture, Content content, const UvRange& range);
 
-    /// `png "i/..." gamma ...` for a pattern of its own. Throws as above.
-    std::string file_reference(const Texture& texture, Content content);
+    /// `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often. Throws as above.
+    std::string file_reference(const Texture& texture, Content content, int halvings = 0);
 
     /// Comments that name all files, then a guarded declaration of every image, so that POV-Ray
     /// loads one that several representations show once; "" when there is none.
@@ -75,13 +77,18 @@ private:
         Texture texture;
         Content content = Content::Color;
         bool as_is = false;  // the picture's own bytes
+        int halvings = 0;
     };
 
-    std::string file_of(const Texture& texture, Content content);
+    std::string file_of(const Texture& texture, Content content, int halvings);
 
     std::map<std::string, File> files_;            // by name
     std::map<std::string, std::string> declared_;  // identifier: inside of the pigment
 };
+
+/// How often a picture may be halved before one of its texels covers more than `texel` in texture
+/// coordinates. 0 where each texel is to be seen.
+int halvings_of(const Texture& texture, double texel);
 
 /// The largest number of a picture that can hold more than 1 (EXR); else 1. Throws Error(BadFile).
 double brightest_of(const Picture& picture);

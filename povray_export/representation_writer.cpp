@@ -67,12 +67,14 @@ std::string solids_text(const Model& model, const Representation& representation
 }  // namespace
 
 Hash file_hash(const Representation& representation, const RepresentationOptions& options) {
-    return Hasher()
-        .value(kWriterVersion)
+    Hasher hasher;
+    hasher.value(kWriterVersion)
         .value(representation.summary.hash)
         .value(options.textures)
-        .value(options.uvs)
-        .result();
+        .value(options.uvs);
+    if (options.texel)
+        hasher.value(*options.texel);
+    return hasher.result();
 }
 
 std::string identifier_of(Hash file) {
@@ -88,7 +90,7 @@ std::string representation_text(const Model& model, const Representation& repres
     check(mesh);
     std::optional<MeshTextures> textures;
     if (options.textures)
-        textures.emplace(model, representation, options.uvs, pictures, job);
+        textures.emplace(model, representation, options, pictures, job);
     std::string text =
         mesh_text(mesh, textures.has_value() ? &*textures : nullptr, identifier, job);
     if (text.empty())

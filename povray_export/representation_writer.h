@@ -6,6 +6,7 @@
 #include "model/model.h"
 #include "povray_export/picture_writer.h"
 
+#include <optional>
 #include <string>
 
 namespace lodestone::povray {
@@ -13,6 +14,8 @@ namespace lodestone::povray {
 struct RepresentationOptions {
     bool textures = true;  // false: the occurrence brings its texture
     bool uvs = true;       // texture coordinates, where a texture uses them
+    std::optional<int> texel =
+        {};  // what a picture's may cover at most: 2^texel metres, in its own frame
 };
 
 /// A line at the beginning of the text of a mesh with bumps or normals that are not shown, because

@@ -7,7 +7,6 @@
 #include "povray_export/penumbra.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace lodestone::povray {
 
@@ -15,16 +14,16 @@ void SceneLights::append(std::string& out, Light light) const {
     constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
     constexpr double kPoint = 1e-7;  // of an area's edges, which say where it shines
     const double widest = widest_penumbra(light, view_, occluders_);
-    const double step = std::max(kLeast, view_.pixel_error);
+    const double step = std::max(kLeast, shading_.shadow_error);
     if (widest <= step) {
         light.angle = light.radius = 0;
         light.edge_u *= kPoint;
         light.edge_v *= kPoint;
     }
-    // At Pixel Error 0 everything is as it is.
-    const double steps =
-        view_.pixel_error > 0 ? widest / step : std::numeric_limits<double>::infinity();
-    append_light(out, magnified(light, times_), bound_, antialiasing_, problems_, steps);
+    LightSampling sampling{shading_.area_samples, thorough_};
+    if (shading_.shadow_error > 0)  // else everything is as it is
+        sampling.steps = widest / step;
+    append_light(out, magnified(light, times_), bound_, sampling, problems_);
 }
 
 std::vector<std::string> SceneLights::declare(std::string& out, const LightPlan& plan) const {

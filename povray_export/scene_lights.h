@@ -2,23 +2,24 @@
 // Scene lights: the lights of a view, each as far as its pixels can tell, and groups lit by them.
 #pragma once
 
-#include "povray_export/antialiasing.h"
 #include "povray_export/light_plan.h"
+#include "povray_export/shading.h"
 
 #include <string>
 
 namespace lodestone::povray {
 
-/// All arguments must outlive it. `bound`: of everything, magnified by `times`; `occluders` are not.
+/// All arguments must outlive it; `shading` is filled up. `bound`: of everything, magnified by `times`; `occluders` are not.
 class SceneLights {
 public:
     SceneLights(const View& view, std::span<const Bound> occluders, const Bound& bound,
-                double times, Antialiasing antialiasing, Problems& problems)
+                double times, const Shading& shading, bool thorough, Problems& problems)
         : view_(view),
           occluders_(occluders),
           bound_(bound),
           times_(times),
-          antialiasing_(antialiasing),
+          shading_(shading),
+          thorough_(thorough),
           problems_(problems) {}
 
     /// A light: without its size where no pixel can tell, or with the rays its penumbra needs.
@@ -32,7 +33,8 @@ private:
     std::span<const Bound> occluders_;
     const Bound& bound_;
     double times_;
-    Antialiasing antialiasing_;
+    const Shading& shading_;
+    bool thorough_;
     Problems& problems_;
 };
 

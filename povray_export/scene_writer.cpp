@@ -13,6 +13,7 @@
 #include "povray_export/scene_lights.h"
 #include "povray_export/sky_writer.h"
 #include "povray_export/texture_writer.h"
+#include "quality/criterion.h"
 #include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
@@ -22,6 +23,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <unordered_map>
 
@@ -124,6 +126,8 @@ struct Use {
 struct Include {
     const Representation* representation = nullptr;
     Hash hash = 0;
+    RepresentationOptions options = {};
+    double texel = std::numeric_limits<double>::infinity();  // of its nearest use
     uint64_t bytes = 0;
     double cpu_s = 0;
     bool written = false;
@@ -141,6 +145,7 @@ public:
           options_(options),
           problems_(problems),
           job_(job),
+          shading_(filled_up(options.shading, options.antialiasing, view.pixel_error)),
           pictures_(options.folder) {}
 
     ExportReport write() {
@@ -151,7 +156,7 @@ public:
         collect();
         const double before_files = thread_cpu_s();
         if (!options_.covered_only)
-            sky_ = write_sky(view_world(), options_.antialiasing, options_.folder, problems_);
+            sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
         write_includes();
         const double after_files = thread_cpu_s();
         name_problems();
@@ -194,7 +199,7 @@ private:
         std::unordered_map<Hash, size_t> known;
         const std::vector<uint8_t> holds_environment =
             options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
-        RepresentationOptions as{!options_.false_color, options_.uvs};
+        const RepresentationOptions as{!options_.false_color, options_.uvs, std::nullopt};
         for (const uint32_t index : cut_.chosen) {
             if ((uses_.size() & 1023u) == 0)
                 job_.check();
@@ -212,17 +217,50 @@ private:
                                      "is scaled to nothing or to a line, so it is not drawn"});
                 continue;
             }
+            // Copies of one representation share a file, those that are textured for their nearest
             const Hash hash = file_hash(representation, as);
             const auto [at, fresh] = known.try_emplace(hash, includes_.size());
             if (fresh)
-                includes_.push_back({&representation, hash});
+                includes_.emplace_back().representation = &representation;
             use.file = at->second;
             uses_.push_back(use);
+            double& texel = includes_[use.file].texel;
+            texel = std::min(texel, texel_of(node, representation, use.world));
+        }
+        for (Include& include : includes_) {
+            include.options = as;
+            if (shading_.texture_error > 0 && include.options.textures && pictured(include))
+                include.options.texel = exponent_of(include.texel);
+            include.hash = file_hash(*include.representation, include.options);
         }
     }
 
+    bool pictured(const Include& include) const {
+        if (!include.options.uvs || include.representation->summary.kind != Kind::Mesh)
+            return false;
+        for (const uint32_t material : include.representation->materials) {
+            if (material < model_.materials.size() && textured(model_.materials[material]))
+                return true;
+        }
+        return false;
+    }
+
+    /// What a texel may cover of one occurrence, in metres of its own frame.
+    double texel_of(const quality::Node& node, const Representation& representation,
+                    const Affine& world) const {
+        const Bound bound = transformed(representation.summary.bound, world);
+        const double z = distance(bound, view_.camera.position);
+        const double enlarged = stretch(world) * std::max(1.0, node.importance);
+        return shading_.texture_error * quality::pixel_size(view_, z) / enlarged;
+    }
+
+    static int exponent_of(double texel) {
+        constexpr int kMost = 60;
+        return texel > 0 && std::isfinite(texel) ? std::clamp(std::ilogb(texel), -kMost, kMost)
+                                                 : -kMost;
+    }
+
     void write_includes() {
-        const RepresentationOptions as{!options_.false_color, options_.uvs};
         std::atomic<size_t> done{0};
         parallel_for(includes_.size(), [&](size_t i) {
             job_.check();
@@ -239,7 +277,8 @@ private:
             } else {
                 PictureWriter pictures;
                 text = representation_text(model_, *include.representation,
-                                           identifier_of(include.hash), as, pictures, job_);
+                                           identifier_of(include.hash), include.options, pictures,
+                                           job_);
                 if (!text.empty()) {
                     pictures.write(pictures_);
                     write_file(path, text);
@@ -287,6 +326,11 @@ private:
     bool transparent() const { return options_.covered_only || view_world().transparent; }
     bool lit() const { return !options_.covered_only && !options_.false_color; }
     const World& view_world() const { return model_.world; }
+
+    bool thorough() const { return options_.antialiasing == Antialiasing::Reference; }
+    SkySampling sky_sampling() const {
+        return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
+    }
 
     /// By which lights what is drawn; its numbers are those of the uses that are drawn.
     LightPlan light_plan(const std::vector<Bound>& occluders) {
@@ -366,7 +410,7 @@ private:
         bound = magnified(bound, times);
         const LightPlan plan = light_plan(occluders);
         std::string lights;
-        const SceneLights scene_lights(view_, occluders, bound, times, options_.antialiasing,
+        const SceneLights scene_lights(view_, occluders, bound, times, shading_, thorough(),
                                        problems_);
         const std::vector<std::string> names = scene_lights.declare(lights, plan);
         const std::string objects = grouped_objects(plan, names, times);
@@ -386,7 +430,12 @@ private:
             "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
             "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
             "global_settings{assumed_gamma 1 max_trace_level ";
-        append_count(out, refracts() ? 10 : 5);  // two surfaces of a glass are two levels
+        // Two surfaces of a glass are two levels.
+        append_count(out, static_cast<uint64_t>(shading_.trace_depth) * (refracts() ? 2 : 1));
+        if (shading_.reflection_error > 1) {
+            out += " adc_bailout ";
+            append_number(out, shading_.reflection_error / 255, 6);
+        }
         out += " ambient_light rgb ";
         append_vector(out, sky_.ambient, 6);
         const glm::dvec3 background = sky_.statement.empty() ? sky_.ambient : glm::dvec3(0.0);
@@ -413,7 +462,7 @@ private:
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)
-                append_light(out, light, bound, options_.antialiasing, problems_);
+                append_light(out, light, bound, {shading_.area_samples, thorough()}, problems_);
         }
         out += '\n';
         for (const Include& include : includes_) {
@@ -421,6 +470,14 @@ private:
                 out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
         }
         return out + '\n' + objects;
+    }
+
+    std::string adaptive() const {
+        std::string out = "Antialias=On\nSampling_Method=1\nAntialias_Threshold=";
+        append_number(out, shading_.threshold, 6);
+        out += "\nAntialias_Depth=";
+        append_count(out, static_cast<uint64_t>(shading_.depth));
+        return out + "\nJitter=Off\n";
     }
 
     std::string ini() const {
@@ -451,9 +508,7 @@ private:
             case Antialiasing::Off:
                 return out + "Antialias=Off\n";
             case Antialiasing::Final:
-                return out +
-                       "Antialias=On\nSampling_Method=1\nAntialias_Threshold=0.1\n"
-                       "Antialias_Depth=3\nJitter=Off\n";
+                return out + adaptive();
             case Antialiasing::Reference:
                 break;
         }
@@ -468,6 +523,7 @@ private:
     const ExportOptions& options_;
     Problems& problems_;
     const Job& job_;
+    const Shading shading_;
     PictureFolder pictures_;
     std::vector<Use> uses_;
     std::vector<Include> includes_;

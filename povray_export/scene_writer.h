@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
-#include "povray_export/antialiasing.h"
+#include "povray_export/shading.h"
 #include "quality/cut.h"
 
 #include <filesystem>
@@ -15,6 +15,7 @@ namespace lodestone::povray {
 struct ExportOptions {
     std::filesystem::path folder;  // made when missing; its path may hold any characters
     Antialiasing antialiasing = Antialiasing::Final;
+    Shading shading;
     bool false_color = false;  // flat colors by kind and LOD number (color_of), no lights
     // Without Environment objects (and all below them, and stand-ins for groups that hold them),
     // lights and world, on a transparent film: the picture's alpha says which pixels are covered.

@@ -20,19 +20,6 @@ bool finite(const glm::dvec3& value) {
     return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
 }
 
-/// More suns: finer shadows of the sky, a ray each at every point that is seen.
-size_t sun_count(Antialiasing antialiasing) {
-    switch (antialiasing) {
-        case Antialiasing::Off:
-            return 12;
-        case Antialiasing::Final:
-            return 24;
-        case Antialiasing::Reference:
-            break;
-    }
-    return 64;
-}
-
 const char* keyword_of(PictureFormat format) {
     switch (format) {
         case PictureFormat::Png:
@@ -73,7 +60,7 @@ double largest_of(const glm::dvec3& color) {
 
 }  // namespace
 
-Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesystem::path& folder,
+Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
               Problems& problems) {
     Sky sky;
     if (finite(world.color))
@@ -81,9 +68,10 @@ Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesyst
     if (!world.environment)
         return sky;
     const Picture& picture = *world.environment;
+    constexpr size_t kFewest = 12;  // of which the mean is taken
     measure::EnvironmentLights found;
     try {
-        found = measure::environment_lights(world, sun_count(antialiasing));
+        found = measure::environment_lights(world, sampling.lights > 0 ? sampling.lights : kFewest);
     } catch (const Error& error) {
         problems.push_back({picture.name, Severity::Error, "environment_unreadable", error.what()});
         return sky;
@@ -93,14 +81,14 @@ Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesyst
     for (const measure::EnvironmentLight& each : found.lights)
         largest = std::max(largest, largest_of(each.irradiance));
     for (const measure::EnvironmentLight& each : found.lights) {
-        if (largest_of(each.irradiance) < kFaintest * largest) {
+        if (sampling.lights == 0 || largest_of(each.irradiance) < kFaintest * largest) {
             sky.ambient += each.irradiance / (4 * std::numbers::pi);  // in the mean of all normals
             continue;
         }
         Light& sun = sky.lights.emplace_back();
         sun.direction = each.direction;
         sun.color = each.irradiance;
-        sun.shadow = antialiasing != Antialiasing::Off;
+        sun.shadow = sampling.shadows;
     }
     sky.file = "i/" + hex16(picture.hash) + '.' + suffix_of(picture.format);
     sky.bytes = picture.bytes.size();

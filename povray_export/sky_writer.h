@@ -3,13 +3,18 @@
 #pragma once
 
 #include "model/view.h"
-#include "povray_export/antialiasing.h"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace lodestone::povray {
+
+/// How an environment image is made lights.
+struct SkySampling {
+    size_t lights = 24;   // at most; more: finer shadows of the sky, a ray each at every point seen
+    bool shadows = true;  // false: they shine through everything
+};
 
 struct Sky {
     glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
@@ -21,8 +26,8 @@ struct Sky {
 };
 
 /// Writes an environment's picture into `folder`/i when it is not there. One that cannot be decoded
-/// becomes a problem, and its world counts as its color. Throws Error(Io).
-Sky write_sky(const World& world, Antialiasing antialiasing, const std::filesystem::path& folder,
+/// becomes a problem, and its world counts as its color. Without lights all of its light is uniform. Throws Error(Io).
+Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
               Problems& problems);
 
 }  // namespace lodestone::povray

@@ -19,12 +19,12 @@ struct Written {
     bool has(const std::string& part) const { return text.find(part) != std::string::npos; }
 };
 
-Written written(const Light& light, Antialiasing antialiasing = Antialiasing::Final) {
+Written written(const Light& light, const LightSampling& sampling = {}) {
     Written out;
     Bound bound;
     bound.center = {1, 2, 3};
     bound.radius = 10;
-    append_light(out.text, light, bound, antialiasing, out.problems);
+    append_light(out.text, light, bound, sampling, out.problems);
     return out;
 }
 
@@ -71,9 +71,9 @@ TEST(PovrayLight, OnlySoftLightsCastManyRaysAndDraftsNone) {
         EXPECT_TRUE(written(light).has(" area_light ")) << written(light).text;
         const bool in_parts = kind >= LightKind::Spot;
         EXPECT_TRUE(written(light).has(in_parts ? " adaptive 1" : " adaptive 0"));
-        const Written finest = written(light, Antialiasing::Reference);
+        const Written finest = written(light, {17, true});
         EXPECT_TRUE(finest.has(in_parts ? " adaptive 2" : " adaptive 1"));
-        EXPECT_FALSE(written(light, Antialiasing::Off).has("area_light"));
+        EXPECT_FALSE(written(light, {1, false}).has("area_light"));
         EXPECT_FALSE(written(light).has("jitter"));
         if (kind == LightKind::Area)
             continue;
@@ -111,7 +111,7 @@ TEST(PovrayLight, FewerStepsOfAPenumbraAreFewerRays) {
     Problems problems;
     const auto text = [&](double steps) {
         std::string out;
-        append_light(out, area, {}, Antialiasing::Final, problems, steps);
+        append_light(out, area, {}, {17, false, steps}, problems);
         return out;
     };
     EXPECT_NE(text(1000).find(",9,9 adaptive 1 "), std::string::npos);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <numbers>
 
 using namespace lodestone;
 using namespace lodestone::povray;
@@ -28,9 +29,9 @@ World world_of(float sky, float side) {
     return world;
 }
 
-Sky written(const World& world) {
+Sky written(const World& world, const SkySampling& sampling = {}) {
     Problems problems;
-    return write_sky(world, Antialiasing::Final, own_scratch(), problems);
+    return write_sky(world, sampling, own_scratch(), problems);
 }
 
 }  // namespace
@@ -49,4 +50,20 @@ TEST(PovraySky, ABrightSideHasLightsAndNoneThatNoPictureCouldTell) {
         brightest = std::max(brightest, light.color.x);
     for (const Light& light : sky.lights)
         EXPECT_GE(light.color.x, 2e-3 * brightest);
+}
+
+TEST(PovraySky, WithoutLightsAllOfItsLightIsUniform) {
+    const World world = world_of(0.25f, 0.75f);
+    const Sky with = written(world);
+    const Sky without = written(world, {0, true});
+    EXPECT_TRUE(without.lights.empty());
+    double energy = with.ambient.x;
+    for (const Light& light : with.lights)
+        energy += light.color.x / (4 * std::numbers::pi);
+    EXPECT_NEAR(without.ambient.x, energy, 0.05 * energy);
+}
+
+TEST(PovraySky, ADraftsLightsCastNoShadows) {
+    for (const Light& light : written(world_of(0.25f, 0.75f), {12, false}).lights)
+        EXPECT_FALSE(light.shadow);
 }

@@ -938,9 +938,20 @@ typedef struct lds_povray_options {
         covered_only;    /* 1: without environment objects and world (the mask of covered pixels) */
     int32_t threads;     /* 0 = all */
     const char* program; /* null: $LODESTONE_POVRAY, else povray on the PATH */
-    double light_error;  /* how far lights are approximated, in place of the view's Pixel Error;
-                              0: all of them light everything; negative (usual): the view's. A point
-                              differs by about as many steps of an 8-bit display on average */
+    /* How finely it is shaded; 0 is the usual. A larger error is rougher and cheaper. */
+    double antialias_threshold; /* FINAL: neighbors that differ by more get more samples; usual .1 */
+    int32_t antialias_depth;    /* FINAL: its square is how many; usual 3 */
+    int32_t trace_depth;        /* mirrors or bodies of glass, one behind the other; usual 5 */
+    int32_t area_samples; /* rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows; usual 17,
+                             with OFF 1 */
+    int32_t sky_lights;   /* lights that stand for an environment image; below 0: none; usual 24, with
+                             OFF 12, with REFERENCE 64 */
+    double shadow_error;  /* pixels; narrower penumbrae are sharp; usual the view's pixel_error */
+    double light_error; /* how far lights are approximated, in place of the view's Pixel Error; 0: all of
+                           them light everything; negative (usual): the view's. A point differs by about
+                           as many steps of an 8-bit display on average */
+    double reflection_error; /* 255ths; rays that add less are not followed; usual 1 */
+    double texture_error;    /* pixels; what image textures may be blurred by; usual 0 */
 } lds_povray_options;
 LDS_API lds_povray_options lds_povray_options_default(void);
 

@@ -13,6 +13,19 @@ from .library import check, library
 from .structs import record, text_in, text_out
 
 
+_SHADING = (
+    "antialias_threshold",
+    "antialias_depth",
+    "trace_depth",
+    "area_samples",
+    "sky_lights",
+    "shadow_error",
+    "light_error",
+    "reflection_error",
+    "texture_error",
+)
+
+
 @dataclass(frozen=True)
 class PovrayOptions:
     antialias: int = Antialias.FINAL
@@ -20,8 +33,17 @@ class PovrayOptions:
     covered_only: bool = False  # without environment objects and world
     threads: int = 0  # 0 = all
     program: str | None = None  # None: $LODESTONE_POVRAY, else povray on the PATH
+    # How finely it is shaded, as lodestone.h says; 0: as usual
+    antialias_threshold: float = 0.0
+    antialias_depth: int = 0
+    trace_depth: int = 0
+    area_samples: int = 0
+    sky_lights: int = 0
+    shadow_error: float = 0.0
     # How far lights are approximated; 0: all light everything; negative: the view's Pixel Error.
     light_error: float = -1.0
+    reflection_error: float = 0.0
+    texture_error: float = 0.0
 
     def struct(self) -> structs.PovrayOptions:
         out = library().lds_povray_options_default()
@@ -30,7 +52,8 @@ class PovrayOptions:
         out.covered_only = int(self.covered_only)
         out.threads = self.threads
         out.program = text_in(self.program or None)
-        out.light_error = self.light_error
+        for name in _SHADING:
+            setattr(out, name, getattr(self, name))
         return out
 
 

@@ -578,7 +578,15 @@ class PovrayOptions(Sized):
         ("covered_only", c_int32),
         ("threads", c_int32),
         ("program", c_char_p),
+        ("antialias_threshold", c_double),
+        ("antialias_depth", c_int32),
+        ("trace_depth", c_int32),
+        ("area_samples", c_int32),
+        ("sky_lights", c_int32),
+        ("shadow_error", c_double),
         ("light_error", c_double),
+        ("reflection_error", c_double),
+        ("texture_error", c_double),
     ]
 
 

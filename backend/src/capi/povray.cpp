@@ -17,8 +17,28 @@ using namespace lodestone::capi;
 
 namespace {
 
-constexpr size_t kFirstOptions = offsetof(lds_povray_options, light_error);
+// Size of version 1: callers built with it go on working.
+constexpr size_t kFirstOptions = offsetof(lds_povray_options, antialias_threshold);
 constexpr size_t kFirstReport = offsetof(lds_export_report, lamps);
+
+double error_of(double value, const char* what) {
+    if (!(value >= 0) || !std::isfinite(value))
+        fail(Status::InvalidArgument, "options.", what, " is ", value, "; it must be 0 or more");
+    return value;
+}
+
+povray::Shading shading_of(const lds_povray_options& options) {
+    povray::Shading out;
+    out.threshold = error_of(options.antialias_threshold, "antialias_threshold");
+    out.depth = options.antialias_depth;
+    out.trace_depth = options.trace_depth;
+    out.area_samples = options.area_samples;
+    out.sky_lights = options.sky_lights;
+    out.shadow_error = error_of(options.shadow_error, "shadow_error");
+    out.reflection_error = error_of(options.reflection_error, "reflection_error");
+    out.texture_error = error_of(options.texture_error, "texture_error");
+    return out;
+}
 
 povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
     switch (options.antialias) {
@@ -89,6 +109,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         povray::ExportOptions wanted;
         wanted.folder = folder;
         wanted.antialiasing = antialiasing_of(given);
+        wanted.shading = shading_of(given);
         wanted.false_color = given.false_color != 0;
         wanted.covered_only = given.covered_only != 0;
         if (std::isnan(given.light_error))

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards how far image textures are made smaller: never so that a pixel could tell more than asked.
+#include "povray/scene.h"
+#include "povray_export/picture_writer.h"
+
+#include <optional>
+#include <tuple>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+
+namespace {
+
+constexpr int kSide = 256;
+
+/// Fine stripes: each texel is seen where it is not made smaller.
+PicturePtr stripes() {
+    std::vector<glm::vec4> texels;
+    for (int i = 0; i < kSide * kSide; ++i)
+        texels.push_back(i % 2 == 0 ? glm::vec4(0, 0, 0, 1) : glm::vec4(1, 1, 1, 1));
+    return scenes::picture(kSide, texels);
+}
+
+/// A square of one metre with the picture once on it, or `uv` at all of its corners.
+Mesh square(std::optional<glm::vec2> uv = {}) {
+    Mesh mesh = shapes::quad(1, 1);
+    for (const glm::vec3& at : mesh.positions)
+        mesh.uvs.push_back(uv.value_or(glm::vec2(at)));
+    return mesh;
+}
+
+/// Width of the only picture that is written: `metres` are shown on 64 pixels.
+int written(const Texture& texture, const Mesh& mesh, double texture_error, double metres) {
+    scenes::Builder builder;
+    builder.place_at(builder.mesh(mesh, {builder.material(scenes::textured(texture))}),
+                     {-0.5, -0.5, 0});
+    const Model model = builder.finish();
+    ExportOptions options;
+    options.folder = own_scratch() / std::to_string(texture_error);
+    options.shading.texture_error = texture_error;
+    View view = scenes::above();
+    view.camera.orthographic = true;
+    view.camera.right = {metres, 0, 0};
+    view.camera.up = {0, metres, 0};
+    Problems problems;
+    std::filesystem::remove_all(options.folder);
+    scenes::write(model, view, options, problems);
+    int width = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(options.folder / "i"))
+        width = image::read(entry.path()).width;
+    return width;
+}
+
+Texture texture_of(const PicturePtr& picture) {
+    Texture texture;
+    texture.picture = picture;
+    return texture;
+}
+
+}  // namespace
+
+TEST(PovrayTextureError, NothingAskedLeavesThePictureAsItIs) {
+    EXPECT_EQ(written(texture_of(stripes()), square(), 0, 100), kSide);
+}
+
+TEST(PovrayTextureError, ATexelCoversNoMorePixelsThanAsked) {
+    const Texture texture = texture_of(stripes());
+    // One metre on 64 pixels: 256 texels are 4 a pixel.
+    for (const auto& [error, most, least] :
+         {std::tuple{0.25, 256, 256}, {1.0, 128, 64}, {4.0, 32, 16}, {8.0, 16, 8}}) {
+        const int found = written(texture, square(), error, 1);
+        EXPECT_LE(found, most) << error;
+        EXPECT_GE(found, least) << error;
+        EXPECT_LE(64.0 / found, error);
+    }
+    EXPECT_EQ(written(texture, square(), 1, 1e9), 1);
+}
+
+TEST(PovrayTextureError, PixelArtAndPalettesStay) {
+    Texture texture = texture_of(stripes());
+    EXPECT_EQ(written(texture, square(glm::vec2(0.3F, 0.7F)), 8, 1), kSide) << "one texel for all";
+    texture.interpolation = Interpolation::Closest;
+    EXPECT_EQ(written(texture, square(), 8, 1), kSide);
+}
+
+TEST(PovrayTextureError, AMappingThatShowsLessOfThePictureKeepsMoreOfIt) {
+    Texture texture = texture_of(stripes());
+    const int whole = written(texture, square(), 2, 1);
+    texture.to_picture = {0.125, 0, 0, 0, 0.125, 0};
+    EXPECT_EQ(written(texture, square(), 2, 1), std::min(kSide, 8 * whole));
+}
+
+TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
+    const Texture texture = texture_of(stripes());
+    EXPECT_EQ(halvings_of(texture, 0), 0);
+    EXPECT_EQ(halvings_of(texture, 1.0 / kSide), 0);
+    EXPECT_EQ(halvings_of(texture, 4.0 / kSide), 2);
+    EXPECT_EQ(halvings_of(texture, 1e9), 8);
+    const std::filesystem::path folder = own_scratch() / "mean";
+    PictureWriter writer;
+    UvRange range;
+    range.texel = 1e9;
+    EXPECT_NE(writer.pigment(texture, Content::Color, range), "");
+    PictureFolder files(folder);
+    writer.write(files);
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {
+        const image::Image found = image::read(entry.path());
+        EXPECT_EQ(found.width, 1);
+        EXPECT_NEAR(image::decode_srgb(found.pixels[0]), 0.5, 0.01);
+    }
+}
