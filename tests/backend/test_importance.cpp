@@ -172,10 +172,39 @@ TEST(Limits, LevelThatTheViewCannotDrawGivesWayToAFinerOne) {
     EXPECT_EQ(drawn(model, view).substr(0, 13), "pair 0/left 0");
 }
 
+TEST(Pins, AreDrawnAtTheirLevelFromAnywhere) {
+    Model model = pairs();
+    Placement& pinned = placement(model, kPair, 1);
+    pinned.coarsest = pinned.finest = 1;
+    for (const double distance : {2.0, 1e6})
+        EXPECT_NE(drawn(model, view_from(distance, 0.01)).find("pair 0/right 1"), std::string::npos)
+            << distance;
+    EXPECT_EQ(drawn(model, view_from(1e6)),
+              "pair 0/left 2, pair 0/right 1, pair 1/left 2, pair 1/right 1");
+}
+
+TEST(Pins, ALevelThatIsNotThereIsTheCoarsest) {
+    Model model = pairs();
+    Placement& pinned = placement(model, kPair, 1);
+    pinned.coarsest = pinned.finest = 7;
+    EXPECT_NE(drawn(model, view_from(2, 0.01)).find("pair 0/right 2"), std::string::npos);
+}
+
+TEST(Pins, AGroupAtItsStandInIsNeverOpened) {
+    Model model = pairs();
+    Placement& pinned = placement(model, model.root, 1);
+    pinned.coarsest = pinned.finest = 1;
+    EXPECT_NE(drawn(model, view_from(2, 0.01)).find("pair 1 1"), std::string::npos);
+    pinned.coarsest = pinned.finest = 0;  // its originals
+    EXPECT_NE(drawn(model, view_from(1e6)).find("pair 1/left 0, pair 1/right 0"),
+              std::string::npos);
+}
+
 TEST(Decisions, StoreKeepsThemAndRefusesWhatIsOutOfRange) {
     Model model = pairs();
     placement(model, kPair, 0).importance = 1.0 / 3;
     placement(model, kPair, 1).coarsest = 2;
+    placement(model, kPair, 1).finest = 2;
     summarize_assemblies(model, bottom_up(model));
     const segment::Store store(scratch("decisions"));
     store.write(model, {});
@@ -185,6 +214,8 @@ TEST(Decisions, StoreKeepsThemAndRefusesWhatIsOutOfRange) {
     EXPECT_EQ(placements[0].coarsest, kAnyLevel);
     EXPECT_EQ(placements[1].importance, 1);
     EXPECT_EQ(placements[1].coarsest, 2u);
+    EXPECT_EQ(placements[0].finest, 0u);
+    EXPECT_EQ(placements[1].finest, 2u);
     EXPECT_TRUE(std::isinf(back.objects[back.root].demand));
 
     const fs::path file = store.folder() / "tileset.json";

@@ -453,6 +453,11 @@ LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
 #define LDS_ANY_LEVEL UINT32_MAX
 LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
                                               double importance, uint32_t coarsest);
+/* Always the level with that LOD number, from wherever it is seen (its coarsest where it has no such
+   one, or the nearest that the view can draw); groups around it are opened. LDS_ANY_LEVEL: no pin. It
+   replaces the placement's coarsest level. */
+LDS_API lds_status lds_model_pin_placement(lds_model* model, lds_object group, size_t position,
+                                           uint32_t lod);
 /* Where the placement at `position` of a group is when the shutter closes, in the group's frame; null:
    it rests there. For lds_modifiers.when_moving; no store keeps it. */
 LDS_API lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,

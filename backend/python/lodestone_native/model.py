@@ -270,6 +270,10 @@ class Model(Handle):
         decide = library().lds_model_decide_placement
         check(decide(self.handle, group, position, importance, coarsest))
 
+    def pin_placement(self, group: Object, position: int, lod: int) -> None:
+        """Always that LOD number; ANY_LEVEL: no pin."""
+        check(library().lds_model_pin_placement(self.handle, group, position, lod))
+
     def move_placement(
         self, group: Object, position: int, closing: tuple[float, ...] | None
     ) -> None:

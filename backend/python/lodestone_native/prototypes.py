@@ -41,6 +41,7 @@ PROTOTYPES = (
      [M, s.Object, Z, P(s.Object), c_void_p, P(c_char_p), c_void_p]),
     ("lds_model_hide_placement", I, [M, s.Object, U]),
     ("lds_model_decide_placement", I, [M, s.Object, Z, D, U]),
+    ("lds_model_pin_placement", I, [M, s.Object, Z, U]),
     ("lds_model_move_placement", I, [M, s.Object, Z, P(D)]),
     ("lds_model_group_by_position", I, [M, s.Object, U, P(Z)]),
     ("lds_structure_options_default", s.StructureOptions, []),

@@ -152,6 +152,20 @@ lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t
             fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
         placements[position].importance = importance;
         placements[position].coarsest = coarsest;
+        placements[position].finest = 0;
+        model->summarized = false;
+    });
+}
+
+lds_status lds_model_pin_placement(lds_model* model, lds_object group, size_t position,
+                                   uint32_t lod) {
+    return guard([&] {
+        require(model, "model");
+        std::vector<Placement>& placements = group_at(*model, group).placements;
+        if (position >= placements.size())
+            fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
+        placements[position].coarsest = lod;
+        placements[position].finest = lod == kAnyLevel ? 0 : lod;
         model->summarized = false;
     });
 }

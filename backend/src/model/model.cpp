@@ -137,7 +137,7 @@ void set_demands(Model& model, const std::vector<ObjectIndex>& order) {
         object.demand = 0;
         for (const Placement& placement : object.representations[0].assembly().placements) {
             const double demand =
-                placement.coarsest == kAnyLevel
+                placement.coarsest == kAnyLevel && placement.finest == 0
                     ? placement.importance * model.objects[placement.object].demand
                     : std::numeric_limits<double>::infinity();
             object.demand = std::max(object.demand, demand);

@@ -36,12 +36,14 @@ struct Placement {
     /// The largest LOD number it is drawn with: groups around it are opened. 0: the original, also
     /// of all below it.
     uint32_t coarsest = kAnyLevel;
+    /// The least LOD number; above `coarsest` it counts as that. Both the same: a pin.
+    uint32_t finest = 0;
     /// `transform` when the shutter closes; null: it rests in its group. Belongs to one frame: no
     /// store keeps it, and no hash counts it.
     std::shared_ptr<const Affine> closing{};
 
     /// Whether it is drawn otherwise than its object is elsewhere.
-    bool decided() const { return importance != 1 || coarsest != kAnyLevel; }
+    bool decided() const { return importance != 1 || coarsest != kAnyLevel || finest != 0; }
 };
 
 }  // namespace lodestone

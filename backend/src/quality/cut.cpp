@@ -106,6 +106,7 @@ private:
         node.placement = entry.position;
         node.importance = group.importance * placed.importance;
         node.coarsest = group.coarsest == 0 ? 0 : placed.coarsest;
+        node.finest = group.coarsest == 0 ? 0 : placed.finest;
         double enlarge = above.stretch;
         node.world.offset = group.world.linear * placed.offset + group.world.offset;
         if (placed.linear == kUnturned) {
@@ -127,13 +128,15 @@ private:
 
     /// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly
     /// and costs fall from finest to coarsest.
-    const TableLevel* pick(const TableRow& row, uint32_t coarsest, const Sight& sight,
+    const TableLevel* pick(const TableRow& row, const Node& node, const Sight& sight,
                            bool& good) const {
         const TableLevel* finest = nullptr;
         for (uint32_t i = row.level_count; i-- > 0;) {
             const TableLevel& level = table_.level(row.first_level + i);
-            if (level.lod > coarsest)
+            if (level.lod > node.coarsest)
                 continue;
+            if (finest != nullptr && level.lod < node.finest)
+                break;
             finest = &level;
             good = good_enough(view_, sight, level.error, level.lod, row.all_levels);
             if (good)
@@ -154,14 +157,15 @@ private:
                  factors))
             return;
         bool good = false;
-        const TableLevel* level = pick(row, node.coarsest, sight, good);
+        const TableLevel* level = pick(row, node, sight, good);
         if (level == nullptr && !row.group)
             return;
         const auto index = static_cast<uint32_t>(cut_.nodes.size());
+        const bool pinned = node.finest > 0 && level != nullptr;
         const bool cheaper =
-            level != nullptr && good && by_error_ && level->opens_from < kInfinity &&
+            level != nullptr && good && !pinned && by_error_ && level->opens_from < kInfinity &&
             good_enough(view_, sight, level->opens_from, level->lod, row.all_levels);
-        if (level == nullptr || (row.group && (!good || cheaper))) {
+        if (level == nullptr || (row.group && !pinned && (!good || cheaper))) {
             node.opened = true;
             if (cheaper)
                 node.need =

@@ -27,6 +27,7 @@ struct Node {
     double need = 0;        // what of the threshold its choice takes: the least that allows it
     double importance = 1;  // its placements' together
     uint32_t coarsest = kAnyLevel;
+    uint32_t finest = 0;
     RayMask hidden = 0;  // ray classes that do not see it: its placements' together
     Affine world;
 };

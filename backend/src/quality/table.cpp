@@ -105,6 +105,7 @@ void Table::expand(uint32_t row) {
         }
         child.importance = placement.importance;
         child.coarsest = placement.coarsest;
+        child.finest = placement.finest;
         child.hidden = placement.hidden;
         const auto known = by_object_.find(placement.object);
         child.row = known != by_object_.end() ? known->second : add(placement.object);

@@ -31,6 +31,7 @@ struct TableChild {
     uint32_t row = 0;
     uint32_t linear = 0;  // in linears(); kUnturned: moved only
     uint32_t coarsest = kAnyLevel;
+    uint32_t finest = 0;
     RayMask hidden = 0;
 };
 inline constexpr uint32_t kUnturned = ~uint32_t{0};

@@ -158,6 +158,8 @@ Json out(const Representation& r) {
                 placements.back()["importance"] = placement.importance;
             if (placement.coarsest != kAnyLevel)
                 placements.back()["coarsest"] = placement.coarsest;
+            if (placement.finest != 0)
+                placements.back()["finest"] = placement.finest;
         }
         json["placements"] = std::move(placements);
     }

@@ -186,6 +186,8 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
         }
         if (one.contains("coarsest"))
             placement.coarsest = one.at("coarsest").get<uint32_t>();
+        if (one.contains("finest"))
+            placement.finest = one.at("finest").get<uint32_t>();
         out->placements.push_back(std::move(placement));
     }
     return out;
