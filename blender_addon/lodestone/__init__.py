@@ -19,6 +19,7 @@ bl_info = {
 }
 
 _MODULES = (
+    "lens_properties",
     "properties",
     "preferences",
     "engine",
@@ -29,9 +30,13 @@ _MODULES = (
     "operators.select_object",
     "operators.linked_role",
     "operators.copy_decisions",
+    "operators.inherit_control",
+    "operators.detail_lens",
+    "operators.screen_lenses",
     "operators.check_scene",
     "operators.problems",
     "panels",
+    "lens_overlay",
     "compat_panels",
 )
 _loaded: list = []

@@ -21,7 +21,8 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, motion, poses  # noqa: E402
+from lodestone.bridge import blend_check, motion, poses, quality  # noqa: E402
+from lodestone.bridge.settings import SceneSettings  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
 from lodestone.core import motion_file, progress, report, store_path  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
@@ -197,10 +198,10 @@ class FileRun:
                     part = self._build(model, store)
                     built = {"build": part} if self.job.frames else {}
                 made, used = [], set()
-                for picture, (view, size) in zip(requests, request.frames):
-                    made.append(
-                        {**self._picture(scene, model, store, picture, view, size), **built}
-                    )
+                seen = zip(requests, request.frames, request.modifiers)
+                for picture, (view, size), modifiers in seen:
+                    part = self._picture(scene, model, store, picture, view, size, modifiers)
+                    made.append({**part, **built})
                     self.problems.extend_native(model.problems())
                     self._tell_picture(picture.out, made[-1])
                     if self._shared is not None:
@@ -212,7 +213,7 @@ class FileRun:
         return made
 
     def _builds(self, requests: tuple[PictureRequest, ...]) -> bool:
-        return self.job.verb == "build" or any(p.pixel_error > 0.0 for p in requests)
+        return self.job.verb == "build" or any(p.levels for p in requests)
 
     def _close_poses(self) -> None:
         if self._poses is not None:
@@ -231,11 +232,13 @@ class FileRun:
         return part
 
     def _picture(
-        self, scene, model, store: Path, picture: PictureRequest, view, size: tuple[int, int]
+        self, scene, model, store: Path, picture: PictureRequest, view, size, modifiers
     ) -> dict:
         settings = Settings(
             pixel_error=picture.pixel_error,
-            antialias=native.Antialias[picture.antialias.upper()],
+            overrides=picture.overrides,
+            budget=picture.budget,
+            modifiers=modifiers,
             false_color=picture.false_color,
             covered_only=picture.covered_only,
             threads=self.job.threads,
@@ -243,7 +246,7 @@ class FileRun:
         )
         about = {
             "camera": view.name,
-            "antialias": picture.antialias,
+            "antialias": settings.quality.antialias.lower(),
             "size": list(size),
             "pixel_error": picture.pixel_error,
         }
@@ -369,11 +372,16 @@ def save_thumbnail(picture: str, target: str) -> None:
 
 def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
     """What neither the command line nor a profile says is as the file has it."""
-    own = scene.lodestone
+    own = SceneSettings(scene)
+    error, budget = picture.pixel_error, picture.budget
+    overrides = {**quality.overrides(own), **picture.overrides}
+    if picture.antialias is not None:
+        overrides["antialias"] = picture.antialias.upper()
     return replace(
         picture,
-        pixel_error=own.pixel_error_render if picture.pixel_error is None else picture.pixel_error,
-        antialias=picture.antialias or own.antialias.lower(),
+        pixel_error=quality.pixel_error(own) if error is None else error,
+        budget=quality.budget(own) if budget is None else budget,
+        overrides=overrides,
     )
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 import bpy
 
 from . import preferences
-from .bridge import camera, ignored, picture, poses, requirements, scene
+from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import last_check, last_render, motion_file, progress, store_path
@@ -82,12 +82,14 @@ class _Run:
         self.scene = depsgraph.scene_eval
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
+        self.coarser = settings.use_levels and settings.coarser_moving_dark
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
         self.settings = Settings(
-            pixel_error=settings.pixel_error_render,
-            antialias=native.Antialias[settings.antialias],
+            pixel_error=quality.pixel_error(settings),
+            overrides=quality.overrides(settings),
+            budget=quality.budget(settings),
             threads=self.scene.render.threads if self.scene.render.threads_mode == "FIXED" else 0,
             program=preferences.povray_program(),
         )
@@ -105,7 +107,7 @@ class _Run:
         layer = picture.layer_of(self.depsgraph)
         self._required()
         still = motion_file.read(self.store)
-        levels = self.settings.pixel_error > 0.0  # else neither they nor groups are asked for
+        levels = self.settings.levels  # else neither they nor groups are asked for
         if levels:
             self._read_poses(still)
         camera_object = self._required()  # as it is in this frame again
@@ -119,12 +121,17 @@ class _Run:
                 raise Refused("nothing_to_render", requirements.NOTHING)
             triangles = progress.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
+            closing = None
+            if levels and self.coarser:
+                closing = self._read_shutter(extraction, model, frame)
+                camera_object = self._required()
             view = camera.extract(camera_object, frame, self.problems)
             camera.report_render(self.scene.render, name_of(self.scene), self.problems)
             size = (frame.width, frame.height)
             left, bottom, *part = picture.border(self.scene.render, *size)
             border = (left, size[1] - bottom - part[1], *part)
-            self.settings = replace(self.settings, border=border)
+            modifiers = self._modifiers(extraction, camera_object, closing)
+            self.settings = replace(self.settings, border=border, modifiers=modifiers)
             made, image = self.work.run(lambda: self._make(model, view, size), self._poll)
             self.problems.extend_native(model.problems())
         self._remember(totals, made)
@@ -132,6 +139,22 @@ class _Run:
         part = picture.cropped(image, left, size[1] - top - part[1], *part)
         picture.hand_over(self.engine, layer, part, self.settings.stamp())
         self._report()
+
+    def _read_shutter(self, extraction, model, frame):
+        """The camera as the shutter closes; tells the model where else things are then."""
+
+        def seen():
+            return camera.extract(self._required(), frame, Problems())
+
+        set_frame = self.engine.frame_set
+        closing = shutter.read(self.depsgraph, set_frame, extraction.moving, model, seen)
+        self.scene = self.depsgraph.scene_eval
+        return closing
+
+    def _modifiers(self, extraction, camera_object, closing):
+        objects = self.depsgraph.objects
+        detail = lenses.detail(objects, lenses.parts_in(extraction), self.problems)
+        return lenses.modifiers(detail, camera_object, self.coarser, closing)
 
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""
@@ -154,7 +177,7 @@ class _Run:
 
     def _make(self, model, view, size):
         """On the worker's thread: no bpy in here."""
-        if self.settings.pixel_error > 0.0:
+        if self.settings.levels:
             try:
                 self.store.mkdir(parents=True, exist_ok=True)
             except OSError as error:

@@ -8,10 +8,12 @@ import traceback
 
 import bpy
 
-from .bridge import camera, check, poses, scene
+from .bridge import camera, check, lenses, poses, scene, shutter
 from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
+from .bridge.settings import SceneSettings
 from .core.native import lodestone_native as native
+from .core.problems import Problems
 from .core.text import sentence, valid
 from .core.work import Stopped
 
@@ -40,6 +42,7 @@ class Request:
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
         self.frames = []
+        self.modifiers = []  # of each camera; None: nothing bends quality there
         self.differences = []
         self.error = None
 
@@ -68,6 +71,8 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
                     if not name and request.without_camera:
                         raise CameraMissing(NO_CAMERA.format(name_of(depsgraph.scene_eval)))
                     request.frames.append(_frame(depsgraph, name, size, extraction.problems))
+                if request.cameras:
+                    request.modifiers = _modifiers(depsgraph, self.frame_set, request, extraction)
                 if request.compare:
                     request.differences = check.compare_occurrences(depsgraph, extraction)
             except BaseException:
@@ -89,6 +94,17 @@ class CameraMissing(Exception):
 def _frame(depsgraph, name, size, problems):
     """(camera, (width, height)) of one picture."""
     evaluated = depsgraph.scene_eval
+    found = _camera(depsgraph, name)
+    frame = camera.Frame.of(evaluated.render)
+    if size is not None:
+        frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
+    camera.report_render(evaluated.render, name_of(evaluated), problems)
+    return camera.extract(found, frame, problems), (frame.width, frame.height)
+
+
+def _camera(depsgraph, name):
+    """The evaluated camera object; raises CameraMissing."""
+    evaluated = depsgraph.scene_eval
     found = evaluated.camera
     if name:  # not by get(), which crashes Blender over a name that is no UTF-8
         found = next((item for item in evaluated.objects if name_of(item) == name), None)
@@ -96,12 +112,29 @@ def _frame(depsgraph, name, size, problems):
         if name:
             raise CameraMissing(f'Scene "{name_of(evaluated)}" has no camera "{valid(name)}"')
         raise CameraMissing(NO_CAMERA.format(name_of(evaluated)))
-    frame = camera.Frame.of(evaluated.render)
-    if size is not None:
-        frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
-    camera.report_render(evaluated.render, name_of(evaluated), problems)
-    found = found.evaluated_get(depsgraph)
-    return camera.extract(found, frame, problems), (frame.width, frame.height)
+    return found.evaluated_get(depsgraph)
+
+
+def _modifiers(depsgraph, frame_set, request, extraction):
+    """Of each camera of a request. What moves is told to the extraction's model."""
+    settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
+    coarser = settings.use_levels and settings.coarser_moving_dark
+    names = [name for name, _ in request.cameras]
+    closing = [None] * len(names)
+    if coarser:
+
+        def seen():
+            asked = request.cameras
+            return [_frame(depsgraph, name, size, Problems())[0] for name, size in asked]
+
+        model, moving = extraction.model, extraction.moving
+        closing = shutter.read(depsgraph, frame_set, moving, model, seen)
+    parts_of = lenses.parts_in(extraction)
+    detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
+    return [
+        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end)
+        for name, end in zip(names, closing)
+    ]
 
 
 @contextlib.contextmanager

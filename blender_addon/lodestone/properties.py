@@ -3,6 +3,7 @@
 
 import bpy
 from bpy.props import (
+    BoolProperty,
     CollectionProperty,
     EnumProperty,
     FloatProperty,
@@ -10,6 +11,9 @@ from bpy.props import (
     PointerProperty,
     StringProperty,
 )
+
+from .lens_properties import LODESTONE_PG_lens
+from .quality_properties import Overrides
 
 ROLES = (
     ("ORDINARY", "Ordinary", "May be drawn as a simpler mesh, a box or an ellipsoid"),
@@ -44,9 +48,10 @@ SCOPES = (
     ("SELECTED", "Selected", "The selected objects and what they instance"),
 )
 ANTIALIAS = (
-    ("OFF", "Off", "One sample per pixel: for drafts"),
-    ("FINAL", "Final", "Adaptive: more samples where the picture needs them"),
-    ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing"),
+    ("AUTOMATIC", "From Pixel Error", "Final up to 1 pixel, then rougher, off from 8 pixels on", 3),
+    ("OFF", "Off", "One sample per pixel: for drafts", 0),
+    ("FINAL", "Final", "Adaptive: more samples where the picture needs them", 1),
+    ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing", 2),
 )
 DEFORMING = (
     (
@@ -130,7 +135,13 @@ class LODESTONE_PG_linked(bpy.types.PropertyGroup):
     role: EnumProperty(items=ROLES, default="ORDINARY", options={"HIDDEN"})
 
 
-class LODESTONE_PG_scene(bpy.types.PropertyGroup):
+class LODESTONE_PG_scene(Overrides, bpy.types.PropertyGroup):
+    use_levels: BoolProperty(
+        name="Levels of Detail",
+        description="Draw simpler levels of what is far or small. Off: the originals, as with a "
+        "Pixel Error of 0",
+        default=True,
+    )
     pixel_error_render: FloatProperty(
         name="Pixel Error",
         description="Largest deviation from the original on the rendered image, in pixels. "
@@ -143,11 +154,48 @@ class LODESTONE_PG_scene(bpy.types.PropertyGroup):
         precision=2,
         step=10,
     )
+    pixel_error_viewport: FloatProperty(
+        name="Pixel Error Viewport",
+        description="The same for what is shown in the viewport, in screen pixels",
+        default=4.0,
+        min=0.0,
+        soft_max=16.0,
+        max=1024.0,
+        subtype="PIXEL",
+        precision=2,
+        step=10,
+    )
+    budget_render: IntProperty(
+        name="Memory Budget",
+        description="What POV-Ray's scene may take, in megabytes: Pixel Error grows until it fits. "
+        "0: any amount",
+        default=0,
+        min=0,
+        soft_max=65536,
+        max=16777216,
+    )
+    budget_viewport: FloatProperty(
+        name="Triangle Budget",
+        description="How many million triangles the viewport may be given: its Pixel Error grows "
+        "until they fit. 0: any number",
+        default=0.0,
+        min=0.0,
+        soft_max=50.0,
+        max=1e6,
+        precision=2,
+        step=10,
+    )
+    coarser_moving_dark: BoolProperty(
+        name="Coarser When Moving or Dark",
+        description="Draw coarser what crosses the picture fast while the shutter is open, and "
+        "what little light falls on, unless it stands before a bright background",
+        default=False,
+    )
     antialias: EnumProperty(
         name="Antialiasing",
         description="How many samples POV-Ray takes in a pixel",
         items=ANTIALIAS,
-        default="FINAL",
+        default="AUTOMATIC",
     )
     scope: EnumProperty(
         name="Build",
@@ -216,6 +264,23 @@ class _Identified:
         update=_decided,
         override={"LIBRARY_OVERRIDABLE"},
     )
+    use_pin_render: BoolProperty(
+        name="Pin in Renders",
+        description="Always draw it with this level in renders, from wherever it is seen",
+        default=False,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    pin_render: IntProperty(
+        name="Pinned Level",
+        description="The number of the level (LOD) that renders always draw it with. Where it has "
+        "no such one, its coarsest",
+        default=0,
+        min=0,
+        max=31,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
     importance: FloatProperty(
         name="Importance",
         description="It and all that is in it are drawn so many times finer than Pixel Error asks "
@@ -238,6 +303,9 @@ class LODESTONE_PG_collection(_Identified, bpy.types.PropertyGroup):
 
 
 class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
+    lens: PointerProperty(
+        type=LODESTONE_PG_lens, options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}
+    )
     loose_parts: EnumProperty(
         name="Loose Parts",
         description="How the unconnected parts of this object's mesh are drawn. It stays one "

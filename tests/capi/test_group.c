@@ -224,6 +224,25 @@ static void test_decided_placements_keep_importance_and_limit(void) {
     lds_model_destroy(model);
 }
 
+static void test_pinned_placements_replace_limits(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_object pair;
+    EXPECT(lds_model_find_object(model, "pair", &pair) == LDS_OK);
+    EXPECT(lds_model_pin_placement(NULL, pair, 0, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_pin_placement(model, cube, 0, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_pin_placement(model, pair, 2, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_pin_placement(model, pair, 0, 2) == LDS_OK);
+    lds_placement found;
+    found.struct_size = sizeof found;
+    EXPECT(lds_model_child(model, pair, 0, &found) == LDS_OK);
+    EXPECT(found.coarsest == 2);
+    EXPECT(lds_model_pin_placement(model, pair, 0, LDS_ANY_LEVEL) == LDS_OK);
+    EXPECT(lds_model_child(model, pair, 0, &found) == LDS_OK);
+    EXPECT(found.coarsest == LDS_ANY_LEVEL);
+    lds_model_destroy(model);
+}
+
 static void test_hidden_placements_hide_all_below(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -348,6 +367,7 @@ int main(void) {
     test_loose_parts_become_clusters_of_one_object();
     test_structuring_keeps_every_occurrence();
     test_decided_placements_keep_importance_and_limit();
+    test_pinned_placements_replace_limits();
     test_hidden_placements_hide_all_below();
     return failures == 0 ? 0 : 1;
 }

@@ -65,6 +65,20 @@ static void test_two_cubes_share_one_file(const char* folder) {
     snprintf(path, sizeof path, "%s/scene.ini", folder);
     EXPECT(count_in(path, "Width=64") == 1 && count_in(path, "Height=36") == 1);
     const uint64_t bytes = report.bytes;
+    options.shadow_error = -1;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    /* A caller of version 1 has none of these. */
+    options.struct_size = offsetof(lds_povray_options, antialias_threshold);
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.bytes == bytes);
+    options.struct_size = sizeof options;
+    options.shadow_error = 0;
+    options.trace_depth = 9;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
+    snprintf(path, sizeof path, "%s/scene.pov", folder);
+    EXPECT(count_in(path, "max_trace_level 9") == 1);
+    options.trace_depth = 0;
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
     EXPECT(report.bytes == bytes && report.written < report.files);
     lds_job job = {sizeof job, 1, 0, 0};

@@ -38,6 +38,25 @@ class Usage(unittest.TestCase):
     def test_a_picture_is_a_png(self):
         self.assertIn(".png", self.refused("render", "a.blend", "--out", "a.jpg"))
 
+    def test_overrides_and_a_budget_travel_to_blender(self):
+        own = ("--shadows=0.5", "--trace-depth=9", "--indirect=0", "--budget=50M")
+        (job,) = parse("render", "a.blend", "--out", "a.png", "--antialias=automatic", *own)
+        (picture,) = FileJob.load(job.dump()).pictures
+        self.assertEqual(picture.overrides, {"shadows": 0.5, "trace_depth": 9, "indirect": 0})
+        self.assertEqual((picture.budget, picture.antialias), (50_000_000, "automatic"))
+        (plain,) = parse("render", "a.blend", "--out", "a.png")
+        self.assertEqual((plain.pictures[0].overrides, plain.pictures[0].budget), ({}, None))
+
+    def test_a_view_has_overrides_of_its_own(self):
+        with tempfile.TemporaryDirectory() as folder:
+            views = Path(folder) / "views.json"
+            entries = [{"out": "a.png"}, {"out": "b.png", "shadows": 4, "budget": "1G"}]
+            views.write_text(json.dumps(entries))
+            (job,) = parse("render", "a.blend", f"--views={views}", "--shadows=2", "--lights=3")
+        found = [(picture.overrides, picture.budget) for picture in job.pictures]
+        self.assertEqual(found[0], ({"shadows": 2.0, "lights": 3.0}, None))
+        self.assertEqual(found[1], ({"shadows": 4.0, "lights": 3.0}, 1_000_000_000))
+
     def test_bad_numbers_are_named(self):
         for option, value in (
             ("--pixel-error", "-1"),
@@ -54,6 +73,13 @@ class Usage(unittest.TestCase):
             ("--max-memory", "8X"),
             ("--max-memory", "0"),
             ("--max-memory", "-1G"),
+            ("--budget", "0"),
+            ("--shadows", "-1"),
+            ("--textures", "nan"),
+            ("--trace-depth", "1.5"),
+            ("--trace-depth", "0"),
+            ("--area-samples", "1000"),
+            ("--indirect", "many"),
         ):
             said = self.refused("render", "a.blend", "--out", "a.png", f"{option}={value}")
             self.assertIn(option, said)

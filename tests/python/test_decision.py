@@ -32,6 +32,15 @@ class Decisions(unittest.TestCase):
     def test_any_level_is_the_librarys(self):
         self.assertEqual(ANY_LEVEL, NATIVE_ANY_LEVEL)
 
+    def test_a_pin_wins_over_a_use_and_that_of_what_instances_it_over_its_own(self):
+        inner = decision("LIMIT", 3, 1.0, 2)
+        self.assertEqual(inner, Decision(1.0, 2, False, True))
+        self.assertEqual(decision("ORIGINAL", 3, 1.0, -1).pinned, False)
+        outer = decision("AUTOMATIC", 1, 1.0, 5)
+        self.assertEqual(inner.inside(outer).coarsest, 5)
+        self.assertEqual(inner.inside(UNDECIDED), inner)
+        self.assertEqual(Decision().inside(outer), outer)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 
 from ..core import identity
-from . import ids
+from . import ids, quality
 from .ids import name_of
 
 _INHERITED = {"rna_type", "name"}
@@ -94,8 +94,10 @@ def _store(item: Any, uid: str) -> None:
 
 def _set_names(settings: Any) -> list[str]:
     """Which of our properties the file holds a value of."""
-    own = (p.identifier for p in settings.bl_rna.properties if p.identifier not in _INHERITED)
-    return [name for name in own if settings.is_property_set(name)]
+    own = {p.identifier for p in settings.bl_rna.properties} - _INHERITED
+    computed = {name for name in own if quality.OWN + name in own}  # they always count as set
+    found = [name for name in sorted(own - computed) if settings.is_property_set(name)]
+    return [name for name in found if name != "lens" or _set_names(settings.lens)]
 
 
 def decided(item: Any) -> bool:
@@ -124,10 +126,17 @@ def copy(source: Any, target: Any) -> None:
         if name != "uid":
             before.property_unset(name)
     for name in decided_here:
-        if name != "uid":
+        if name == "lens":
+            _copy_group(settings.lens, target.lodestone.lens)
+        elif name != "uid":
             setattr(target.lodestone, name, getattr(settings, name))
     target.update_tag()
     drop_empty(target)
+
+
+def _copy_group(source: Any, target: Any) -> None:
+    for name in _set_names(source):
+        setattr(target, name, getattr(source, name))
 
 
 def drop_empty(item: Any) -> None:

@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..core import identity
+from ..core.decision import Decision
 from . import ids
 from .ids import name_of
 from .instances import Context, Emitted, Entry, offset
@@ -15,6 +16,7 @@ from .leaves import HAIR
 from .listed import Rows, rows
 from .motion import Motion
 from .placements import Placements
+from .shutter import Moving
 
 IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
@@ -116,6 +118,7 @@ class Aside(NamedTuple):
 
     changing: Placements
     apart: Placements
+    movers: list[Any]  # originals, of each of `changing`
 
 
 _ASIDE_NAMES = {"changing": "in motion", "apart": "excluded"}
@@ -135,24 +138,28 @@ class Groups:
         self._emitters: dict[Any, list[tuple[list[Emitted], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
         self.parts: dict[ids.Key, list[Any]] = defaultdict(list)  # what a datablock became
+        self.moving: list[Moving] = []
         self.collections: dict[Any, None] = {}  # their groups that stay as they are in every frame
 
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
         rest = dict(context.entries)
-        aside = Aside(Placements(), Placements())
+        aside = Aside(Placements(), Placements(), [])
         placements, anew = self._members(context, branch, rest, aside)
         for entry in rest.values():  # shown, but in no branch: never lose it
             extra = self._entry(entry)
             if extra:
                 self.unplaced.append(entry.name)
                 placements.extend(extra)
-        for what, lifted in aside._asdict().items():
+        for what in _ASIDE_NAMES:
+            lifted = getattr(aside, what)
             if lifted:
                 uid = identity.stable_id(ids.scene_uid(branch.name), what)
                 name = f"{branch.name} {_ASIDE_NAMES[what]}"
                 group = self._intern(uid, name, False, lifted, what == "changing")
                 placements.add(group, IDENTITY, name)
+                if what == "changing":
+                    self._note_moving(group, lifted, aside.movers)
         return self._group(branch, placements, anew)
 
     def _members(
@@ -182,6 +189,7 @@ class Groups:
             made, changes = self._entry(entry), self._changes(entry)
             if in_scene and (changes or entry.decision.apart):
                 (aside.changing if changes else aside.apart).extend(made)
+                aside.movers.extend([original] * (len(made) if changes else 0))
                 for above in self._above:
                     if above.collection is not None:
                         self.parts[ids.key_of("collection", above.collection)] += made.objects
@@ -190,6 +198,11 @@ class Groups:
                 anew = anew or changes
         self._above.pop()
         return placements, anew
+
+    def _note_moving(self, group: Any, lifted: Placements, movers: list[Any]) -> None:
+        for position, item in enumerate(movers):
+            place = tuple(lifted.transforms[12 * position : 12 * position + 12])
+            self.moving.append(Moving(group, position, item, place))
 
     def _changes(self, entry: Entry) -> bool:
         """Whether an animation moves it, or makes another thing of it or of what it emits."""
@@ -254,6 +267,12 @@ class Groups:
             self.parts[ids.key_of("collection", branch.collection)].append(group)
         return group
 
+    def _decide(self, group: Any, position: int, decision: Decision) -> None:
+        model = self._model
+        model.decide_placement(group, position, decision.importance, decision.coarsest)
+        if decision.pinned:
+            model.pin_placement(group, position, decision.coarsest)
+
     def _intern(
         self,
         uid: str,
@@ -275,8 +294,6 @@ class Groups:
                 placements.hidden,
             )
             for position, decision in placements.decisions.items():
-                self._model.decide_placement(
-                    group, position, decision.importance, decision.coarsest
-                )
+                self._decide(group, position, decision)
             self._made[key] = group
         return group

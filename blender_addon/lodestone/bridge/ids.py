@@ -93,7 +93,8 @@ def decision_of(datablock: Any) -> Decision:
     settings = settings_of(datablock)
     if settings is None:
         return UNDECIDED
-    return decision(settings.use, settings.coarsest, settings.importance)
+    pin = settings.pin_render if settings.use_pin_render else -1
+    return decision(settings.use, settings.coarsest, settings.importance, pin)
 
 
 def loose_parts(datablock: Any) -> str:

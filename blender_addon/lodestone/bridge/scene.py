@@ -20,6 +20,7 @@ from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
 from .listed import Listed
 from .motion import Motion, Still
+from .shutter import Moving
 from .users import Users
 from .visibility import Visibility
 
@@ -35,6 +36,7 @@ class Extraction:
     lights: int = 0
     parts: dict[ids.Key, list[Any]] = field(default_factory=dict)
     users: dict[Subject, tuple[Subject, ...]] = field(default_factory=dict)  # by material
+    moving: list[Moving] = field(default_factory=list)  # of what an animation moves
 
     def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
         """The model's objects that these datablocks became; [] (everything) for None."""
@@ -98,6 +100,7 @@ def _extract(
         len(walk.found.lights),
         dict(tree.parts),
         walk.users.found(),
+        tree.moving,
     )
 
 

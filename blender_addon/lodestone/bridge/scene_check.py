@@ -14,7 +14,7 @@ from typing import Any
 
 from ..core.last_check import Check
 from ..core.problems import ERROR, Problems
-from . import camera, requirements, scene, strands
+from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
 from .ids import name_of
 from .images import ImageHeads
@@ -46,6 +46,7 @@ def check(
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
     camera.report_render(evaluated.render, name_of(evaluated), problems)
     problems.keep(walk.users.concerns)
+    lenses.detail(evaluated.objects, lambda collection: (), problems)
     return Check(tuple(problems), walk.users.found())
 
 

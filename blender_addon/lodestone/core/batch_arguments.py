@@ -9,7 +9,7 @@ from pathlib import Path
 from . import batch_values
 from .batch_jobs import FileJob, PictureRequest
 from .batch_profile import read_profile
-from .batch_views import ANTIALIAS, VIEW_KEYS, read_views
+from .batch_views import ANTIALIAS, NUMBERS, VIEW_KEYS, overrides_of, read_views
 from .file_names import LONGEST, fitting, folder_name
 
 KEEP = ("failed", "never", "always")
@@ -102,6 +102,13 @@ def _add_picture(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--size", type=batch_values.size, metavar="WxH",
                       help="default: the scene's")  # fmt: skip
     verb.add_argument("--antialias", choices=ANTIALIAS, help="default: the file's")
+    for control in NUMBERS:
+        verb.add_argument("--" + control.key.replace("_", "-"), type=batch_values.control(control),
+                          metavar="PX" if control.unit else "N",
+                          help=f"overrides {control.label}; default: the file's")  # fmt: skip
+    verb.add_argument("--budget", type=batch_values.memory, metavar="SIZE", help="50M, 2G: what "
+                      "POV-Ray's scene may take; the Pixel Error grows until it fits"
+                      )  # fmt: skip
     verb.add_argument("--false-color", action=BooleanOptionalAction, default=False,
                       help="paint by kind and LOD number")  # fmt: skip
     verb.add_argument("--covered-only", action=BooleanOptionalAction, default=False,
@@ -192,6 +199,8 @@ def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> Pictur
         camera=options.camera,
         pixel_error=options.pixel_error,
         antialias=options.antialias,
+        overrides=overrides_of(vars(options)),
+        budget=options.budget,
         false_color=options.false_color,
         covered_only=options.covered_only,
         size=options.size,

@@ -5,7 +5,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +21,16 @@ class PictureRequest:
     camera: str = ""
     pixel_error: float | None = None
     antialias: str | None = None
+    overrides: dict[str, float] = field(default_factory=dict)  # of core/quality_tree.py's controls
+    budget: int | None = None  # bytes of POV-Ray's scene
     false_color: bool = False
     covered_only: bool = False
     size: tuple[int, int] | None = None
+
+    @property
+    def levels(self) -> bool:
+        """Whether anything but originals may be drawn."""
+        return self.pixel_error > 0.0 or bool(self.budget)
 
     def for_frame(self, frame: int) -> "PictureRequest":
         """out.png -> out_0001.png"""

@@ -4,6 +4,9 @@
 import argparse
 import math
 import re
+from collections.abc import Callable
+
+from .quality_tree import Control
 
 _MAX_SIZE = 65536
 
@@ -53,6 +56,23 @@ def pixels(text: str) -> float:
     value = number(text)
     if not 0.0 <= value <= 1024.0:
         raise argparse.ArgumentTypeError(f"{text} is not between 0 and 1024 pixels")
+    return value
+
+
+def control(wanted: Control) -> Callable[[str], float]:
+    """The values that a control of quality may be given."""
+
+    def value(text: str) -> float:
+        found = number(text)
+        if not wanted.least <= found <= wanted.most:
+            limits = f"{wanted.least:g} and {wanted.most:g} {wanted.unit}".rstrip()
+            raise argparse.ArgumentTypeError(f"{text} is not between {limits}")
+        if isinstance(wanted.least, int):
+            if found != int(found):
+                raise argparse.ArgumentTypeError(f"{text} is no whole number")
+            return int(found)
+        return found
+
     return value
 
 

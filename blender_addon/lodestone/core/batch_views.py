@@ -4,17 +4,21 @@
 import argparse
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import batch_values
+from . import batch_values, quality_tree
 from .batch_jobs import PictureRequest
 
-ANTIALIAS = ("off", "final", "reference")
+ANTIALIAS = ("automatic", "off", "final", "reference")
+NUMBERS = tuple(control for control in quality_tree.CONTROLS if control.least is not None)
 VIEW_KEYS = (
     "camera",
     "pixel_error",
     "antialias",
+    *(control.key for control in NUMBERS),
+    "budget",
     "out",
     "false_color",
     "covered_only",
@@ -62,12 +66,26 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
             camera=camera,
             pixel_error=None if error is None else batch_values.pixels(str(error)),
             antialias=antialias,
+            overrides=overrides_of({**vars(options), **entry}),
+            budget=budget_of({**vars(options), **entry}),
             false_color=bool(entry.get("false_color", options.false_color)),
             covered_only=bool(entry.get("covered_only", options.covered_only)),
             size=chosen,
         )
     except argparse.ArgumentTypeError as error:
         raise ValueError(f"{where}: {error}") from None
+
+
+def overrides_of(values: Mapping[str, Any]) -> dict[str, float]:
+    """The controls that are said, by key. Raises argparse.ArgumentTypeError."""
+    said = ((control, values.get(control.key)) for control in NUMBERS)
+    return {c.key: batch_values.control(c)(str(v)) for c, v in said if v is not None}
+
+
+def budget_of(values: Mapping[str, Any]) -> int | None:
+    """Bytes. Raises argparse.ArgumentTypeError."""
+    said = values.get("budget")
+    return None if said is None else batch_values.memory(str(said))
 
 
 def _possible(name: str) -> bool:

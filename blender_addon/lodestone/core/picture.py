@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import identity, locked_folder, report
+from . import identity, locked_folder, quality_tree, report
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -23,19 +23,34 @@ POVRAY_KINDS = sum(
 
 @dataclass(frozen=True)
 class Settings:
-    """How a picture is made; pixel_error 0 draws the originals."""
+    """How a picture is made; pixel_error 0 draws the originals. `overrides`: of the controls below
+    it, as quality_tree.quality() takes them. `budget`: what POV-Ray's scene may take, in bytes; 0:
+    any number."""
 
     pixel_error: float = 1.0
-    antialias: int = native.Antialias.FINAL
+    overrides: Mapping[str, quality_tree.Value] = field(default_factory=dict)
+    budget: int = 0
+    modifiers: Any = None  # native.Modifiers; None: nothing bends quality
     false_color: bool = False
     covered_only: bool = False
     threads: int = 0
     program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
     border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
 
+    @property
+    def levels(self) -> bool:
+        """Whether anything but originals may be drawn."""
+        return self.pixel_error > 0.0 or self.budget > 0
+
+    @property
+    def quality(self) -> quality_tree.Quality:
+        return quality_tree.quality(self.pixel_error, self.overrides)
+
     def povray(self) -> Any:
+        quality = self.quality
         return native.PovrayOptions(
-            antialias=self.antialias,
+            antialias=native.Antialias[quality.antialias],
+            **quality.povray(),
             false_color=self.false_color,
             covered_only=self.covered_only,
             threads=self.threads,
@@ -43,12 +58,22 @@ class Settings:
         )
 
     def view(self, camera: Any, size: tuple[int, int]) -> Any:
-        return native.View(camera, size[0], size[1], self.pixel_error, POVRAY_KINDS, self.border)
+        return native.View(
+            camera, *size, self.pixel_error, POVRAY_KINDS, self.border, self.modifiers
+        )
+
+    def cut(self, model: Any, camera: Any, size: tuple[int, int], job: Any = None) -> Any:
+        """The cut of a view, within the budget if there is one: its `pixel_error` may then be
+        larger."""
+        budget = native.Budget(bytes=self.budget) if self.budget else None
+        cut = native.Cut(model, self.view(camera, size), job, budget)
+        cut.view = replace(cut.view, pixel_error=cut.pixel_error)
+        return cut
 
     def stamp(self) -> dict[str, str]:
         """What a picture's file says about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
-        shown = (self.pixel_error, int(self.antialias), self.false_color, self.covered_only)
+        shown = (*self.quality, self.budget, self.false_color, self.covered_only)
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
@@ -71,10 +96,13 @@ def cut_and_export(
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
     folder.mkdir(parents=True, exist_ok=True)
-    with native.Cut(model, settings.view(camera, size), job) as cut:
+    with settings.cut(model, camera, size, job) as cut:
         parts = {"cut": report.cut_part(cut.summary())}
+        if settings.budget:
+            parts["cut"].update(pixel_error=cut.pixel_error, fits=cut.fits)
         in_use = levels_in_use(model, cut)
-        exported = native.povray_export(cut, str(folder), settings.povray(), job)
+        shaded = replace(settings, pixel_error=cut.pixel_error)  # as roughly as it is drawn
+        exported = native.povray_export(cut, str(folder), shaded.povray(), job)
     parts["export"] = report.export_part(exported)
     return parts, in_use
 

@@ -33,6 +33,11 @@ class Store:
         except native.LodestoneError as error:
             self.problem = str(error)
 
+    @property
+    def model(self) -> Any:
+        """All of it, the meshes on the disk; None when there is none."""
+        return self._model
+
     def levels(self, uid: str) -> tuple[Level, ...]:
         """Finest first; () when the store knows no such thing."""
         if self._model is None:

@@ -8,7 +8,11 @@ ENGINE = "LODESTONE_POVRAY"
 _MODULES = (
     "sampling",
     "simplify",
+    "render_levels",
+    "view_statistics",
+    "overrides",
     "levels",
+    "lens",
     "problems",
     "film",
     "visibility",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Levels of Detail in Properties > Render, Object and Collection."""
+"""Levels of Detail in Properties > Object and Collection."""
 
 import bpy
 from bpy.types import Panel
@@ -7,7 +7,6 @@ from bpy.types import Panel
 from ..bridge import decisions, ids
 from ..core import last_render, progress, store_levels, store_path
 from ..core.native import lodestone_native as native
-from . import EnginePanel, presets
 
 _KINDS = {
     native.Kind.MESH: "Simplified",
@@ -18,72 +17,19 @@ _KINDS = {
 }
 
 
-class LODESTONE_RENDER_PT_levels(Panel):
-    bl_label = "Levels of Detail"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw_header_preset(self, context):
-        presets.LODESTONE_PT_levels_presets.draw_panel_header(self.layout)
-
-    def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        settings = context.scene.lodestone
-        layout.prop(settings, "pixel_error_render", text="Pixel Error")
-        layout.prop(settings, "deforming")
-        layout.prop(settings, "build_on_render")
-        layout.prop(settings, "structure")
-        layout.prop(settings, "scope")
-        row = layout.row(align=True)
-        row.operator("lodestone.update_levels", icon="FILE_REFRESH")
-        row.operator("lodestone.clear_levels", text="", icon="X")
-
-
-class LODESTONE_RENDER_PT_levels_view(EnginePanel, Panel):
-    bl_label = "In This View"
-    bl_parent_id = "LODESTONE_RENDER_PT_levels"
-    bl_context = "render"
-
-    def draw(self, context):
-        layout = self.layout
-        render = last_render.get(context.scene.name)
-        if render is None:
-            layout.label(text="Render a picture to see what it uses")
-            return
-        split = layout.split(factor=0.4)
-        names, values = split.column(align=True), split.column(align=True)
-        names.label(text="Triangles")
-        before, after = progress.count(render.triangles_placed), progress.count(render.triangles)
-        share = progress.percent(render.triangles, render.triangles_placed)
-        values.label(text=f"{before} \N{RIGHTWARDS ARROW} {after}   {share}")
-        names.label(text="Meshes, Boxes, Ellipsoids, Composites")
-        words = ("mesh", "box", "ellipsoid", "composite")
-        values.label(text=", ".join(f"{render.kinds[word]:,}" for word in words))
-        names.label(text="Largest Error")
-        if render.largest_error_name:
-            text = f"{render.largest_error_px:.2f} px   {render.largest_error_name}"
-            values.operator(
-                "lodestone.select_object", text=text, emboss=False
-            ).path = render.largest_error_name
-        else:
-            values.label(text=f"{render.largest_error_px:.2f} px")
-        if render.without_levels:
-            names.label(text="Without Levels Yet")
-            values.label(text=f"{render.without_levels:,} (Update Levels makes them)")
-
-
 def _draw_decisions(layout, context, item):
     settings = item.lodestone
     column = layout.column()
     column.prop(settings, "use")
     if settings.use == "LIMIT":
         column.prop(settings, "coarsest", text="LOD")
+    row = column.row(heading="Pin in Renders")
+    row.prop(settings, "use_pin_render", text="")
+    sub = row.row()
+    sub.active = settings.use_pin_render
+    sub.prop(settings, "pin_render", text="LOD")
     sub = column.column()
-    sub.active = settings.use in {"AUTOMATIC", "LIMIT"}
+    sub.active = settings.use in {"AUTOMATIC", "LIMIT"} and not settings.use_pin_render
     sub.prop(settings, "importance")
     column.prop(settings, "role")
     if getattr(item, "type", "") == "MESH":
@@ -160,25 +106,13 @@ class LODESTONE_COLLECTION_PT_levels(Panel):
         self.layout.operator("lodestone.auto_structure", icon="OUTLINER_COLLECTION")
 
 
-_CLASSES = (
-    LODESTONE_RENDER_PT_levels,
-    LODESTONE_RENDER_PT_levels_view,
-    LODESTONE_OBJECT_PT_levels,
-    LODESTONE_COLLECTION_PT_levels,
-)
+_CLASSES = (LODESTONE_OBJECT_PT_levels, LODESTONE_COLLECTION_PT_levels)
 _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
 
-def register():
-    presets.register()
-    try:
-        _register()
-    except Exception:
-        presets.unregister()
-        raise
+register = _register
 
 
 def unregister():
     _unregister()
-    presets.unregister()
     store_levels.forget()

@@ -8,19 +8,33 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.types import Operator, Panel
 
-# Name: Pixel Error, antialiasing
+from ..bridge import quality
+from ..core import quality_tree
+
+# Name: Pixel Error, from which everything else follows
 PRESETS = {
-    "DRAFT": ("Draft", 8.0, "OFF"),
-    "PREVIEW": ("Preview", 2.0, "FINAL"),
-    "FINAL": ("Final", 1.0, "FINAL"),
-    "EXACT": ("Exact", 0.0, "FINAL"),
+    "DRAFT": ("Draft", 8.0),
+    "PREVIEW": ("Preview", 2.0),
+    "FINAL": ("Final", 1.0),
+    "EXACT": ("Exact", 0.0),
 }
 _WORDS = {
-    "DRAFT": "8 pixels, no antialiasing: the fastest picture",
-    "PREVIEW": "2 pixels: for judging light and composition",
-    "FINAL": "1 pixel: differences are hard to see",
-    "EXACT": "0: the originals, as slow as they are",
+    "DRAFT": "8 pixels, no antialiasing, sharp shadows: the fastest. Overrides are set back",
+    "PREVIEW": "2 pixels: for judging light and composition. Overrides are set back",
+    "FINAL": "1 pixel: differences are hard to see. Overrides are set back",
+    "EXACT": "0: the originals, as slow as they are. Overrides are set back",
 }
+# What a preset of the user's own keeps
+_KEPT = (
+    "use_levels",
+    "pixel_error_render",
+    "pixel_error_viewport",
+    "budget_render",
+    "budget_viewport",
+    "coarser_moving_dark",
+    "antialias",
+    *(quality.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
+)
 
 
 class LODESTONE_OT_levels_preset(Operator):
@@ -39,7 +53,10 @@ class LODESTONE_OT_levels_preset(Operator):
 
     def execute(self, context):
         settings = context.scene.lodestone
-        _, settings.pixel_error_render, settings.antialias = PRESETS[self.preset]
+        settings.use_levels = True
+        _, settings.pixel_error_render = PRESETS[self.preset]
+        for control in quality_tree.CONTROLS:
+            quality.inherit(settings, control.key)
         return {"FINISHED"}
 
 
@@ -50,7 +67,7 @@ class LODESTONE_OT_levels_preset_add(AddPresetBase, Operator):
     preset_menu = "LODESTONE_PT_levels_presets"
     preset_subdir = "lodestone/levels"
     preset_defines = ["settings = bpy.context.scene.lodestone"]
-    preset_values = ["settings.pixel_error_render", "settings.antialias"]
+    preset_values = [f"settings.{name}" for name in _KEPT]
 
 
 class LODESTONE_PT_levels_presets(PresetPanel, Panel):

@@ -4,7 +4,10 @@
 import bpy
 from bpy.types import Panel
 
+from ..bridge import quality
+from ..core import quality_tree
 from . import EnginePanel
+from .overrides import draw_control
 
 
 class LODESTONE_RENDER_PT_sampling(EnginePanel, Panel):
@@ -15,7 +18,9 @@ class LODESTONE_RENDER_PT_sampling(EnginePanel, Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(context.scene.lodestone, "antialias")
+        settings = context.scene.lodestone
+        control = quality_tree.CONTROL["antialias"]
+        draw_control(layout, settings, control, settings.antialias != quality.AUTOMATIC)
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_sampling,))

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What bends quality, from Blender: detail lenses are Empties, screen lenses are the camera's."""
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from ..core.native import lodestone_native as native
+from ..core.problems import WARNING, Problems
+from . import ids
+from .ids import name_of
+from .listed import rows
+
+DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
+MOST = 1024  # what the backend takes
+MOST_FILTERED = 64
+
+# The model's objects that a collection became
+PartsOf = Callable[[Any], Iterable[Any]]
+
+
+def is_lens(item: Any) -> bool:
+    if item.type != "EMPTY" or not ids.has_settings(item):
+        return False
+    return item.lodestone.lens.enabled
+
+
+def detail(
+    objects: Iterable[Any], parts_of: PartsOf, problems: Problems
+) -> tuple[native.Lens, ...]:
+    """Of the lenses among these objects (evaluated, or originals for the viewport's state) that
+    renders see, in their order; what makes no sense is left out and named."""
+    found: list[native.Lens] = []
+    filtered, too_many = 0, 0
+    for item in objects:
+        if item.type != "EMPTY":
+            continue
+        original = item.original
+        if not is_lens(original) or original.hide_render:
+            continue
+        lens = original.lodestone.lens
+        listed = lens.filter != "ALL"
+        if listed and lens.collection is None:
+            text = f'Lens "{name_of(item)}" works on a collection, but none is chosen'
+            problems.add(name_of(item), WARNING, "lens_without_collection", text, "object")
+            continue
+        place = rows(item.matrix_world)
+        if not all(map(math.isfinite, place)):
+            text = f'Lens "{name_of(item)}" has no finite place'
+            problems.add(name_of(item), WARNING, "lens_not_finite", text, "object")
+            continue
+        if len(found) >= MOST or (listed and filtered >= MOST_FILTERED):
+            too_many += 1
+            continue
+        filtered += listed
+        found.append(
+            native.Lens(
+                name=name_of(item),
+                transform=tuple(place),
+                shape=DISPLAY.get(item.empty_display_type, native.LensShape.SPHERE),
+                radius=item.empty_display_size,
+                strength=lens.strength,
+                falloff=lens.falloff,
+                filter=native.LensFilter[lens.filter],
+                objects=tuple(parts_of(lens.collection)) if listed else (),
+            )
+        )
+    if too_many:
+        text = (
+            f"{too_many:,} detail lenses have no effect: at most {MOST:,} count, "
+            f"{MOST_FILTERED} of them with a collection"
+        )
+        problems.add("", WARNING, "lenses_too_many", text)
+    return tuple(found)
+
+
+def screen(camera: Any) -> tuple[native.ScreenLens, ...]:
+    """Of a camera object; as many as the backend takes."""
+    settings = ids.settings_of(camera.data.original)
+    if settings is None:
+        return ()
+    used = [lens for lens in settings.screen_lenses if lens.enabled]
+    return tuple(
+        native.ScreenLens(
+            name=name_of(lens),
+            center=(lens.x, 1.0 - lens.y),
+            radius=lens.radius,
+            strength=lens.strength,
+            falloff=lens.falloff,
+        )
+        for lens in used[:MOST]
+    )
+
+
+def modifiers(
+    lenses: tuple[native.Lens, ...],
+    camera: Any,
+    coarser: bool,
+    closing: Any | None = None,
+) -> native.Modifiers | None:
+    """All together, of a camera object; None: nothing bends quality. `coarser`: when moving or
+    dark. `closing`: the camera as the shutter closes, None: it rests."""
+    screen_lenses = screen(camera)
+    if not (lenses or screen_lenses or coarser):
+        return None
+    return native.Modifiers(
+        lenses=lenses,
+        screen_lenses=screen_lenses,
+        when_moving=coarser,
+        when_dark=coarser,
+        closing=closing,
+    )
+
+
+def parts_in(extraction: Any) -> PartsOf:
+    """Of a scene that was just read."""
+
+    def parts_of(collection: Any) -> Iterable[Any]:
+        return extraction.parts.get(ids.key_of("collection", collection), ())
+
+    return parts_of
+
+
+def parts_stored(model: Any) -> PartsOf:
+    """Of a model read from a store."""
+
+    def parts_of(collection: Any) -> Iterable[Any]:
+        found = model.find_object(ids.uid_of("collection", collection))
+        return () if found is None else (found,)
+
+    return parts_of

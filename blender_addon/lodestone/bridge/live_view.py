@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the scene's camera would see of the levels that were built, as the scene is now: for panels,
+which follow lenses, cameras and settings while they are changed. Objects are where they were when
+levels were last updated."""
+
+from collections.abc import Hashable
+from typing import Any
+
+import bpy
+
+from ..core import store_levels, store_path, view_statistics
+from ..core.native import lodestone_native as native
+from ..core.picture import Settings
+from ..core.problems import Problems
+from . import camera as cameras
+from . import lenses, quality, viewport_view
+
+_chooser = view_statistics.Chooser()
+
+
+def statistics(context: Any) -> view_statistics.Statistics | str:
+    """Of the picture that F12 would make; else why there are none."""
+    scene = context.scene
+    store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+    if store.problem:
+        return f"Levels cannot be read: {store.problem}"
+    if store.model is None:
+        return "No levels yet: Update Levels builds them"
+    item = scene.camera
+    if item is None or item.type != "CAMERA":
+        return "Set a scene camera"
+    frame = cameras.Frame.of(scene.render)
+    seen = cameras.extract(item, frame, Problems())
+    settings = settings_of(scene, store.model)
+    size = (frame.width, frame.height)
+    key = (seen, size, _hashable(settings))
+    return _chooser.statistics(store.model, key, seen, size, settings)
+
+
+def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
+    """Of what its Pixel Error and budget of triangles give the largest 3D view; None: there is no
+    view or no store."""
+    scene = context.scene
+    store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+    seen = viewport_view.of_screen(context.screen)
+    if store.model is None or seen is None:
+        return None
+    own = scene.lodestone
+    parts_of = lenses.parts_stored(store.model)
+    detail = lenses.detail(lens_objects(scene), parts_of, Problems())
+    settings = Settings(
+        pixel_error=own.pixel_error_viewport if own.use_levels else 0.0,
+        modifiers=native.Modifiers(lenses=detail) if detail else None,
+    )
+    triangles = round(1e6 * own.budget_viewport) if own.use_levels else 0
+    key = (*seen, triangles, _hashable(settings))
+    return _chooser.statistics(store.model, key, *seen, settings, triangles, "viewport")
+
+
+def settings_of(scene: Any, model: Any) -> Settings:
+    """As F12 has them, but for motion, which takes another frame to see."""
+    own = scene.lodestone
+    parts_of = lenses.parts_stored(model)
+    detail = lenses.detail(lens_objects(scene), parts_of, Problems())
+    coarser = own.use_levels and own.coarser_moving_dark
+    return Settings(
+        pixel_error=quality.pixel_error(own),
+        overrides=quality.overrides(own),
+        budget=quality.budget(own),
+        modifiers=lenses.modifiers(detail, scene.camera, coarser),
+    )
+
+
+def lens_objects(scene: Any) -> list[Any]:
+    return [item for item in scene.objects if item.type == "EMPTY" and lenses.is_lens(item)]
+
+
+def _hashable(settings: Settings) -> Hashable:
+    """Equal for settings that choose the same."""
+    modifiers = settings.modifiers
+    bent: Hashable = None
+    if modifiers is not None:
+        bent = (
+            tuple(
+                (*(lens.transform), lens.shape, lens.radius, lens.strength, lens.falloff,
+                 lens.filter, tuple(part.key for part in lens.objects))
+                for lens in modifiers.lenses
+            ),
+            modifiers.screen_lenses,
+            modifiers.when_dark,
+        )  # fmt: skip
+    return (settings.pixel_error, settings.budget, bent)
+
+
+def forget() -> None:
+    global _chooser
+    _chooser = view_statistics.Chooser()

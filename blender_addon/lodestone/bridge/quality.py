@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene's controls of quality, between its settings and core/quality_tree.py."""
+
+from typing import Any
+
+from ..core import quality_tree
+
+AUTOMATIC = "AUTOMATIC"  # the Antialiasing that inherits
+OWN = "own_"  # what is stored of a control with a number: below 0 it inherits
+
+
+def overrides(settings: Any) -> dict[str, quality_tree.Value]:
+    """Those of `scene.lodestone` (or SceneSettings) that do not inherit, by key."""
+    found: dict[str, quality_tree.Value] = {}
+    for control in quality_tree.CONTROLS:
+        if control.least is None:
+            value = getattr(settings, control.key)
+            if value != AUTOMATIC:
+                found[control.key] = value
+        elif getattr(settings, OWN + control.key) >= 0:
+            found[control.key] = getattr(settings, OWN + control.key)
+    return found
+
+
+def pixel_error(settings: Any) -> float:
+    """Of renders: 0, the originals, where Levels of Detail are switched off."""
+    return settings.pixel_error_render if settings.use_levels else 0.0
+
+
+def of_scene(settings: Any) -> quality_tree.Quality:
+    """What a render is made with."""
+    return quality_tree.quality(pixel_error(settings), overrides(settings))
+
+
+def budget(settings: Any) -> int:
+    """Of renders, in bytes; 0: none."""
+    return settings.budget_render * 1_000_000 if settings.use_levels else 0
+
+
+def inherit(settings: Any, key: str) -> None:
+    """Takes an override back."""
+    control = quality_tree.CONTROL[key]
+    settings.property_unset(key if control.least is None else OWN + key)
+
+
+def inherited_word(settings: Any, key: str) -> str:
+    """What the panel says a control would have, as text."""
+    value = quality_tree.inherits(key, pixel_error(settings), overrides(settings))
+    if isinstance(value, str):
+        return value.title()
+    unit = quality_tree.CONTROL[key].unit
+    number = f"{value:.2f}" if isinstance(value, float) else str(value)
+    return f"{number} {unit}".strip()

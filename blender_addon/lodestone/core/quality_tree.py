@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The controls of a picture's quality as a tree: each takes its value from its parent unless it is
+overridden, and at its root is one number, Pixel Error. So a rough model is also shaded roughly.
+
+source: dissertation, Figure 2.20
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, Union
+
+Value = Union[float, int, str]
+
+ROOT = "pixel_error"
+MOST_PIXELS = 1024.0
+# Of Antialiasing: one sample a pixel; more where neighbors differ; 16 everywhere
+OFF, ADAPTIVE, REFERENCE = "OFF", "FINAL", "REFERENCE"
+_FEWEST_PIXELS = 0.25  # nothing finer shows
+_DRAFT = 8.0  # pixels
+
+
+class Sampling(NamedTuple):
+    """What Antialiasing hands on: its kind, and how many times rougher than final it is (1 where
+    it is overridden)."""
+
+    kind: str
+    rough: float
+
+
+class Control(NamedTuple):
+    """`inherited(parent)`: its value below a parent's. `least` and `most` of what may be asked for;
+    None for words."""
+
+    key: str
+    label: str
+    parent: str
+    inherited: Callable[[Any], Value | Sampling]
+    unit: str
+    least: float | None
+    most: float | None
+    description: str
+
+
+def _same(error: float) -> float:
+    return error
+
+
+def _halvings(error: float) -> int:
+    """How often 1 is doubled to reach it, rounded up; 0 below."""
+    return math.ceil(math.log2(error)) if error > 1.0 else 0
+
+
+def _antialiasing(error: float) -> Sampling:
+    return Sampling(OFF if error >= _DRAFT else ADAPTIVE, max(1.0, error))
+
+
+def _area_samples(sampling: Sampling) -> int:
+    if sampling.kind == OFF:
+        return 1
+    return (16 >> min(_halvings(sampling.rough), 3)) + 1
+
+
+def _indirect(sampling: Sampling) -> int:
+    if sampling.kind == REFERENCE:
+        return 64
+    return 12 if sampling.kind == OFF else max(12, 24 - 4 * _halvings(sampling.rough))
+
+
+def _trace_depth(error: float) -> int:
+    return max(2, 5 - _halvings(error))
+
+
+CONTROLS = (
+    Control(
+        "textures", "Textures", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "How much image textures may be blurred on the picture, in pixels: larger ones than that "
+        "needs are made smaller. 0 keeps them as they are",
+    ),
+    Control(
+        "shadows", "Shadows", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "Soft edges of shadows that are narrower than this on the picture are drawn sharp, in "
+        "pixels",
+    ),
+    Control(
+        "reflections", "Reflections", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "Reflections and refractions that change the picture by less than so many steps of 255 "
+        "are left out",
+    ),
+    Control(
+        "trace_depth", "Trace Depth", "reflections", _trace_depth, "", 1, 50,
+        "How many mirrors or bodies of glass, one behind the other, a ray is followed through",
+    ),
+    Control(
+        "lights", "Lights", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "Area lights so far away that their size shows less than this on the picture are drawn as "
+        "points, in pixels. 0 keeps all their sizes",
+    ),
+    Control(
+        "antialias", "Antialiasing", ROOT, _antialiasing, "", None, None,
+        "How many samples POV-Ray takes in a pixel",
+    ),
+    Control(
+        "area_samples", "Area Samples", "antialias", _area_samples, "", 1, 129,
+        "Rays along the edge of a lamp, from which soft shadows are made; made 2, 4, 8 ... and one "
+        "more. 1 is a sharp shadow",
+    ),
+    Control(
+        "indirect", "Indirect", "antialias", _indirect, "", 0, 1024,
+        "How many lights stand for the image around the scene: more give finer shadows of the sky. "
+        "0: its light is the same everywhere, without shadows",
+    ),
+)  # fmt: skip
+CONTROL = {control.key: control for control in CONTROLS}
+
+
+class Quality(NamedTuple):
+    """The value of every control."""
+
+    pixel_error: float
+    textures: float
+    shadows: float
+    reflections: float
+    trace_depth: int
+    lights: float
+    antialias: str
+    antialias_threshold: float
+    antialias_depth: int
+    area_samples: int
+    indirect: int
+
+    def povray(self) -> dict[str, float]:
+        """As fields of the library's PovrayOptions, but antialias, which is an enum there."""
+        return {
+            "antialias_threshold": self.antialias_threshold,
+            "antialias_depth": self.antialias_depth,
+            "trace_depth": self.trace_depth,
+            "area_samples": self.area_samples,
+            "sky_lights": self.indirect or -1,
+            "shadow_error": max(self.shadows, _FEWEST_PIXELS),
+            "light_error": self.lights if self.antialias != REFERENCE else 0.0,
+            "reflection_error": max(self.reflections, 1.0),
+            "texture_error": self.textures,
+        }
+
+
+def quality(pixel_error: float, overrides: Mapping[str, Value] | None = None) -> Quality:
+    """Every control's value. `overrides`: those that do not inherit, by key; what is out of range
+    is brought to the nearest limit; what is no number, or no word of the control's, is ignored."""
+    given = overrides or {}
+    found: dict[str, Any] = {ROOT: within(pixel_error, 0.0, MOST_PIXELS)}
+    for control in CONTROLS:  # parents come first
+        otherwise = control.inherited(found[control.parent])
+        found[control.key] = _value_of(control, otherwise, given)
+    sampling = found["antialias"]
+    found["antialias"] = sampling.kind
+    return Quality(
+        antialias_threshold=round(min(0.1 * sampling.rough, 1.0), 6),
+        antialias_depth=3 if sampling.rough <= 1.0 else 2,
+        **found,
+    )
+
+
+def inherits(key: str, pixel_error: float, overrides: Mapping[str, Value] | None = None) -> Value:
+    """What one control would have without its own override."""
+    others = {name: value for name, value in (overrides or {}).items() if name != key}
+    return getattr(quality(pixel_error, others), key)
+
+
+def _value_of(control: Control, otherwise: Any, given: Mapping[str, Value]) -> Any:
+    if control.key not in given:
+        return otherwise
+    value = given[control.key]
+    if control.least is None:
+        known = value in (OFF, ADAPTIVE, REFERENCE)
+        return Sampling(value, 1.0) if known else otherwise
+    if isinstance(value, str) or value != value:
+        return otherwise
+    limited = within(value, control.least, control.most)
+    return round(limited) if isinstance(control.least, int) else limited
+
+
+def within(value: float, least: float, most: float) -> float:
+    """NaN is the least: the finest there is."""
+    return min(max(value, least), most) if value == value else least

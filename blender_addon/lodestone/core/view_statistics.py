@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a view of a store would use, for panels: chosen anew when the view or the store changes."""
+
+import time
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Any
+
+from . import report
+from .native import lodestone_native as native
+from .picture import POVRAY_KINDS, Settings
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """`*_before`: of the originals. `pixel_error`: what a budget made of it. `choose_s`: how long
+    choosing took."""
+
+    triangles_before: int
+    triangles: int
+    bytes_before: int
+    bytes: int
+    kinds: dict[str, int]
+    occurrences: int
+    largest_error_px: float
+    largest_error_name: str
+    pixel_error: float
+    fits: bool
+    choose_s: float
+
+
+class Chooser:
+    """Remembers the last answer for a model. Close nothing: the model is the caller's."""
+
+    def __init__(self) -> None:
+        self._model: Any = None
+        self._before: tuple[int, int] = (0, 0)
+        self._known: dict[str, tuple[Hashable, Statistics]] = {}
+
+    def statistics(
+        self, model: Any, key: Hashable, camera: Any, size: tuple[int, int], settings: Settings,
+        triangles: int = 0, what: str = "render",
+    ) -> Statistics:  # fmt: skip
+        """Of a view whose every input is in `key`. `triangles`: a budget of them, instead of the
+        settings' bytes; 0: none. Raises LodestoneError."""
+        if model is not self._model:
+            self._model, self._known = model, {}
+            self._before = _originals(model, camera, size)
+        if what in self._known and self._known[what][0] == key:
+            return self._known[what][1]
+        found = self._chosen(model, camera, size, settings, triangles)
+        self._known[what] = (key, found)
+        return found
+
+    def _chosen(
+        self, model: Any, camera: Any, size: tuple[int, int], settings: Settings, triangles: int
+    ) -> Statistics:
+        start = time.perf_counter()
+        budget = native.Budget(triangles, settings.budget)
+        wanted = budget if triangles or settings.budget else None
+        with native.Cut(model, settings.view(camera, size), None, wanted) as cut:
+            summary = cut.summary()
+            part = report.cut_part(summary)
+            return Statistics(
+                triangles_before=self._before[0],
+                triangles=summary.triangles,
+                bytes_before=self._before[1],
+                bytes=summary.bytes,
+                kinds=part["kinds"],
+                occurrences=summary.occurrences,
+                largest_error_px=summary.largest_error_px,
+                largest_error_name=part["largest_error_name"],
+                pixel_error=cut.pixel_error,
+                fits=cut.fits,
+                choose_s=time.perf_counter() - start,
+            )
+
+
+def _originals(model: Any, camera: Any, size: tuple[int, int]) -> tuple[int, int]:
+    """Triangles and bytes of what is placed; the same from everywhere."""
+    view = native.View(camera, *size, 0.0, POVRAY_KINDS)
+    with native.Cut(model, view) as cut:
+        summary = cut.summary()
+        return (summary.triangles, summary.bytes)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets a control of quality back to what it inherits."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ..bridge import quality
+from ..core import quality_tree
+
+
+class LODESTONE_OT_inherit_control(bpy.types.Operator):
+    bl_idname = "lodestone.inherit_control"
+    bl_label = "Inherit"
+    bl_description = "Take the value from Pixel Error again"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    key: StringProperty(options={"HIDDEN"})  # "": all of them
+
+    @classmethod
+    def poll(cls, context):
+        if not quality.overrides(context.scene.lodestone):
+            cls.poll_message_set("Everything inherits already")
+            return False
+        return True
+
+    def execute(self, context):
+        keys = [self.key] if self.key else list(quality_tree.CONTROL)
+        if not set(keys) <= set(quality_tree.CONTROL):
+            self.report({"ERROR"}, f'There is no control called "{self.key}"')
+            return {"CANCELLED"}
+        for key in keys:
+            quality.inherit(context.scene.lodestone, key)
+        return {"FINISHED"}
+
+
+_CLASSES = (LODESTONE_OT_inherit_control,)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)
