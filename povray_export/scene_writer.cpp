@@ -119,7 +119,8 @@ std::string beginning_of(const std::filesystem::path& path) {
 
 struct Use {
     uint32_t node;
-    size_t file;  // index of the include file
+    size_t position;  // in cut.chosen
+    size_t file;      // index of the include file
     Affine world;
 };
 
@@ -152,6 +153,9 @@ public:
         const double start = thread_cpu_s();
         job_.stage(Stage::Export);
         check_view(view_);
+        if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
+            fail(Status::InvalidArgument, options_.colors.size(), " colors for ",
+                 cut_.chosen.size(), " chosen occurrences");
         make_folders();
         collect();
         const double before_files = thread_cpu_s();
@@ -200,7 +204,8 @@ private:
         const std::vector<uint8_t> holds_environment =
             options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
         const RepresentationOptions as{!options_.false_color, options_.uvs, std::nullopt};
-        for (const uint32_t index : cut_.chosen) {
+        for (size_t position = 0; position < cut_.chosen.size(); ++position) {
+            const uint32_t index = cut_.chosen[position];
             if ((uses_.size() & 1023u) == 0)
                 job_.check();
             const quality::Node& node = cut_.nodes.at(index);
@@ -210,7 +215,7 @@ private:
                 continue;
             if (options_.covered_only && environment(model_, cut_, holds_environment, index))
                 continue;
-            Use use{index, 0, node.world};
+            Use use{index, position, 0, node.world};
             if (!make_invertible(use.world)) {
                 problems_.push_back({quality::path_of(model_, cut_, index), Severity::Warning,
                                      "singular_transform",
@@ -379,7 +384,8 @@ private:
         out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
         if (options_.false_color) {
             const Kind kind = includes_[use.file].representation->summary.kind;
-            append_flat_texture(out, color_of(kind, node.lod));
+            append_flat_texture(out, options_.colors.empty() ? color_of(kind, node.lod)
+                                                             : options_.colors[use.position]);
             out += ' ';
         }
         append_matrix(out, magnified(use.world, times));

@@ -17,6 +17,8 @@ struct ExportOptions {
     Antialiasing antialiasing = Antialiasing::Final;
     Shading shading;
     bool false_color = false;  // flat colors by kind and LOD number (color_of), no lights
+    /// Linear color of each chosen occurrence instead, in the order of cut.chosen; empty: color_of.
+    std::vector<glm::dvec3> colors{};
     // Without Environment objects (and all below them, and stand-ins for groups that hold them),
     // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
     bool covered_only = false;
@@ -42,7 +44,9 @@ struct ExportReport {
 /// for their name is their content. The same input gives the
 /// same bytes. Occurrences that cannot be drawn (flattened to a line, too small, not finite) are left
 /// out with a problem each; those flattened to a sheet get a thickness of 1/100000.
-/// Throws Error(InvalidArgument) for a view that cannot be a picture, Error(Io) naming the file,
+/// `view` may be another one than the cut was made for: an overview of what another camera's picture
+/// uses. Throws Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as
+/// many as the chosen occurrences, Error(Io) naming the file,
 /// Error(Cancelled). cost: 0.1-0.2 s CPU a million triangles written.
 ExportReport export_scene(const Model& model, const quality::Cut& cut, const View& view,
                           const ExportOptions& options, Problems& problems, const Job& job = {});

@@ -388,3 +388,27 @@ TEST(PovrayWriter, ACancelledExportStops) {
                  Error);
     EXPECT_FALSE(std::filesystem::exists(options.folder / "scene.pov"));
 }
+
+TEST(PovrayWriter, GivenColorsPaintTheChosenOccurrencesInTheirOrder) {
+    Builder builder;
+    const ObjectIndex cube = builder.mesh(shapes::cube());
+    builder.place_at(cube, {-1, 0, 0});
+    builder.place_at(cube, {1, 0, 0});
+    const quality::Cut cut = quality::choose(builder.finish(), above());
+    ExportOptions options;
+    options.folder = scratch("given_colors");
+    options.false_color = true;
+    options.colors = {{.25, 0, 0}, {0, .00390625, .99609375}};
+    Problems problems;
+    // From elsewhere than the cut was made for.
+    View overview = above();
+    overview.camera.position = {3, 0, 20};
+    export_scene(builder.model, cut, overview, options, problems);
+    const std::string text = scene_text(options.folder);
+    const size_t first = text.find("pigment{rgb <0.25,0,0>}");
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_GT(text.find("pigment{rgb <0,0.00390625,0.996094>}"), first);
+    EXPECT_EQ(count(text, "location <3,0,20>"), 1u);
+    options.colors.pop_back();
+    EXPECT_THROW(export_scene(builder.model, cut, overview, options, problems), Error);
+}

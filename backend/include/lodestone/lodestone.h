@@ -926,6 +926,42 @@ typedef struct lds_reason {
 /* model: the cut's, its levels unchanged since. */
 LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
                                          lds_reason* out_reason);
+/* How a cut draws one thing of the scene. */
+typedef enum lds_drawn {
+    LDS_DRAWN_MISSING = 0,  /* the model has no such occurrence */
+    LDS_DRAWN_ITSELF = 1,   /* by a level of its own */
+    LDS_DRAWN_IN_GROUP = 2, /* by a stand-in for a group around it */
+    LDS_DRAWN_OPENED = 3,   /* it is a group, drawn by what is in it */
+    LDS_DRAWN_NOT = 4       /* no ray sees it, or a lens hides it */
+} lds_drawn;
+/* Of the occurrence of an object whose transform is nearest to `world` (within 1/1000 of its distance
+   from the origin, or 1 mm). out_position: of the choice, of ITSELF and IN_GROUP. */
+LDS_API lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object object,
+                                       const double world[12], int32_t* out_drawn,
+                                       size_t* out_position);
+/* The path of placements below a group to what is drawn finer than anything else in it, by importance
+   or a limit, and opens the group for that; "" where nothing does. Valid until this thread's next call
+   of it. */
+LDS_API lds_status lds_model_most_demanding(lds_model* model, lds_object group,
+                                            const char** out_path);
+/* Frees the meshes that the store the model was built with can give back; they are read again when they
+   are needed. */
+LDS_API lds_status lds_model_release_meshes(lds_model* model);
+
+/* Linear colors of the choices, in their order: of surfaces, and of pictures with
+   lds_povray_options.false_color. colors float64[count][3], 0 to 1; count 0: those of
+   lds_povray_false_color. */
+LDS_API lds_status lds_cut_set_colors(lds_cut* cut, const double* colors, size_t count);
+/* Gives each choice a color of its own, which lds_image_compare_shown understands. */
+LDS_API lds_status lds_cut_set_identities(lds_cut* cut);
+/* Makes loose triangles of what cameras see of the cut, at most about most_triangles: what has more
+   is shown by a coarser level, or by its box. Kept with the cut until the next call; 0 frees them. */
+LDS_API lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_triangles,
+                                        lds_job* job, uint64_t* out_triangles);
+/* out_corners float32[triangles][3][3], in the world; out_colors uint8[triangles][3][4], sRGB and
+   opaque, darker where a triangle is turned away from above. capacity counts triangles. */
+LDS_API lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t* out_colors,
+                                        size_t capacity);
 
 /* ---- POV-Ray -------------------------------------------------------------------------------- */
 
@@ -1026,6 +1062,20 @@ typedef struct lds_difference {
 /* mask (may be null): a picture whose alpha > 1/255 marks the covered pixels. */
 LDS_API lds_status lds_image_compare(const char* path_a, const char* path_b, const char* mask,
                                      lds_difference* out_difference);
+/* Compares two pictures where either shows something, and tells what differs. shown_a and shown_b:
+   linear pictures of the two cuts by lds_cut_set_identities, false_color, covered_only, without
+   antialiasing. Each pixel counts for what shown_a shows there, or else for what shown_b does: out_a
+   float64[count_a] and out_b float64[count_b] get the sums over pixels of the mean difference of R, G,
+   B of each choice. out_picture float32[height][width][4]: the differences in
+   lds_image_difference_color()s; may be null. capacity counts floats. */
+LDS_API lds_status lds_image_compare_shown(const char* path_a, const char* path_b,
+                                           const char* shown_a, const char* shown_b, double* out_a,
+                                           size_t count_a, double* out_b, size_t count_b,
+                                           int32_t bottom_up, float* out_picture, size_t capacity,
+                                           lds_difference* out_difference);
+/* The color (linear) of a difference of display-encoded values: 0 black, .02 blue, .05 green, .1
+   yellow, .25 and more red. */
+LDS_API lds_status lds_image_difference_color(double difference, double out_color[3]);
 
 #ifdef __cplusplus
 }

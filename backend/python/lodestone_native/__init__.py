@@ -7,13 +7,14 @@ call does, and says in one sentence when it cannot.
 
 from .bake import BakeStep
 from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
-from .cut import Cut
+from .cut import Cut, most_demanding, release_meshes
 from .enums import (
     AlphaMode,
     Antialias,
     BakeOp,
     Channel,
     Criterion,
+    Drawn,
     Extension,
     Kind,
     LensFilter,
@@ -33,6 +34,8 @@ from .image import (
     Image,
     image_add_text,
     image_compare,
+    image_compare_shown,
+    image_difference_color,
     image_read,
     image_size,
     image_write_png,
@@ -74,6 +77,7 @@ __all__ = [
     "Channel",
     "Criterion",
     "Cut",
+    "Drawn",
     "Extension",
     "FaceBuffers",
     "Image",
@@ -108,11 +112,14 @@ __all__ = [
     "abi_version",
     "image_add_text",
     "image_compare",
+    "image_compare_shown",
+    "image_difference_color",
     "image_read",
     "image_size",
     "image_write_png",
     "largest_face",
     "library_path",
+    "most_demanding",
     "povray_empty_bytes",
     "povray_export",
     "povray_false_color",
@@ -120,6 +127,7 @@ __all__ = [
     "povray_run",
     "project_uvs",
     "rays_check",
+    "release_meshes",
     "surface_inertia",
     "texture",
     "version",

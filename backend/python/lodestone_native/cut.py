@@ -3,10 +3,13 @@
 
 import ctypes
 import struct
+from array import array
 from collections import Counter
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from . import structs
+from .enums import Drawn
 from .handle import Handle
 from .job import Job
 from .library import check, library
@@ -90,3 +93,58 @@ class Cut(Handle):
     def choice_path(self, position: int) -> str:
         """Names of the placements from the root, joined by '/'."""
         return text_out(library().lds_cut_choice_path(self.handle, position))
+
+    def find_choice(self, item: Object, world: Iterable[float]) -> tuple[Drawn, int]:
+        """How the occurrence of an object at a place (3 x 4, by rows) is drawn, and by which choice
+        (-1: by none)."""
+        rows = (ctypes.c_double * 12)(*world)
+        drawn, position = ctypes.c_int32(), ctypes.c_size_t()
+        outs = (ctypes.byref(drawn), ctypes.byref(position))
+        check(library().lds_cut_find_choice(self.model.handle, self.handle, item, rows, *outs))
+        found = Drawn(drawn.value)
+        by_choice = found in (Drawn.ITSELF, Drawn.IN_GROUP)
+        return found, position.value if by_choice else -1
+
+    def set_colors(self, colors: Iterable[tuple[float, float, float]]) -> None:
+        """Linear colors of the choices, in their order, of false-colored pictures and surfaces;
+        none: those of povray_false_color()."""
+        flat = array("d", (value for color in colors for value in color))
+        given = (ctypes.c_double * len(flat)).from_buffer(flat)
+        check(library().lds_cut_set_colors(self.handle, given, len(flat) // 3))
+
+    def set_identities(self) -> None:
+        """Colors that image_compare_shown() tells the choices by."""
+        check(library().lds_cut_set_identities(self.handle))
+
+    def make_surface(self, most_triangles: int, job: Job | None = None) -> int:
+        """Makes loose triangles of what cameras see, and returns how many; 0 frees them."""
+        out = ctypes.c_uint64()
+        made = ctypes.byref(out)
+        check(
+            library().lds_cut_make_surface(
+                self.model.handle, self.handle, most_triangles, job, made
+            )
+        )
+        return out.value
+
+    def surface(self, triangles: int) -> tuple[array, array]:
+        """Of make_surface(): array('f') [triangles][3][3] in the world, array('B')
+        [triangles][3][4] of sRGB."""
+        corners, colors = array("f", bytes(36 * triangles)), array("B", bytes(12 * triangles))
+        if triangles:
+            floats = ctypes.cast(corners.buffer_info()[0], ctypes.POINTER(ctypes.c_float))
+            bytes_ = ctypes.cast(colors.buffer_info()[0], ctypes.POINTER(ctypes.c_uint8))
+            check(library().lds_cut_surface_copy(self.handle, floats, bytes_, triangles))
+        return corners, colors
+
+
+def most_demanding(model: Model, group: Object) -> str:
+    """The path below a group to what opens it by its importance or limit; "" when nothing does."""
+    out = ctypes.c_char_p()
+    check(library().lds_model_most_demanding(model.handle, group, ctypes.byref(out)))
+    return text_out(out.value)
+
+
+def release_meshes(model: Model) -> None:
+    """Frees the meshes that the model's store can give back."""
+    check(library().lds_model_release_meshes(model.handle))

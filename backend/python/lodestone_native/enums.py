@@ -85,6 +85,16 @@ class OffScreen(IntEnum):
     SHADOWS = 2  # as far as it shows their shadows: images of them may be coarse
 
 
+class Drawn(IntEnum):
+    """How a cut draws one thing of the scene."""
+
+    MISSING = 0
+    ITSELF = 1
+    IN_GROUP = 2
+    OPENED = 3
+    NOT = 4
+
+
 class SimplifyMode(IntEnum):
     """How triangles are saved."""
 

@@ -65,5 +65,43 @@ def image_compare(path_a: str, path_b: str, mask: str | None = None) -> Any:
     return record(out)
 
 
+def image_compare_shown(
+    paths: tuple[str, str],
+    shown: tuple[str, str],
+    counts: tuple[int, int],
+    bottom_up: bool = False,
+) -> tuple[Any, tuple[array, array], Image]:
+    """Compares two pictures where either shows something. `shown`: pictures of their cuts by
+    Cut.set_identities(); `counts`: how many choices these have. Returns the difference, each
+    choice's share of it (pixels that show something in the first are put down to that), and a
+    picture of it in false colors."""
+    width, height = image_size(paths[0])
+    picture = Image(width, height, array("f", bytes(16 * width * height)))
+    sums = tuple(array("d", bytes(8 * count)) for count in counts)
+    out = structs.Difference()
+    check(
+        library().lds_image_compare_shown(
+            *(text_in(path) for path in (*paths, *shown)),
+            *(part for one in sums for part in (_doubles(one), len(one))),
+            int(bottom_up),
+            _floats(picture.pixels),
+            len(picture.pixels),
+            ctypes.byref(out),
+        )
+    )
+    return record(out), (sums[0], sums[1]), picture
+
+
+def image_difference_color(difference: float) -> tuple[float, float, float]:
+    """Linear; of a difference of display-encoded values."""
+    out = (ctypes.c_double * 3)()
+    check(library().lds_image_difference_color(difference, out))
+    return (out[0], out[1], out[2])
+
+
+def _doubles(buffer: array) -> Any:
+    return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_double))
+
+
 def _floats(buffer: array) -> Any:
     return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_float))

@@ -424,6 +424,9 @@ class Model(Handle):
         check(library().lds_model_occurrence_hidden(self.handle, buffer, count.value))
         return list(buffer)
 
+    def light_count(self) -> int:
+        return library().lds_model_light_count(self.handle)
+
     def cameras(self) -> list[Camera]:
         found = []
         for position in range(library().lds_model_camera_count(self.handle)):

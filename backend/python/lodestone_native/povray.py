@@ -57,14 +57,17 @@ class PovrayOptions:
         return out
 
 
-def povray_export(cut: Cut, folder: str, options: PovrayOptions, job: Job | None = None) -> Any:
-    """Writes scene.pov, scene.ini and r/<16 hex>.inc into folder."""
+def povray_export(
+    cut: Cut, folder: str, options: PovrayOptions, job: Job | None = None, view: Any = None
+) -> Any:
+    """Writes scene.pov, scene.ini and r/<16 hex>.inc into folder. `view`: seen from there, not from
+    where the cut was made for."""
     out = structs.ExportReport()
     check(
         library().lds_povray_export(
             cut.model.handle,
             cut.handle,
-            cut.view.struct(),
+            (view or cut.view).struct(),
             text_in(folder),
             options.struct(),
             job,

@@ -3,7 +3,8 @@
 
 import ctypes
 from ctypes import POINTER as P
-from ctypes import c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import c_char_p, c_double, c_float, c_int32, c_size_t, c_uint8, c_uint32, c_uint64
+from ctypes import c_void_p
 
 from . import structs as s
 from .job import Job
@@ -86,6 +87,13 @@ PROTOTYPES = (
     ("lds_cut_choice_copy", I, [C, P(s.Choice), Z]),
     ("lds_cut_choice_path", T, [C, Z]),
     ("lds_cut_choice_reason", I, [M, C, Z, P(s.Reason)]),
+    ("lds_cut_find_choice", I, [M, C, s.Object, P(c_double), P(c_int32), P(c_size_t)]),
+    ("lds_model_most_demanding", I, [M, s.Object, P(c_char_p)]),
+    ("lds_model_release_meshes", I, [M]),
+    ("lds_cut_set_colors", I, [C, P(c_double), Z]),
+    ("lds_cut_set_identities", I, [C]),
+    ("lds_cut_make_surface", I, [M, C, c_uint64, P(Job), P(c_uint64)]),
+    ("lds_cut_surface_copy", I, [C, P(c_float), P(c_uint8), Z]),
     ("lds_povray_options_default", s.PovrayOptions, []),
     ("lds_povray_export", I, [M, C, P(s.View), T, P(s.PovrayOptions), P(Job), P(s.ExportReport)]),
     ("lds_povray_run", I, [T, T, P(s.PovrayOptions), P(Job), P(s.PovrayReport)]),
@@ -97,6 +105,9 @@ PROTOTYPES = (
     ("lds_image_write_png", I, [T, I, I, P(c_float)]),
     ("lds_image_add_text", I, [T, P(c_char_p), P(c_char_p), Z]),
     ("lds_image_compare", I, [T, T, T, P(s.Difference)]),
+    ("lds_image_compare_shown", I,
+     [T, T, T, T, P(c_double), Z, P(c_double), Z, I, P(c_float), Z, P(s.Difference)]),
+    ("lds_image_difference_color", I, [c_double, P(c_double)]),
 )
 # fmt: on
 

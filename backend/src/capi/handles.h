@@ -7,6 +7,7 @@
 #include "build/settings.h"
 #include "model/faces.h"
 #include "quality/budget.h"
+#include "quality/surface.h"
 #include "segment/store.h"
 
 #include <memory>
@@ -48,6 +49,8 @@ struct lds_cut {
     std::vector<std::string> paths;  // by choice
     std::string largest_error_name;
     uint64_t originals = 0;
+    std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
+    lodestone::quality::Surface surface;
 };
 
 namespace lodestone::capi {

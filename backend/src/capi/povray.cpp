@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // POV-Ray's part of the C interface.
 #include "base/parallel.h"
+#include "capi/chosen.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "povray_export/empty_scene.h"
@@ -10,7 +11,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <map>
 
 using namespace lodestone;
 using namespace lodestone::capi;
@@ -54,31 +54,6 @@ povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
     }
 }
 
-/// Reads the meshes of the chosen representations that are not in memory yet.
-void load_chosen(lds_model& model, const quality::Cut& cut, const Job& job) {
-    std::map<Hash, std::vector<Representation*>> wanted;
-    for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
-        if (node.object >= model.model.objects.size() ||
-            node.lod >= model.model.objects[node.object].representations.size())
-            fail(Status::StaleId, "the cut was made before the model's levels changed");
-        Representation& chosen = model.model.objects[node.object].representations[node.lod];
-        if (!chosen.resident())
-            wanted[chosen.summary.hash].push_back(&chosen);
-    }
-    if (wanted.empty())
-        return;
-    if (!model.store)
-        fail(Status::Internal, "chosen meshes are neither in memory nor in a store");
-    std::vector<std::pair<Hash, std::vector<Representation*>>> list(wanted.begin(), wanted.end());
-    parallel_for(list.size(), [&](size_t i) {
-        job.check();
-        const std::shared_ptr<const Mesh> mesh = model.store->load_mesh(list[i].first);
-        for (Representation* representation : list[i].second)
-            representation->payload = mesh;
-    });
-}
-
 }  // namespace
 
 lds_povray_options lds_povray_options_default(void) {
@@ -103,7 +78,10 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
         progress.stage(Stage::Export);
-        load_chosen(*model, cut->cut, progress);
+        std::vector<uint32_t> levels;
+        for (const uint32_t index : cut->cut.chosen)
+            levels.push_back(cut->cut.nodes[index].lod);
+        load_levels(*model, cut->cut, levels, progress);
         if (given.false_color == 0)
             model->load_pictures();
         povray::ExportOptions wanted;
@@ -111,6 +89,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.antialiasing = antialiasing_of(given);
         wanted.shading = shading_of(given);
         wanted.false_color = given.false_color != 0;
+        wanted.colors = cut->colors;
         wanted.covered_only = given.covered_only != 0;
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");

@@ -91,6 +91,11 @@ std::shared_ptr<const Mesh> Store::load_mesh(Hash hash) const {
     return mesh;
 }
 
+bool Store::has_mesh(Hash hash) const {
+    std::error_code error;
+    return fs::is_regular_file(folder_ / file_of(hash), error);
+}
+
 void Store::load(Representation& representation) const {
     if (!representation.resident())
         representation.payload = load_mesh(representation.summary.hash);

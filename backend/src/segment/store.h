@@ -34,6 +34,9 @@ public:
     /// Safe from several threads.
     std::shared_ptr<const Mesh> load_mesh(Hash hash) const;
 
+    /// Whether load_mesh() has a file to read.
+    bool has_mesh(Hash hash) const;
+
     /// Makes the mesh of a representation resident.
     void load(Representation& representation) const;
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capi/chosen.h"
+
+#include "base/parallel.h"
+
+#include <map>
+
+namespace lodestone::capi {
+
+void load_levels(lds_model& model, const quality::Cut& cut, const std::vector<uint32_t>& levels,
+                 const Job& job) {
+    std::map<Hash, std::vector<Representation*>> wanted;
+    for (size_t i = 0; i < levels.size(); ++i) {
+        if (levels[i] == quality::kBoxOnly)
+            continue;
+        const quality::Node& node = cut.nodes.at(cut.chosen.at(i));
+        if (node.object >= model.model.objects.size() ||
+            levels[i] >= model.model.objects[node.object].representations.size())
+            fail(Status::StaleId, "the cut was made before the model's levels changed");
+        Representation& chosen = model.model.objects[node.object].representations[levels[i]];
+        if (!chosen.resident())
+            wanted[chosen.summary.hash].push_back(&chosen);
+    }
+    if (wanted.empty())
+        return;
+    if (!model.store)
+        fail(Status::Internal, "chosen meshes are neither in memory nor in a store");
+    std::vector<std::pair<Hash, std::vector<Representation*>>> list(wanted.begin(), wanted.end());
+    parallel_for(list.size(), [&](size_t i) {
+        job.check();
+        const std::shared_ptr<const Mesh> mesh = model.store->load_mesh(list[i].first);
+        for (Representation* representation : list[i].second)
+            representation->payload = mesh;
+    });
+}
+
+}  // namespace lodestone::capi

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards what viewers show of a cut: all of it, within the triangles they can draw.
+#include "backend/models.h"
+#include "base/parallel.h"
+#include "quality/surface.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using models::add_level;
+using models::view_from;
+
+namespace {
+
+/// 8 balls of 1280 triangles, with levels of 80 and 20.
+Model balls() {
+    Model model = models::row_of_balls(8);
+    add_level(model, 0, 0.01, shapes::sphere(1, 1));
+    add_level(model, 0, 0.1, shapes::sphere(1, 0));
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+quality::Surface all_of(const Model& model, const quality::Cut& cut, uint64_t most) {
+    return quality::surface_of(model, cut, quality::surface_levels(model, cut, most));
+}
+
+Box3 box_of(const quality::Surface& surface) {
+    Box3 box;
+    for (const glm::vec3& corner : surface.corners)
+        box.add(glm::dvec3(corner));
+    return box;
+}
+
+}  // namespace
+
+TEST(Surface, EmptyCutHasNone) {
+    Model model;
+    model.root = models::add_group(model, "empty", {});
+    summarize_assemblies(model, bottom_up(model));
+    const quality::Surface surface = all_of(model, quality::choose(model, View{}), 1000);
+    EXPECT_TRUE(surface.corners.empty());
+    EXPECT_TRUE(surface.owners.empty());
+}
+
+TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
+    const Model model = balls();
+    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    const quality::Surface surface = all_of(model, cut, 8u * 1280u);
+    EXPECT_EQ(surface.owners.size(), 8u * 1280u);
+    EXPECT_EQ(surface.corners.size(), 3 * surface.owners.size());
+    EXPECT_EQ(surface.owners.front(), 0u);
+    EXPECT_EQ(surface.owners.back(), 7u);
+    // Balls of radius 1 at 0, 3, ... 21 m.
+    EXPECT_NEAR(box_of(surface).low.x, -1, 1e-5);
+    EXPECT_NEAR(box_of(surface).high.x, 22, 1e-5);
+}
+
+TEST(Surface, FewerTrianglesShowCoarserLevelsAndThenBoxes) {
+    const Model model = balls();
+    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    EXPECT_EQ(all_of(model, cut, 8u * 1280u - 1).owners.size(), 8u * 80u);
+    EXPECT_EQ(all_of(model, cut, 8u * 79u).owners.size(), 8u * 20u);
+    const quality::Surface boxes = all_of(model, cut, 1);
+    EXPECT_EQ(boxes.owners.size(), 8u * 12u);
+    EXPECT_NEAR(box_of(boxes).high.x, 22, 1e-5);
+}
+
+TEST(Surface, WhatCamerasDoNotSeeIsLeftOut) {
+    Model model = balls();
+    Assembly row = model.objects[model.root].representations[0].assembly();
+    row.placements[0].hidden = kCameraRays;
+    model.objects[model.root].representations[0].payload =
+        std::make_shared<const Assembly>(std::move(row));
+    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    EXPECT_EQ(cut.chosen.size(), 8u);
+    const quality::Surface surface = all_of(model, cut, 8u * 80u);
+    EXPECT_EQ(surface.owners.size(), 6u * 80u);
+    EXPECT_EQ(surface.owners.front(), 2u);
+}
+
+TEST(Surface, OneThreadAndManyGiveTheSame) {
+    const Model model = balls();
+    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    const quality::Surface many = all_of(model, cut, 4000);
+    const ThreadLimit limit(1);
+    const quality::Surface one = all_of(model, cut, 4000);
+    EXPECT_EQ(one.corners, many.corners);
+    EXPECT_EQ(one.owners, many.owners);
+}
+
+TEST(Surface, ShadesTellSidesApartAndAreTheSameOnBoth) {
+    const glm::vec3 floor[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const glm::vec3 turned[] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+    const glm::vec3 wall[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    const glm::vec3 line[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    EXPECT_DOUBLE_EQ(quality::shade_of(floor), quality::shade_of(turned));
+    EXPECT_GT(quality::shade_of(floor), 0.9);
+    EXPECT_LT(quality::shade_of(wall), 0.7);
+    EXPECT_GE(quality::shade_of(wall), 0.55);
+    EXPECT_EQ(quality::shade_of(line), 1);
+}
