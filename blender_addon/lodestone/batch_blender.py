@@ -264,7 +264,7 @@ class FileRun:
             try:
                 made = self._long(
                     lambda: make_picture(
-                        model, view, size, settings, folder.path, self.work.new_job
+                        model, view, size, settings, folder.path, self.work.new_job, store
                     )
                 )
             except native.LodestoneError as error:

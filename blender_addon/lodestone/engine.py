@@ -7,6 +7,7 @@ and exit with 1; error_set() or an escaping exception would save black and exit 
 """
 
 import atexit
+import contextlib
 import time
 import traceback
 from dataclasses import replace
@@ -17,9 +18,17 @@ from . import preferences
 from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import last_check, last_render, motion_file, progress, store_path
+from .core import (
+    compare_plan,
+    kept_model,
+    last_check,
+    last_render,
+    motion_file,
+    progress,
+    store_path,
+)
 from .core.native import lodestone_native as native
-from .core.picture import Settings, make_picture
+from .core.picture import Settings, make_identities, make_picture
 from .core.problems import ERROR, Problems
 from .core.render_folder import RenderFolder
 from .core.text import printable, sentence, valid
@@ -27,6 +36,7 @@ from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
+_SHARES["Coverage"] = (1.0, 0.0)
 # Of the render that is running
 _folder = RenderFolder()
 _poses = {}  # by scene and view layer
@@ -98,6 +108,9 @@ class _Run:
         self.ignored = ignored.keys(depsgraph.scene)
         self.users = {}
         self.poses = poses.Poses()
+        self.plan = compare_plan.current()
+        if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
+            self.settings = replace(self.settings, pixel_error=0.0)
         self.work = Work()
         self.frame = self.scene.frame_current
         self.clock = progress.StageClock(self.frame)
@@ -105,6 +118,9 @@ class _Run:
 
     def render(self):
         layer = picture.layer_of(self.depsgraph)
+        if self.plan is not None and self.plan.step == compare_plan.DIFFERENCE:
+            self._show_difference(layer)
+            return
         self._required()
         still = motion_file.read(self.store)
         levels = self.settings.levels  # else neither they nor groups are asked for
@@ -112,10 +128,13 @@ class _Run:
             self._read_poses(still)
         camera_object = self._required()  # as it is in this frame again
         frame = camera.Frame.of(self.scene.render)
-        extraction = scene.extract(self.depsgraph, self._tick, still, structured=levels)
+        # Compare tells things by their paths, which groups are a part of
+        structured = levels or self.plan is not None
+        extraction = scene.extract(self.depsgraph, self._tick, still, structured=structured)
         self.problems.extend(extraction.problems)
         self.users = extraction.users
-        with extraction.model as model:
+        with contextlib.ExitStack() as stack:
+            model = stack.enter_context(extraction.model)
             totals = model.totals()
             if totals.occurrences == 0:
                 raise Refused("nothing_to_render", requirements.NOTHING)
@@ -134,6 +153,13 @@ class _Run:
             self.settings = replace(self.settings, border=border, modifiers=modifiers)
             made, image = self.work.run(lambda: self._make(model, view, size), self._poll)
             self.problems.extend_native(model.problems())
+            if levels and not self.engine.is_animation:
+                native.release_meshes(model)
+                stack.pop_all()
+                kept = kept_model.Kept(
+                    model, self.settings.view(view, size), extraction.parts, self.frame
+                )
+                kept_model.put(name_of(self.scene), kept)
         self._remember(totals, made)
         left, top, *part = self.settings.border
         part = picture.cropped(image, left, size[1] - top - part[1], *part)
@@ -189,12 +215,24 @@ class _Run:
             kept = store_path.scene_folder(self.store)
             with _folder.use(kept, self.keep, self.frame) as folder:
                 made = make_picture(
-                    model, view, size, self.settings, folder.path, self.work.new_job
+                    model, view, size, self.settings, folder.path, self.work.new_job, self.store
                 )
+                if self.plan is not None and not self.plan.has_this:
+                    shown = make_identities(
+                        model, view, size, self.settings, self.plan.folder, self.work.new_job
+                    )
+                    self.plan.take(made.path, *shown)
                 return made, picture.read(str(made.path))
         except OSError as error:
             text = f"Cannot write the scene for POV-Ray: {error}"
             raise Refused("folder_unwritable", text) from None
+
+    def _show_difference(self, layer):
+        """The third picture of Compare, of two that are there."""
+        image = self.work.run(self.plan.compare, self._poll)
+        left, bottom, *part = picture.border(self.scene.render, image.width, image.height)
+        part = picture.cropped(image, left, bottom, *part)
+        picture.hand_over(self.engine, layer, part, self.settings.stamp())
 
     def _build_options(self, view):
         """What properties.BUILD_ON_RENDER says."""
@@ -243,6 +281,10 @@ class _Run:
                 cut["largest_error_name"],
                 made.in_use,
                 self.left,
+                made.predicted.wall_s,
+                made.parts["povray"]["wall_s"],
+                made.predicted.peak_bytes,
+                made.parts["povray"]["peak_bytes"],
             ),
         )
 
@@ -305,6 +347,7 @@ def unregister():
         if _forget in handlers:
             handlers.remove(_forget)
     _forget()
+    kept_model.clear()
     last_render.clear()
     last_check.clear()
     _unregister()

@@ -3,7 +3,7 @@
 
 from array import array
 
-import lettering
+from core import lettering
 
 GAP = 4  # pixels between panels
 BAR = 12  # height of the line of text under each panel

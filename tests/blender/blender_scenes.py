@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small scenes for tests inside Blender, and the add-on they are tested with."""
 
+import math
+
 import addon_utils
+import bmesh
 import bpy
 
 
@@ -46,6 +49,17 @@ def cube(name="Cube", location=(0, 0, 0), size=1.0, data=None, collection=None):
     made = bpy.data.objects.new(name, data or cube_mesh(name, size))
     made.location = location
     return link(made, collection)
+
+
+def bumpy_mesh(name="Ball", subdivisions=4):
+    """A ball of 20 * 4^(subdivisions - 1) triangles that no ellipsoid is exactly like."""
+    made, shape = bpy.data.meshes.new(name), bmesh.new()
+    bmesh.ops.create_icosphere(shape, subdivisions=subdivisions, radius=1.0)
+    for vertex in shape.verts:
+        vertex.co *= 1.0 + 0.1 * math.sin(9.0 * vertex.co.x) * math.sin(7.0 * vertex.co.z)
+    shape.to_mesh(made)
+    shape.free()
+    return made
 
 
 def collection(name, parent=None):

@@ -76,6 +76,9 @@ class Window(unittest.TestCase):
     def test_update_levels(self):
         self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate"))
 
+    def test_seeing(self):
+        self.succeeds(self.blender("window_seeing.py"))
+
     def test_auto_structure(self):
         self.succeeds(self.blender("window_auto_structure.py", "--enable-event-simulate"))
         kept = os.environ.get("LODESTONE_SCREENS")

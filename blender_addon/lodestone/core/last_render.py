@@ -15,6 +15,10 @@ class LastRender:
     largest_error_name: str
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)
     without_levels: int = 0  # objects and groups not built yet
+    predicted_s: float = 0.0  # POV-Ray's time by the clock, told before the picture
+    actual_s: float = 0.0
+    predicted_bytes: int = 0  # its memory, likewise
+    actual_bytes: int = 0
 
 
 _renders: dict[str, LastRender] = {}

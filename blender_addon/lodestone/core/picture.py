@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import identity, locked_folder, quality_tree, report
+from . import cost_model, identity, locked_folder, quality_tree, report
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -88,6 +88,7 @@ class Picture:
     path: Path
     parts: dict[str, Any] = field(default_factory=dict)
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)  # uid: {LOD: occurrences}
+    predicted: cost_model.Prediction | None = None  # before it was rendered
 
 
 def cut_and_export(
@@ -95,16 +96,27 @@ def cut_and_export(
 ) -> tuple[dict[str, Any], dict[str, dict[int, int]]]:
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
+    parts, in_use, _ = _cut_and_export(model, camera, size, settings, folder, job)
+    return parts, in_use
+
+
+def _cut_and_export(
+    model: Any, camera: Any, size: tuple[int, int], settings: Settings, folder: Path, job: Any
+) -> tuple[dict[str, Any], dict[str, dict[int, int]], cost_model.Work]:
     folder.mkdir(parents=True, exist_ok=True)
     with settings.cut(model, camera, size, job) as cut:
-        parts = {"cut": report.cut_part(cut.summary())}
+        view, summary = cut.view, cut.summary()
+        parts = {"cut": report.cut_part(summary)}
         if settings.budget:
             parts["cut"].update(pixel_error=cut.pixel_error, fits=cut.fits)
         in_use = levels_in_use(model, cut)
         shaded = replace(settings, pixel_error=cut.pixel_error)  # as roughly as it is drawn
         exported = native.povray_export(cut, str(folder), shaded.povray(), job)
     parts["export"] = report.export_part(exported)
-    return parts, in_use
+    lights = 0 if settings.false_color or settings.covered_only else model.light_count()
+    antialias = native.Antialias[shaded.quality.antialias]
+    work = cost_model.Work.of(summary, view, lights, antialias, settings.threads)
+    return parts, in_use, work
 
 
 def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
@@ -122,14 +134,45 @@ def make_picture(
     settings: Settings,
     folder: Path,
     new_job: Callable[[str], Any],
+    store: Path | None = None,
 ) -> Picture:
     """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
-    each long call and gives its Job. Raises LodestoneError; then no new picture is there."""
-    parts, in_use = cut_and_export(model, camera, size, settings, folder, new_job("Export"))
+    each long call and gives its Job. Raises LodestoneError; then no new picture is there.
+    `store`: what it takes is predicted from, and remembered with, the last picture of this one."""
+    parts, in_use, work = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
+    ratios = cost_model.Ratios() if store is None else cost_model.read(store)
+    predicted = cost_model.predict(work, ratios)
     ran = native.povray_run(str(folder), PICTURE, settings.povray(), new_job("Trace"))
+    if store is not None and not (settings.false_color or settings.covered_only):
+        cost_model.write(store, cost_model.learn(work, ran, ratios))
     parts["povray"] = report.povray_part(ran)
+    parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
-    return Picture(folder / PICTURE, parts, in_use)
+    return Picture(folder / PICTURE, parts, in_use, predicted)
+
+
+def make_identities(
+    model: Any,
+    camera: Any,
+    size: tuple[int, int],
+    settings: Settings,
+    folder: Path,
+    new_job: Callable[[str], Any],
+) -> tuple[Path, list[str]]:
+    """A picture of which choice each pixel shows, for native.image_compare_shown(), and the
+    choices' paths. Sharp, without antialiasing and Environment."""
+    folder.mkdir(parents=True, exist_ok=True)
+    overrides = {**settings.overrides, "antialias": quality_tree.OFF}
+    plain = replace(settings, overrides=overrides, false_color=True, covered_only=True)
+    sharp = replace(camera, aperture=0.0)
+    job = new_job("Coverage")
+    with settings.cut(model, camera, size, job) as cut:
+        cut.set_identities()
+        paths = [cut.choice_path(position) for position in range(len(cut.choices()))]
+        view = replace(cut.view, camera=sharp)
+        native.povray_export(cut, str(folder), plain.povray(), job, view)
+    native.povray_run(str(folder), PICTURE, plain.povray(), new_job("Coverage"))
+    return folder / PICTURE, paths
 
 
 def used_files(folder: Path) -> set[str]:

@@ -60,3 +60,7 @@ class StageClock:
 
 def building(done: int, total: int) -> str:
     return f"Lodestone: building levels {done:,}/{total:,}   [Esc] Cancel"
+
+
+def comparing(step: int, steps: int, word: str) -> str:
+    return f"Lodestone: comparing, picture {step} of {steps}: {word}   [Esc] Cancel"

@@ -92,8 +92,8 @@ CONTROLS = (
     ),
     Control(
         "lights", "Lights", ROOT, _same, "px", 0.0, MOST_PIXELS,
-        "Area lights so far away that their size shows less than this on the picture are drawn as "
-        "points, in pixels. 0 keeps all their sizes",
+        "Many lamps become few, never through walls, as far as points of the picture change by "
+        "about so many steps of 255. 0 keeps all lamps",
     ),
     Control(
         "antialias", "Antialiasing", ROOT, _antialiasing, "", None, None,

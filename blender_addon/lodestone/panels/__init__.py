@@ -13,6 +13,7 @@ _MODULES = (
     "overrides",
     "levels",
     "lens",
+    "seen",
     "problems",
     "film",
     "visibility",

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The view of a kept model as the scene has it now, and how the model's cut draws a datablock."""
+
+from dataclasses import replace
+from typing import Any
+
+from ..core import kept_model, why
+from ..core.problems import Problems
+from . import camera, ids, picture
+from .settings import SceneSettings
+
+
+def now(kept: Any, scene: Any, depsgraph: Any) -> Any:
+    """The view the scene camera has; the one the model was read for when there is no camera.
+    Everything else that bends quality is as it was when the model was read."""
+    if scene.camera is None or scene.camera.type != "CAMERA":
+        return kept.view
+    frame = camera.Frame.of(scene.render)
+    seen = camera.extract(scene.camera.evaluated_get(depsgraph), frame, Problems())
+    left, bottom, *part = picture.border(scene.render, frame.width, frame.height)
+    return replace(
+        kept.view,
+        camera=seen,
+        width=frame.width,
+        height=frame.height,
+        pixel_error=SceneSettings(scene).pixel_error_render,
+        border=(left, frame.height - bottom - part[1], *part),
+    )
+
+
+def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None":
+    """Why an object is drawn as it is; None when the scene was not read yet, or is in use."""
+    kept = kept_model.get(scene.name)
+    if kept is None or not kept.lock.acquire(blocking=False):
+        return None
+    try:
+        if kept.closed:
+            return None
+        cut = kept.cut(now(kept, scene, depsgraph))
+        matrix = item.evaluated_get(depsgraph).matrix_world
+        world = [value for row in matrix[:3] for value in row]
+        drawn, position = kept.find([ids.key_of("object", item.original)], world)
+        return why.explain(cut, drawn, position, ids.name_of(item))
+    finally:
+        kept.lock.release()

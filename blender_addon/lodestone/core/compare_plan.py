@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compare: what the render engine does for it, and what comes out.
+
+While a plan is current, the engine's pictures are its steps: the originals, the levels, and their
+difference in false colors.
+"""
+
+import os
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .native import lodestone_native as native
+
+ORIGINALS, LEVELS, DIFFERENCE = 0, 1, 2
+WORDS = ("originals", "levels", "difference")
+_WORST = 3
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Of display values 0...1 over the covered pixels; `worst` are paths of placements with their
+    share of all differences, largest first."""
+
+    mean: float
+    max: float
+    ssim: float
+    pixels: int
+    pixel_error: float
+    worst: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        text = f"Mean difference {255 * self.mean:.2f}, largest {255 * self.max:.0f} of 255; "
+        text += f"SSIM {self.ssim:.4f}"
+        if self.worst:
+            text += f"; most differs {self.worst[0][0].rsplit('/', 1)[-1]}"
+        return text
+
+
+class Plan:
+    """One comparison, in a folder of its own that its owner removes."""
+
+    def __init__(self, folder: Path, pixel_error: float) -> None:
+        self.root = folder
+        self.pixel_error = pixel_error
+        self.step = ORIGINALS
+        self.comparison: Comparison | None = None
+        self._paths: dict[int, list[str]] = {}
+
+    @property
+    def folder(self) -> Path:
+        """Of this step's picture of what is shown where."""
+        return self.root / WORDS[self.step]
+
+    @property
+    def has_this(self) -> bool:
+        """Of several view layers the first one counts."""
+        return self.step in self._paths
+
+    @property
+    def finished_step(self) -> bool:
+        return self.comparison is not None if self.step == DIFFERENCE else self.has_this
+
+    def take(self, picture: Path, shown: Path, paths: list[str]) -> None:
+        """This step's picture, which of its choices each pixel shows, and their paths."""
+        os.replace(shown, self._shown(self.step))
+        self._picture(self.step).write_bytes(picture.read_bytes())
+        self._paths[self.step] = paths
+
+    def compare(self) -> Any:
+        """The difference as an image, lowest row first; fills `comparison`."""
+        steps = (ORIGINALS, LEVELS)
+        difference, sums, image = native.image_compare_shown(
+            tuple(str(self._picture(step)) for step in steps),
+            tuple(str(self._shown(step)) for step in steps),
+            tuple(len(self._paths[step]) for step in steps),
+            bottom_up=True,
+        )
+        listed = [(self._paths[step], sums[step]) for step in steps]
+        self.comparison = Comparison(
+            difference.mean,
+            difference.max,
+            difference.ssim,
+            difference.pixels,
+            self.pixel_error,
+            worst_of(listed),
+        )
+        return image
+
+    def _picture(self, step: int) -> Path:
+        return self.root / f"{WORDS[step]}.exr"
+
+    def _shown(self, step: int) -> Path:
+        return self.root / f"{WORDS[step]}_shown.exr"
+
+
+def worst_of(listed: Any, most: int = _WORST) -> tuple[tuple[str, float], ...]:
+    """Paths with their share of the whole, from lists of paths and lists of sums; what is in
+    several lists counts once."""
+    together: dict[str, float] = defaultdict(float)
+    for paths, sums in listed:
+        for path, value in zip(paths, sums):
+            if value > 0.0:
+                together[path] += value
+    whole = sum(together.values())
+    order = sorted(together.items(), key=lambda item: (-item[1], item[0]))
+    return tuple((path, value / whole) for path, value in order[:most])
+
+
+_current: Plan | None = None
+_last: dict[str, Comparison] = {}  # by scene
+
+
+def current() -> Plan | None:
+    return _current
+
+
+def start(plan: Plan) -> None:
+    global _current
+    _current = plan
+
+
+def end() -> None:
+    global _current
+    _current = None
+
+
+def put(scene: str, comparison: Comparison) -> None:
+    _last[scene] = comparison
+
+
+def get(scene: str) -> Comparison | None:
+    return _last.get(scene)
+
+
+def clear() -> None:
+    _last.clear()

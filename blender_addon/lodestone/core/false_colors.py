@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""False colors: what a cut chose, as colors for the viewport and for pictures, with their legend.
+
+Colors are linear Rec.709, 0...1.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from . import progress
+from .native import lodestone_native as native
+
+Color = tuple[float, float, float]
+
+LEVEL, ERROR, COST = "LEVEL", "ERROR", "COST"
+ORIGINAL: Color = (0.67, 0.67, 0.67)
+ABOVE: Color = (0.75, 0.08, 0.55)  # coarser than Pixel Error asks for, by a decision
+# By the share of Pixel Error that is used up
+_ERRORS: tuple[tuple[float, Color], ...] = (
+    (0.0, (0.05, 0.12, 0.6)),
+    (0.5, (0.08, 0.55, 0.2)),
+    (0.75, (0.9, 0.75, 0.08)),
+    (1.0, (0.8, 0.06, 0.03)),
+)
+_ROUNDING = 1e-6
+# By the most triangles that an occurrence takes; boxes and ellipsoids take none
+_COSTS: tuple[tuple[float, Color], ...] = (
+    (12, (0.03, 0.05, 0.35)),
+    (100, (0.06, 0.25, 0.7)),
+    (1_000, (0.08, 0.55, 0.45)),
+    (10_000, (0.45, 0.7, 0.08)),
+    (100_000, (0.9, 0.5, 0.05)),
+    (float("inf"), (0.8, 0.05, 0.03)),
+)
+_LEVELS = 6  # meshes this coarse and coarser share a color
+
+
+def of_level(kind: int, lod: int) -> Color:
+    return native.povray_false_color(kind, lod)
+
+
+def of_error(error_px: float, pixel_error: float) -> Color:
+    """Of an error on screen beside what was asked for."""
+    if error_px <= 0.0:
+        return ORIGINAL
+    share = error_px / pixel_error if pixel_error > 0.0 else float("inf")
+    if not share <= 1.0 + _ROUNDING:
+        return ABOVE
+    for (low, first), (high, second) in zip(_ERRORS, _ERRORS[1:]):
+        if share <= high:
+            part = (share - low) / (high - low)
+            mixed = [a + part * (b - a) for a, b in zip(first, second)]
+            return (mixed[0], mixed[1], mixed[2])
+    return _ERRORS[-1][1]
+
+
+def of_cost(triangles: int) -> Color:
+    """Of one occurrence."""
+    return next(color for most, color in _COSTS if triangles <= most)
+
+
+def colors(cut: Any, mode: str) -> list[Color]:
+    """Of each choice of a cut, in their order."""
+    choices: Sequence[Any] = cut.choices()
+    known: dict[Any, Color] = {}
+    if mode == ERROR:
+        asked = cut.view.pixel_error
+        return [of_error(choice.error_px, asked) for choice in choices]
+    found = []
+    for choice in choices:
+        key = (choice.object.key, choice.lod)
+        color = known.get(key)
+        if color is None:
+            if mode == COST:
+                drawn = cut.model.representation(choice.object, choice.lod)
+                color = of_cost(drawn.triangles)
+            else:
+                color = of_level(choice.kind, choice.lod)
+            known[key] = color
+        found.append(color)
+    return found
+
+
+def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
+    """Words and colors, finest or cheapest first."""
+    if mode == ERROR:
+        shares = ((share * pixel_error, color) for share, color in _ERRORS)
+        shown = [(f"{error:.3g} px", color) for error, color in shares]
+        return [("Original", ORIGINAL), *shown, (f"above {pixel_error:.3g} px", ABOVE)]
+    if mode == COST:
+        bounds = [(f"up to {progress.count(most)}", color) for most, color in _COSTS[1:-1]]
+        more = f"more than {progress.count(_COSTS[-2][0])} triangles"
+        return [("Box, ellipsoid", _COSTS[0][1]), *bounds, (more, _COSTS[-1][1])]
+    words = ["Original", *(f"LOD {lod}" for lod in range(1, _LEVELS)), f"LOD {_LEVELS}+"]
+    meshes = [(word, of_level(native.Kind.MESH, lod)) for lod, word in enumerate(words)]
+    solids = (native.Kind.BOX, native.Kind.ELLIPSOID, native.Kind.COMPOSITE)
+    return [*meshes, *((kind.name.title(), of_level(kind, 1)) for kind in solids)]
+
+
+def displayed(color: Color) -> Color:
+    """As sRGB, for what draws in display values."""
+
+    def encoded(value: float) -> float:
+        value = min(1.0, max(0.0, value))
+        return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+    return (encoded(color[0]), encoded(color[1]), encoded(color[2]))
+
+
+def _linear(value: int) -> int:
+    encoded = value / 255.0
+    linear = encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+    return round(255.0 * linear)
+
+
+LINEAR = bytes(_linear(value) for value in range(256))  # of sRGB bytes, for bytes.translate()

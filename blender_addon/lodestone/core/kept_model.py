@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene as it was read last, kept with its levels: other cuts of it take milliseconds.
+
+Of one scene at a time. Any thread may put one, so whoever uses one holds its lock meanwhile.
+"""
+
+import threading
+from collections.abc import Iterable
+from typing import Any
+
+from .native import lodestone_native as native
+
+Key = tuple[str, str, str]  # as bridge.ids.Key
+
+
+class Kept:
+    """A model that is built (meshes that are in its store need not be in memory) and the view it
+    was read for. `parts`: what the model's objects came from. Use it inside `with kept.lock`."""
+
+    def __init__(self, model: Any, view: Any, parts: dict[Key, list[Any]], frame: int) -> None:
+        self.lock = threading.RLock()
+        self.view = view
+        self.parts = parts
+        self.frame = frame
+        self.outdated = False  # the scene has changed since
+        self._model: Any = model
+        self._cut: Any = None
+
+    @property
+    def closed(self) -> bool:
+        return self._model is None
+
+    def cut(self, view: Any) -> Any:
+        """For this view; the last one when it was for the same. Valid until the next call."""
+        if self._cut is None or self._cut.view != view:
+            made = native.Cut(self._model, view)
+            self._drop_cut()
+            self._cut = made
+        return self._cut
+
+    def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[Any, int]:
+        """How the last cut draws the occurrence of a datablock at a place: (Drawn, position)."""
+        rows = tuple(world)
+        found = (native.Drawn.MISSING, -1)
+        for item in dict.fromkeys(item for key in keys for item in self.parts.get(key, ())):
+            found = self._cut.find_choice(item, rows)
+            if found[0] != native.Drawn.MISSING:
+                break
+        return found
+
+    def close(self) -> None:
+        with self.lock:
+            self._drop_cut()
+            if self._model is not None:
+                self._model.close()
+                self._model = None
+
+    def _drop_cut(self) -> None:
+        if self._cut is not None:
+            self._cut.close()
+            self._cut = None
+
+
+_kept: dict[str, Kept] = {}
+_guard = threading.Lock()
+
+
+def put(scene: str, kept: Kept) -> None:
+    with _guard:
+        others = list(_kept.values())
+        _kept.clear()
+        _kept[scene] = kept
+    for other in others:
+        other.close()
+
+
+def get(scene: str) -> Kept | None:
+    return _kept.get(scene)
+
+
+def outdate() -> None:
+    """The scenes are not any more as they were read."""
+    for kept in list(_kept.values()):
+        kept.outdated = True
+
+
+def clear() -> None:
+    with _guard:
+        others = list(_kept.values())
+        _kept.clear()
+    for other in others:
+        other.close()

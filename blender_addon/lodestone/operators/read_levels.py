@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads the scene and keeps it with its levels, for false colors and explanations. Builds nothing.
+
+The scene is read by a render job, a thread finds its levels; Esc stops either.
+"""
+
+import bpy
+
+from .. import extract_engine
+from ..bridge.settings import SceneSettings
+from ..core import kept_model, motion_file, store_path
+from ..core.native import lodestone_native as native
+from ..core.picture import Settings
+from ..core.store_levels import is_store
+from ..core.text import sentence
+from . import session as sessions
+
+FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing)
+
+
+def request(store):
+    still = motion_file.read(store)
+    return extract_engine.Request(cameras=[("", None)], still=still, with_poses=True)
+
+
+def make_kept(extraction, asked, store, pixel_error, frame, job=None):
+    """The model with the levels that there are, as a Kept, which owns it from then on."""
+    camera, size = asked.frames[0]
+    view = Settings(pixel_error=pixel_error).view(camera, size)
+    if is_store(store):
+        options = native.BuildOptions(poses=asked.poses.models, view=view)
+        options.share = 0.0
+        extraction.model.build(str(store), options, job)
+        native.release_meshes(extraction.model)
+    return kept_model.Kept(extraction.model, view, extraction.parts, frame)
+
+
+def read_levels(scene):
+    """Synchronously. Returns the Kept; raises what failed."""
+    store = store_path.store_folder(bpy.data.filepath)
+    asked = request(store)
+    try:
+        extraction = extract_engine.extract_now(scene, asked)
+        try:
+            pixel_error = SceneSettings(scene).pixel_error_render
+            kept = make_kept(extraction, asked, store, pixel_error, scene.frame_current)
+        except BaseException:
+            extraction.model.close()
+            raise
+    finally:
+        asked.poses.close()
+    kept_model.put(scene.name, kept)
+    return kept
+
+
+class Reading(sessions.Session):
+    """One reading in the window."""
+
+    def __init__(self, scene):
+        self._store = store_path.store_folder(bpy.data.filepath)
+        self._scene = scene.name
+        self._frame = scene.frame_current
+        self._pixel_error = SceneSettings(scene).pixel_error_render
+        super().__init__(request(self._store))
+
+    def was_read(self):
+        job = self.work.new_job("Levels")
+        self.start(
+            lambda: make_kept(
+                self.extraction, self.request, self._store, self._pixel_error, self._frame, job
+            )
+        )
+
+    def finish(self):
+        """Call when working() is False. Raises what failed."""
+        kept = self.worked()
+        self.request.extraction = None  # its model is the kept one's from now on
+        kept_model.put(self._scene, kept)
+        return kept
+
+
+class LODESTONE_OT_read_levels(sessions.InWindow, bpy.types.Operator):
+    bl_idname = "lodestone.read_levels"
+    bl_label = "Read Scene"
+    bl_description = (
+        "Read the scene with the levels that there are, for false colors and explanations. Builds "
+        "and changes nothing"
+    )
+    bl_options = {"REGISTER"}
+
+    failures = FAILURES
+
+    @classmethod
+    def poll(cls, context):
+        why = "" if context.scene.camera else "Set a scene camera"
+        why = why or sessions.refusal()
+        if why:
+            cls.poll_message_set(why)
+        return not why
+
+    def execute(self, context):
+        try:
+            read_levels(context.scene)
+        except FAILURES as error:
+            self.report({"ERROR"}, sentence(error))
+            return {"CANCELLED"}
+        redraw(context)
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        return self.begin(context, Reading(context.scene))
+
+    def step(self, context, session):
+        if session.reading() or session.working():
+            sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
+            return {"PASS_THROUGH"}
+        session.finish()
+        session.close()
+        redraw(context)
+        return self.end(context, {"FINISHED"})
+
+
+def redraw(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"PROPERTIES", "VIEW_3D"}:
+                area.tag_redraw()
+
+
+@bpy.app.handlers.persistent
+def _on_change(scene, depsgraph):
+    """Cameras may move: the view is that of the moment. Everything else makes it out of date."""
+    for update in depsgraph.updates:
+        if not (update.is_updated_transform or update.is_updated_geometry):
+            continue
+        if isinstance(update.id, bpy.types.Object) and update.id.type not in {"CAMERA", "LIGHT"}:
+            kept_model.outdate()
+            return
+
+
+@bpy.app.handlers.persistent
+def _on_undo(*_):
+    kept_model.outdate()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    kept_model.clear()
+
+
+_HANDLERS = (
+    ("depsgraph_update_post", _on_change),
+    ("undo_post", _on_undo),
+    ("redo_post", _on_undo),
+    ("load_pre", _on_load),
+)
+_register, _unregister = bpy.utils.register_classes_factory((LODESTONE_OT_read_levels,))
+
+
+def register():
+    _register()
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister():
+    for name, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
+    kept_model.clear()
+    _unregister()

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards what is seen and explained: comparisons, false colors, reasons, costs. Nothing of it may
+leave a trace in the file."""
+
+import json
+import os
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+
+import blender_scenes as scenes
+
+HAVE_POVRAY = shutil.which(os.environ.get("LODESTONE_POVRAY", "povray")) is not None
+
+
+class Seeing(unittest.TestCase):
+    def setUp(self):
+        self.scene = scenes.fresh()
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(setattr, tempfile, "tempdir", tempfile.tempdir)
+        tempfile.tempdir = str(self.folder)  # others may compare on this machine, too
+        self.scene.render.engine = "LODESTONE_POVRAY"
+        scenes.sun()
+        self.near = scenes.cube("Near", (0, 0, 0), data=scenes.bumpy_mesh())
+        self.far = scenes.cube("Far", (2.5, 1.0, -30), data=scenes.bumpy_mesh())
+        bpy.context.view_layer.update()
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
+        self.scene = bpy.context.scene
+        from lodestone.core import compare_plan, kept_model, last_render
+
+        self.plans, self.kept, self.renders = compare_plan, kept_model, last_render
+        self.addCleanup(kept_model.clear)
+
+    def everything(self):
+        """What a comparison may not change."""
+        render = self.scene.render
+        slots = bpy.data.images["Render Result"].render_slots
+        return (
+            self.scene.lodestone.pixel_error_render,
+            render.use_compositing,
+            render.use_sequencer,
+            render.engine,
+            render.filepath,
+            len(bpy.data.images),
+            slots.active_index if self.plans.get(self.scene.name) is None else 0,
+            self.left_over(),
+        )
+
+    def left_over(self):
+        return [n for n in os.listdir(tempfile.gettempdir()) if n.startswith("lodestone-compare-")]
+
+    def compare(self):
+        self.scene.lodestone.pixel_error_render = 16.0
+        return bpy.ops.lodestone.compare()
+
+    @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+    def test_compare_fills_three_slots_and_names_what_differs(self):
+        self.assertEqual(self.compare(), {"FINISHED"})
+        found = self.plans.get(self.scene.name)
+        self.assertEqual(found.pixel_error, 16.0)
+        self.assertGreater(found.pixels, 100)
+        self.assertGreater(found.max, 0.0)
+        self.assertLess(found.ssim, 1.0)
+        self.assertEqual(found.worst[0][0].rsplit("/", 1)[-1], "Near")
+        self.assertGreater(found.worst[0][1], 0.5)
+        self.assertEqual(bpy.ops.lodestone.select_object(path=found.worst[0][0]), {"FINISHED"})
+        self.assertEqual(bpy.context.object, self.near)
+        # The slots hold three different pictures, the third black where nothing differs
+        result = bpy.data.images["Render Result"]
+        pictures = []
+        for slot in range(3):
+            result.render_slots.active_index = slot
+            path = str(self.folder / f"slot{slot}.png")
+            result.save_render(path, scene=self.scene)
+            from lodestone import lodestone_native as native
+
+            pictures.append(native.image_read(path).pixels)
+        self.assertNotEqual(pictures[0], pictures[1])
+        self.assertLess(max(pictures[2][0:3]), 0.01)
+        self.assertGreater(max(pictures[2][0::4]) + max(pictures[2][2::4]), 0.1)
+        self.assertEqual(self.left_over(), [])
+        self.assertIsNone(self.plans.current())
+
+    @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+    def test_compare_of_a_border_counts_the_border_alone(self):
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.5, 0.75
+        render.border_min_y, render.border_max_y = 0.0, 1.0
+        self.assertEqual(self.compare(), {"FINISHED"})
+        self.assertLessEqual(self.plans.get(self.scene.name).pixels, 16 * 36)
+
+    @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+    def test_a_failing_comparison_leaves_everything_as_it_was(self):
+        bpy.ops.render.render()
+        slots = bpy.data.images["Render Result"].render_slots
+        slots.active_index = 4
+        self.scene.render.use_compositing = True
+        program = self.folder / "povray"
+        program.write_text("#!/bin/sh\nexit 1\n")
+        program.chmod(0o755)
+        self.scene.lodestone.pixel_error_render = 16.0
+        before = self.everything()
+        old = os.environ.get("LODESTONE_POVRAY")
+        os.environ["LODESTONE_POVRAY"] = str(program)
+        try:
+            with self.assertRaises(RuntimeError):
+                bpy.ops.lodestone.compare()
+        finally:
+            if old is None:
+                del os.environ["LODESTONE_POVRAY"]
+            else:
+                os.environ["LODESTONE_POVRAY"] = old
+        self.assertEqual(self.everything(), before)
+        self.assertEqual(slots.active_index, 4)
+        self.assertIsNone(self.plans.current())
+
+    def test_what_cannot_be_compared_is_refused_with_a_reason(self):
+        from lodestone.operators import compare
+
+        self.scene.lodestone.pixel_error_render = 0.0
+        self.assertIn("Pixel Error 0", compare.refusal(bpy.context))
+        self.scene.lodestone.pixel_error_render = 1.0
+        self.assertEqual(compare.refusal(bpy.context), "")
+        self.scene.camera = None
+        self.assertIn("camera", compare.refusal(bpy.context))
+        self.scene.render.engine = "CYCLES"
+        self.assertIn("engine", compare.refusal(bpy.context))
+
+    @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+    def test_a_picture_tells_why_and_what_it_took(self):
+        from lodestone.bridge import kept_view
+
+        self.scene.lodestone.pixel_error_render = 0.25
+        self.scene.lodestone.build_on_render = "ALL"
+        bpy.ops.render.render()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        near = kept_view.explained(self.scene, depsgraph, self.near)
+        far = kept_view.explained(self.scene, depsgraph, self.far)
+        self.assertNotEqual(near.title, far.title)
+        self.assertRegex(far.lines[0], r"^\d+ m . .*m = .* px . 0\.25 px$")
+        self.assertIn("would be", " ".join(near.lines))
+        empty = scenes.link(bpy.data.objects.new("Later", None))
+        bpy.context.view_layer.update()
+        found = kept_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), empty)
+        self.assertEqual(found.title, "Not in the last picture")
+        render = self.renders.get(self.scene.name)
+        self.assertGreater(render.actual_s, 0.0)
+        self.assertGreater(render.predicted_s, 0.0)
+        self.assertGreater(render.actual_bytes, 1e6)
+        self.assertLess(abs(render.predicted_bytes / render.actual_bytes - 1.0), 0.5)
+        cost = json.loads((self.folder / "lodestone/file/cost.json").read_text())
+        self.assertEqual(set(cost), {"parse", "trace", "memory"})
+        self.assertFalse(any("lodestone" in item.keys() for item in bpy.data.objects))
+
+    def test_reading_keeps_the_scene_until_it_changes(self):
+        self.assertEqual(bpy.ops.lodestone.read_levels(), {"FINISHED"})
+        kept = self.kept.get(self.scene.name)
+        self.assertFalse(kept.outdated)
+        self.scene.camera.location.z = 20.0
+        bpy.context.view_layer.update()
+        self.assertFalse(kept.outdated)
+        self.near.location.x = 0.5
+        bpy.context.view_layer.update()
+        self.assertTrue(kept.outdated)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        self.assertTrue(kept.closed)
+        self.assertIsNone(self.kept.get("Scene"))
+
+    @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+    def test_false_colors_are_the_levels_of_the_scene_camera_from_anywhere(self):
+        from lodestone.core import false_colors
+        from lodestone import lodestone_native as native
+
+        self.scene.lodestone.pixel_error_render = 2.0
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 320, 180
+        bpy.ops.lodestone.read_levels()
+        shown = {}
+        for seen_from in ("CAMERA", "OVERVIEW"):
+            done = bpy.ops.lodestone.false_color_picture(seen_from=seen_from, mode="LEVEL")
+            self.assertEqual(done, {"FINISHED"})
+            image = bpy.data.images["Lodestone False Colors"]
+            self.assertEqual(image.size[0], 320)
+            self.assertGreater(image.size[1], 180)
+            pixels = list(image.pixels)[4 * 320 * (image.size[1] - 180) :]
+            shown[seen_from] = pixels
+        self.assertNotEqual(shown["CAMERA"], shown["OVERVIEW"])
+        color = false_colors.of_level(native.Kind.MESH, 0)  # nothing is built: all originals
+        for pixels in shown.values():
+            reds = [p for p in pixels[0::4] if abs(p - color[0]) < 0.01]
+            self.assertGreater(len(reds), 5, sorted(set(round(p, 2) for p in pixels[0::4])))
+        self.assertEqual(len([i for i in bpy.data.images if "False" in i.name]), 1)
+
+    def test_the_overlay_makes_what_it_draws_without_a_gpu(self):
+        from lodestone import overlay
+
+        bpy.ops.lodestone.read_levels()
+        self.assertTrue(overlay.refresh(bpy.context, self.scene, "LEVEL"))
+        shown = overlay._shown
+        self.assertGreater(shown.triangles, 2000)
+        self.assertEqual(len(shown._arrays[0]), 9 * shown.triangles)
+        self.assertEqual(len(shown._arrays[1]), 12 * shown.triangles)
+        kept = self.kept.get(self.scene.name)
+        self.assertEqual(overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key)
+        self.scene.camera.location.z = 500.0
+        bpy.context.view_layer.update()
+        self.assertNotEqual(overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key)
+        self.assertIsNone(overlay._handle)  # without a window nothing is drawn
+        overlay.forget()
+
+    def test_files_are_opened_as_they_are_whatever_was_shown(self):
+        bpy.context.window_manager.lodestone_overlay.mode = "COST"
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "shown.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(self.folder / "shown.blend"))
+        self.assertEqual(bpy.context.window_manager.lodestone_overlay.mode, "NONE")
