@@ -93,6 +93,7 @@ class _Run:
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
+        self.off_screen = settings.off_screen
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
@@ -180,7 +181,7 @@ class _Run:
     def _modifiers(self, extraction, camera_object, closing):
         objects = self.depsgraph.objects
         detail = lenses.detail(objects, lenses.parts_in(extraction), self.problems)
-        return lenses.modifiers(detail, camera_object, self.coarser, closing)
+        return lenses.modifiers(detail, camera_object, self.coarser, closing, self.off_screen)
 
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""

@@ -132,7 +132,7 @@ def _modifiers(depsgraph, frame_set, request, extraction):
     parts_of = lenses.parts_in(extraction)
     detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
     return [
-        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end)
+        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, settings.off_screen)
         for name, end in zip(names, closing)
     ]
 

@@ -53,6 +53,22 @@ ANTIALIAS = (
     ("FINAL", "Final", "Adaptive: more samples where the picture needs them", 1),
     ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing", 2),
 )
+OFF_SCREEN = (
+    ("FULL", "Full Detail", "As if the picture showed them", 0),
+    (
+        "REFLECTED",
+        "As Shadows and Mirrors Need",
+        "Coarser, as far as the picture shows their shadows and as anything in it may mirror or "
+        "refract them. Saves little where many things mirror",
+        1,
+    ),
+    (
+        "SHADOWS",
+        "As Shadows Need",
+        "Coarser, as far as the picture shows their shadows. What it mirrors of them may be coarse",
+        2,
+    ),
+)
 DEFORMING = (
     (
         "FOLLOW",
@@ -190,6 +206,12 @@ class LODESTONE_PG_scene(Overrides, bpy.types.PropertyGroup):
         description="Draw coarser what crosses the picture fast while the shutter is open, and "
         "what little light falls on, unless it stands before a bright background",
         default=False,
+    )
+    off_screen: EnumProperty(
+        name="Off Screen",
+        description="How fine things are that the picture does not show",
+        items=OFF_SCREEN,
+        default="FULL",
     )
     antialias: EnumProperty(
         name="Antialiasing",

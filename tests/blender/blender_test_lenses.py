@@ -189,7 +189,7 @@ class Drawn(unittest.TestCase):
             bpy.data.objects.remove(item)
         self.scene.camera.data.lodestone.screen_lenses.clear()
         settings = self.scene.lodestone
-        for name in ("budget_render", "use_levels", "coarser_moving_dark"):
+        for name in ("budget_render", "use_levels", "coarser_moving_dark", "off_screen"):
             settings.property_unset(name)
         settings.pixel_error_render = 1.0
 
@@ -260,6 +260,19 @@ class Drawn(unittest.TestCase):
         found = self.chosen()
         self.assertGreater(found["Group 1"], plain["Group 1"])
         self.assertEqual(found["Group 0"], plain["Group 0"])
+
+    def test_what_is_off_screen_may_be_coarser(self):
+        camera = self.scene.camera
+        before = camera.location.copy()
+        try:
+            camera.location = (4.5, 1.5, 40)  # sees the first group
+            full = self.chosen()
+            self.scene.lodestone.off_screen = "SHADOWS"
+            found = self.chosen()
+        finally:
+            camera.location = before
+        self.assertEqual(found["Group 0"], full["Group 0"])
+        self.assertLess(found.get("Group 2", 0), full["Group 2"])
 
     def statistics(self):
         found = live_view.statistics(bpy.context)

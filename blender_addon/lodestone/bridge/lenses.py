@@ -14,6 +14,7 @@ from .listed import rows
 DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
 MOST = 1024  # what the backend takes
 MOST_FILTERED = 64
+FULL = native.OffScreen.FULL.name
 
 # The model's objects that a collection became
 PartsOf = Callable[[Any], Iterable[Any]]
@@ -97,11 +98,13 @@ def modifiers(
     camera: Any,
     coarser: bool,
     closing: Any | None = None,
+    off_screen: str = FULL,
 ) -> native.Modifiers | None:
     """All together, of a camera object; None: nothing bends quality. `coarser`: when moving or
-    dark. `closing`: the camera as the shutter closes, None: it rests."""
+    dark. `closing`: the camera as the shutter closes, None: it rests. `off_screen`: what the
+    picture does not show, by native.OffScreen's names."""
     screen_lenses = screen(camera)
-    if not (lenses or screen_lenses or coarser):
+    if not (lenses or screen_lenses or coarser or off_screen != FULL):
         return None
     return native.Modifiers(
         lenses=lenses,
@@ -109,6 +112,7 @@ def modifiers(
         when_moving=coarser,
         when_dark=coarser,
         closing=closing,
+        off_screen=native.OffScreen[off_screen],
     )
 
 

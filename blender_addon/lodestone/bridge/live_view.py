@@ -67,7 +67,7 @@ def settings_of(scene: Any, model: Any) -> Settings:
         pixel_error=quality.pixel_error(own),
         overrides=quality.overrides(own),
         budget=quality.budget(own),
-        modifiers=lenses.modifiers(detail, scene.camera, coarser),
+        modifiers=lenses.modifiers(detail, scene.camera, coarser, off_screen=own.off_screen),
     )
 
 
@@ -88,6 +88,7 @@ def _hashable(settings: Settings) -> Hashable:
             ),
             modifiers.screen_lenses,
             modifiers.when_dark,
+            modifiers.off_screen,
         )  # fmt: skip
     return (settings.pixel_error, settings.budget, bent)
 

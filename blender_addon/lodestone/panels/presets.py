@@ -32,6 +32,7 @@ _KEPT = (
     "budget_render",
     "budget_viewport",
     "coarser_moving_dark",
+    "off_screen",
     "antialias",
     *(quality.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
 )
