@@ -5,10 +5,12 @@
 #include "base/parallel.h"
 #include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
+#include "povray_export/invertible.h"
 #include "povray_export/light_plan.h"
 #include "povray_export/light_writer.h"
 #include "povray_export/magnification.h"
 #include "povray_export/number.h"
+#include "povray_export/render_settings.h"
 #include "povray_export/representation_writer.h"
 #include "povray_export/scene_lights.h"
 #include "povray_export/sky_writer.h"
@@ -30,11 +32,6 @@
 namespace lodestone::povray {
 namespace {
 
-// What is flattened to a sheet gets this part of its stretch as thickness: POV-Ray loses rays below
-// 1e-7, and takes columns below 1e-10 for a mistake that it corrects to 1.
-constexpr double kSheet = 1e-5;
-constexpr double kSmallestStretch = 1e-9;
-
 double thread_cpu_s() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -52,27 +49,6 @@ std::string plain(const std::string& name) {
             break;
     }
     return out.empty() ? "unnamed" : out;
-}
-
-/// Makes a transform one that POV-Ray can invert; false when nothing of it could be seen.
-bool make_invertible(Affine& transform) {
-    if (!transform.finite())
-        return false;
-    const Eigen eigen = eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
-    // The square's eigenvalues have lost half of the digits: only its axes are used.
-    const glm::dvec3 along = transform.linear * eigen.axes[0];
-    const glm::dvec3 normal = glm::cross(along, transform.linear * eigen.axes[1]);
-    const double length = glm::length(along);
-    const double thinnest = std::max(kSheet * length, kSmallestStretch);
-    if (!std::isfinite(length) || !(length >= kSmallestStretch) ||
-        !(glm::length(normal) >= thinnest * length))
-        return false;
-    const glm::dvec3 unit = glm::normalize(normal);
-    const double thickness = glm::dot(transform.linear * eigen.axes[2], unit);
-    if (std::abs(thickness) < thinnest)
-        transform.linear += glm::outerProduct(
-            unit * (std::copysign(thinnest, thickness) - thickness), eigen.axes[2]);
-    return true;
 }
 
 /// POV-Ray's flags; only ever on single objects, as it loses no_image in some of its CSG.
@@ -170,7 +146,8 @@ public:
             report_.written += sky_.written ? 1u : 0u;
         }
         write_text("scene.pov", scene());
-        write_text("scene.ini", ini());
+        write_text("scene.ini",
+                   render_settings(view_, shading_, options_.antialiasing, transparent()));
         ExportReport report = report_;
         for (const Include& include : includes_) {
             report.cpu_s += include.cpu_s;
@@ -476,51 +453,6 @@ private:
                 out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
         }
         return out + '\n' + objects;
-    }
-
-    std::string adaptive() const {
-        std::string out = "Antialias=On\nSampling_Method=1\nAntialias_Threshold=";
-        append_number(out, shading_.threshold, 6);
-        out += "\nAntialias_Depth=";
-        append_count(out, static_cast<uint64_t>(shading_.depth));
-        return out + "\nJitter=Off\n";
-    }
-
-    std::string ini() const {
-        std::string out =
-            "; Lodestone " LODESTONE_VERSION
-            "\nInput_File_Name=scene.pov\nOutput_File_Name=scene.png\n"
-            "Output_File_Type=N\nBits_Per_Color=8\nDisplay=Off\nPause_When_Done=Off\nWidth=";
-        append_count(out, static_cast<uint64_t>(view_.width));
-        out += "\nHeight=";
-        append_count(out, static_cast<uint64_t>(view_.height));
-        if (view_.border) {
-            const auto [left, top, width, height] = *view_.border;
-            const std::pair<const char*, int> ends[] = {{"Start_Column", left + 1},
-                                                        {"End_Column", left + width},
-                                                        {"Start_Row", top + 1},
-                                                        {"End_Row", top + height}};
-            for (const auto& [name, pixel] : ends) {
-                out += '\n';
-                out += name;
-                out += '=';
-                append_count(out, static_cast<uint64_t>(pixel));
-            }
-        }
-        out += transparent() ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
-        if (blurred(view_.camera))
-            return out + "Antialias=Off\n";
-        switch (options_.antialiasing) {
-            case Antialiasing::Off:
-                return out + "Antialias=Off\n";
-            case Antialiasing::Final:
-                return out + adaptive();
-            case Antialiasing::Reference:
-                break;
-        }
-        return out +
-               "Antialias=On\nSampling_Method=1\nAntialias_Threshold=0.0\n"
-               "Antialias_Depth=4\nJitter=Off\n";
     }
 
     const Model& model_;

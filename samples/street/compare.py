@@ -43,7 +43,7 @@ def views_of(camera: str, folder: Path) -> list[dict]:
 
     views = [view("reference", 0.0, antialias="reference")]
     for pixel_error in (0.0, *PIXEL_ERRORS):
-        views.append(view(name_of(pixel_error), pixel_error))
+        views.append(view(name_of(pixel_error), pixel_error, antialias="final"))
         views.append(view(name_of(pixel_error) + "_mask", pixel_error, covered_only=True))
     views.append(view("1px_false", 1.0, false_color=True))
     return views

@@ -289,7 +289,7 @@ TEST(Simplify, ThousandsOfTilesGoBeforeThePlatesTheyLieOnLoseTheirShape) {
     for (const Mesh& level : simplify_chain(mesh, targets)) {
         const Box3 box = bound_of(level.positions).box;
         EXPECT_NEAR(box.low.z, -0.4, 0.005) << level.triangles.size() << " triangles";
-        EXPECT_NEAR(box.high.z, 0.02, 0.025) << level.triangles.size() << " triangles";
+        EXPECT_NEAR(box.high.z, 0.02, 0.035) << level.triangles.size() << " triangles";
     }
 }
 

@@ -46,7 +46,7 @@ static void test_two_cubes_share_one_file(const char* folder) {
     EXPECT(report.lamps == 0 && report.lights_each == 0);
     /* A program built before lights were approximated. */
     lds_povray_options old = options;
-    old.struct_size = offsetof(lds_povray_options, light_error);
+    old.struct_size = offsetof(lds_povray_options, antialias_threshold);
     report.struct_size = offsetof(lds_export_report, lamps);
     report.lamps = 77;
     EXPECT(lds_povray_export(model, cut, &view, folder, &old, NULL, &report) == LDS_OK);

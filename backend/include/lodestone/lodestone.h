@@ -806,9 +806,10 @@ typedef enum lds_criterion {
 
 /* How fine things are that the picture does not show; the whole picture counts, whatever part of it is drawn. */
 typedef enum lds_off_screen {
-    LDS_OFF_SCREEN_FULL = 0,      /* as if it showed them */
-    LDS_OFF_SCREEN_REFLECTED = 1, /* as far as it shows their shadows, and mirrors or refracts them */
-    LDS_OFF_SCREEN_SHADOWS = 2    /* as far as it shows their shadows: images of them may be coarse */
+    LDS_OFF_SCREEN_FULL = 0, /* as if it showed them */
+    LDS_OFF_SCREEN_REFLECTED =
+        1,                     /* as far as it shows their shadows, and mirrors or refracts them */
+    LDS_OFF_SCREEN_SHADOWS = 2 /* as far as it shows their shadows: images of them may be coarse */
 } lds_off_screen;
 
 /* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
@@ -828,7 +829,7 @@ typedef struct lds_modifiers {
     int32_t when_dark; /* 1: coarser where what the lamps and the world could light is displayed
                             below 1/2, unless the world behind is brighter */
     const lds_camera* closing; /* the camera when the shutter closes; null: it rests */
-    int32_t off_screen; /* lds_off_screen */
+    int32_t off_screen;        /* lds_off_screen */
 } lds_modifiers;
 LDS_API lds_modifiers lds_modifiers_default(void);
 
@@ -980,15 +981,18 @@ typedef struct lds_povray_options {
     int32_t threads;     /* 0 = all */
     const char* program; /* null: $LODESTONE_POVRAY, else povray on the PATH */
     /* How finely it is shaded; 0 is the usual. A larger error is rougher and cheaper. */
-    double antialias_threshold; /* FINAL: neighbors that differ by more get more samples; usual .1 */
-    int32_t antialias_depth;    /* FINAL: its square is how many; usual 3 */
-    int32_t trace_depth;        /* mirrors or bodies of glass, one behind the other; usual 5 */
-    int32_t area_samples; /* rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows; usual 17,
+    double
+        antialias_threshold; /* FINAL: neighbors that differ by more get more samples; usual .1 */
+    int32_t antialias_depth; /* FINAL: its square is how many; usual 3 */
+    int32_t trace_depth;     /* mirrors or bodies of glass, one behind the other; usual 5 */
+    int32_t
+        area_samples;   /* rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows; usual 17,
                              with OFF 1 */
-    int32_t sky_lights;   /* lights that stand for an environment image; below 0: none; usual 24, with
+    int32_t sky_lights; /* lights that stand for an environment image; below 0: none; usual 24, with
                              OFF 12, with REFERENCE 64 */
-    double shadow_error;  /* pixels; narrower penumbrae are sharp; usual the view's pixel_error */
-    double light_error; /* how far lights are approximated, in place of the view's Pixel Error; 0: all of
+    double shadow_error; /* pixels; narrower penumbrae are sharp; usual the view's pixel_error */
+    double
+        light_error; /* how far lights are approximated, in place of the view's Pixel Error; 0: all of
                            them light everything; negative (usual): the view's. A point differs by about
                            as many steps of an 8-bit display on average */
     double reflection_error; /* 255ths; rays that add less are not followed; usual 1 */
