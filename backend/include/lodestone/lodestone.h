@@ -804,12 +804,12 @@ typedef enum lds_criterion {
                                      serves twice as far: larger is finer */
 } lds_criterion;
 
-/* How fine things are that the picture does not show; the whole picture counts, whatever part of it is drawn. */
+/* How fine things are that the picture does not show; the whole picture counts, whatever part of it
+   is drawn. */
 typedef enum lds_off_screen {
-    LDS_OFF_SCREEN_FULL = 0, /* as if it showed them */
-    LDS_OFF_SCREEN_REFLECTED =
-        1,                     /* as far as it shows their shadows, and mirrors or refracts them */
-    LDS_OFF_SCREEN_SHADOWS = 2 /* as far as it shows their shadows: images of them may be coarse */
+    LDS_OFF_SCREEN_FULL = 0,      /* as if it showed them */
+    LDS_OFF_SCREEN_REFLECTED = 1, /* as their shadows in it and their images in mirrors need */
+    LDS_OFF_SCREEN_SHADOWS = 2    /* as their shadows in it need: images of them may be coarse */
 } lds_off_screen;
 
 /* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
