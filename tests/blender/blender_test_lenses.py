@@ -266,6 +266,7 @@ class Drawn(unittest.TestCase):
         before = camera.location.copy()
         try:
             camera.location = (4.5, 1.5, 40)  # sees the first group
+            self.scene.lodestone.pixel_error_render = 0.1
             full = self.chosen()
             self.scene.lodestone.off_screen = "SHADOWS"
             found = self.chosen()

@@ -135,14 +135,14 @@ class Seeing(unittest.TestCase):
     def test_a_picture_tells_why_and_what_it_took(self):
         from lodestone.bridge import kept_view
 
-        self.scene.lodestone.pixel_error_render = 0.25
+        self.scene.lodestone.pixel_error_render = 1.0
         self.scene.lodestone.build_on_render = "ALL"
         bpy.ops.render.render()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         near = kept_view.explained(self.scene, depsgraph, self.near)
         far = kept_view.explained(self.scene, depsgraph, self.far)
         self.assertNotEqual(near.title, far.title)
-        self.assertRegex(far.lines[0], r"^\d+ m . .*m = .* px . 0\.25 px$")
+        self.assertRegex(far.lines[0], r"^\d+ m . .*m = .* px . 1 px$")
         self.assertIn("would be", " ".join(near.lines))
         empty = scenes.link(bpy.data.objects.new("Later", None))
         bpy.context.view_layer.update()

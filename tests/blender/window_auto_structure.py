@@ -18,7 +18,7 @@ FOLDER = Path(sys.argv[-1])
 
 def make():
     scene = scenes.fresh()
-    scene.camera.location = (50, 50, 250)
+    scene.camera.location = (50, 50, 900)
     scene.camera.data.clip_end = 2000
     bpy.data.collections.remove(auto.flat())
     for item in list(bpy.data.objects):
