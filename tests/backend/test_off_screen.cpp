@@ -166,7 +166,8 @@ TEST(OffScreen, NoPointOfAShadowInThePictureIsNearerThanItSays) {
             const glm::dvec3 along =
                 lamp ? glm::normalize(bound.center - from) : glm::normalize(light.direction);
             const double away = lamp ? glm::length(bound.center - from) : 1e300;
-            for (double t = 0; t < 400; t += 0.25) {
+            for (int step = 0; step < 1600; ++step) {
+                const double t = 0.25 * step;
                 const glm::dvec3 at = bound.center + t * along;
                 if (pyramid.outside(ball(at, 1e-6)) || glm::length(at) > 400)
                     continue;
