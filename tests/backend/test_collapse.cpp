@@ -160,7 +160,7 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
 TEST(Collapse, FansAreFoundAndPutInOrder) {
     using approximate::Neighbors;
     // Around vertex 0: triangles (0, a, b), in no order.
-    const auto around = [](std::vector<std::pair<uint32_t, uint32_t>> pairs) {
+    const auto around = [](const std::vector<std::pair<uint32_t, uint32_t>>& pairs) {
         approximate::CollapseMesh mesh;
         uint32_t turn = 0;
         for (const auto& [a, b] : pairs) {

@@ -281,8 +281,11 @@ TEST(Simplify, ThousandsOfTilesGoBeforeThePlatesTheyLieOnLoseTheirShape) {
          {std::pair(-300, 196), std::pair(-96, 192), std::pair(104, 196)}) {
         for (const int y : {-8, 6}) {
             add({x, y, -0.4}, {length, 2, 0.405});
-            for (int i = 0; i < 2 * length; ++i)
-                add({x + i / 2 + 0.006, y + i % 2 + 0.006, -0.02}, {0.988, 0.988, 0.04});
+            for (int i = 0; i < 2 * length; ++i) {
+                const int along = x + i / 2;
+                const int across = y + i % 2;
+                add({along + 0.006, across + 0.006, -0.02}, {0.988, 0.988, 0.04});
+            }
         }
     }
     const std::vector<size_t> targets{11240, 4496, 1796, 112};
