@@ -22,8 +22,12 @@ class Inherited(unittest.TestCase):
     def test_errors_are_the_one_number(self):
         for error in PRESETS:
             found = quality(error)
-            own = (found.textures, found.shadows, found.reflections, found.lights)
-            self.assertEqual(own, (error,) * 4)
+            own = (found.shadows, found.reflections, found.lights)
+            self.assertEqual(own, (error,) * 3)
+
+    def test_textures_stay_as_they_are_up_to_a_pixel(self):
+        found = [quality(error).textures for error in (0.0, 0.5, 1.0, 1.5, 8.0)]
+        self.assertEqual(found, [0.0, 0.0, 0.0, 1.5, 8.0])
 
     def test_preview_and_draft(self):
         preview, draft = quality(2.0), quality(8.0)

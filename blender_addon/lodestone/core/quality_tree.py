@@ -45,6 +45,11 @@ def _same(error: float) -> float:
     return error
 
 
+def _textures(error: float) -> float:
+    """Up to a pixel they stay as they are: making them smaller takes longer than they cost."""
+    return error if error > 1.0 else 0.0
+
+
 def _halvings(error: float) -> int:
     """How often 1 is doubled to reach it, rounded up; 0 below."""
     return math.ceil(math.log2(error)) if error > 1.0 else 0
@@ -72,7 +77,7 @@ def _trace_depth(error: float) -> int:
 
 CONTROLS = (
     Control(
-        "textures", "Textures", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "textures", "Textures", ROOT, _textures, "px", 0.0, MOST_PIXELS,
         "How much image textures may be blurred on the picture, in pixels: larger ones than that "
         "needs are made smaller. 0 keeps them as they are",
     ),
