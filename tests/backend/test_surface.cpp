@@ -46,8 +46,8 @@ TEST(Surface, EmptyCutHasNone) {
 TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
     const Model model = balls();
     const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const quality::Surface surface = all_of(model, cut, 8u * 1280u);
-    EXPECT_EQ(surface.owners.size(), 8u * 1280u);
+    const quality::Surface surface = all_of(model, cut, uint64_t{8} * 1280);
+    EXPECT_EQ(surface.owners.size(), uint64_t{8} * 1280);
     EXPECT_EQ(surface.corners.size(), 3 * surface.owners.size());
     EXPECT_EQ(surface.owners.front(), 0u);
     EXPECT_EQ(surface.owners.back(), 7u);
@@ -59,10 +59,10 @@ TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
 TEST(Surface, FewerTrianglesShowCoarserLevelsAndThenBoxes) {
     const Model model = balls();
     const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    EXPECT_EQ(all_of(model, cut, 8u * 1280u - 1).owners.size(), 8u * 80u);
-    EXPECT_EQ(all_of(model, cut, 8u * 79u).owners.size(), 8u * 20u);
+    EXPECT_EQ(all_of(model, cut, uint64_t{8} * 1280 - 1).owners.size(), uint64_t{8} * 80);
+    EXPECT_EQ(all_of(model, cut, uint64_t{8} * 79).owners.size(), uint64_t{8} * 20);
     const quality::Surface boxes = all_of(model, cut, 1);
-    EXPECT_EQ(boxes.owners.size(), 8u * 12u);
+    EXPECT_EQ(boxes.owners.size(), uint64_t{8} * 12);
     EXPECT_NEAR(box_of(boxes).high.x, 22, 1e-5);
 }
 
@@ -74,8 +74,8 @@ TEST(Surface, WhatCamerasDoNotSeeIsLeftOut) {
         std::make_shared<const Assembly>(std::move(row));
     const quality::Cut cut = quality::choose(model, view_from(1, 0));
     EXPECT_EQ(cut.chosen.size(), 8u);
-    const quality::Surface surface = all_of(model, cut, 8u * 80u);
-    EXPECT_EQ(surface.owners.size(), 6u * 80u);
+    const quality::Surface surface = all_of(model, cut, uint64_t{8} * 80);
+    EXPECT_EQ(surface.owners.size(), uint64_t{6} * 80);
     EXPECT_EQ(surface.owners.front(), 2u);
 }
 
