@@ -88,8 +88,10 @@ TEST(LightTree, SeenFromAfarAJoinedLightIsItsLamps) {
     spot.kind = LightKind::Spot;
     for (const Light& kind : {area, spot, point({0, 0, 3}, 10)}) {
         std::vector<Light> lights(4, kind);
-        for (size_t i = 0; i < 4; ++i)
-            lights[i].position += glm::dvec3(i % 2, static_cast<double>(i / 2), 0);
+        for (size_t i = 0; i < 4; ++i) {
+            const size_t row = i / 2;
+            lights[i].position += glm::dvec3(i % 2, row, 0);
+        }
         const LightTree tree = make_light_tree(lights, kOpen);
         ASSERT_EQ(tree.roots.size(), 1u);
         const glm::dvec3 from{0.5, 0.5, -200};

@@ -15,9 +15,9 @@ constexpr int kSide = 256;
 
 /// Fine stripes: each texel is seen where it is not made smaller.
 PicturePtr stripes() {
-    std::vector<glm::vec4> texels;
-    for (int i = 0; i < kSide * kSide; ++i)
-        texels.push_back(i % 2 == 0 ? glm::vec4(0, 0, 0, 1) : glm::vec4(1, 1, 1, 1));
+    std::vector<glm::vec4> texels(size_t{kSide} * kSide, glm::vec4(1, 1, 1, 1));
+    for (size_t i = 0; i < texels.size(); i += 2)
+        texels[i] = glm::vec4(0, 0, 0, 1);
     return scenes::picture(kSide, texels);
 }
 
