@@ -19,6 +19,7 @@ from ..core import motion_file, progress, store_path
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
 from . import session as sessions
+from .polled import Polled
 
 FEWEST = 8  # a collection of at most so many is not structured
 TRIANGLES_OF = {"box": 12, "ellipsoid": 80, "composite": 640}  # as they count beside meshes
@@ -178,7 +179,7 @@ def _link(source, target):
         shutil.copyfile(source, target)
 
 
-class LODESTONE_OT_auto_structure(sessions.InWindow, bpy.types.Operator):
+class LODESTONE_OT_auto_structure(Polled, sessions.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.auto_structure"
     bl_label = "Auto-Structure"
     bl_description = (
@@ -190,11 +191,8 @@ class LODESTONE_OT_auto_structure(sessions.InWindow, bpy.types.Operator):
     failures = FAILURES
 
     @classmethod
-    def poll(cls, context):
-        why = sessions.refusal() or refusal(context.collection)
-        if why:
-            cls.poll_message_set(why)
-        return not why
+    def refused(cls, context):
+        return sessions.refusal() or refusal(context.collection)
 
     def execute(self, context):
         try:

@@ -9,6 +9,7 @@ from ..core import causes, last_check, last_render, store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
 from ..core.text import sentence
+from .polled import Polled
 
 
 def check_scene(context):
@@ -24,20 +25,19 @@ def check_scene(context):
     return found
 
 
-class LODESTONE_OT_check_scene(bpy.types.Operator):
+class LODESTONE_OT_check_scene(Polled, bpy.types.Operator):
     bl_idname = "lodestone.check_scene"
     bl_label = "Check Scene"
     bl_description = "Find what a render would report, without rendering"
     bl_options = {"REGISTER"}
 
     @classmethod
-    def poll(cls, context):
+    def refused(cls, context):
         if context.scene is None:
-            return False
+            return "There is no scene"
         if bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is running; it checks the scene as well")
-            return False
-        return True
+            return "A render is running; it checks the scene as well"
+        return ""
 
     def execute(self, context):
         try:

@@ -6,6 +6,7 @@ from bpy.props import BoolProperty
 
 from ..bridge import decisions
 from ..core import last_render, store_levels, store_path
+from .polled import Polled
 
 
 def clear_levels(with_decisions):
@@ -23,7 +24,7 @@ def clear_levels(with_decisions):
     return cleared, removed
 
 
-class LODESTONE_OT_clear_levels(bpy.types.Operator):
+class LODESTONE_OT_clear_levels(Polled, bpy.types.Operator):
     bl_idname = "lodestone.clear_levels"
     bl_label = "Clear"
     bl_description = (
@@ -39,11 +40,8 @@ class LODESTONE_OT_clear_levels(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
-        if bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is running")
-            return False
-        return True
+    def refused(cls, context):
+        return "A render is running" if bpy.app.is_job_running("RENDER") else ""
 
     def invoke(self, context, event):
         self.decisions = event.shift

@@ -16,6 +16,7 @@ from ..bridge.settings import SceneSettings
 from ..core import compare_plan, progress
 from ..panels import ENGINE
 from . import session as sessions
+from .polled import Polled
 
 SLOTS = 3
 _INTERVAL_S = 0.1
@@ -119,7 +120,7 @@ def refusal(context):
 _running = None
 
 
-class LODESTONE_OT_compare(bpy.types.Operator):
+class LODESTONE_OT_compare(Polled, bpy.types.Operator):
     bl_idname = "lodestone.compare"
     bl_label = "Compare Levels"
     bl_description = (
@@ -132,11 +133,8 @@ class LODESTONE_OT_compare(bpy.types.Operator):
     _timer = None
 
     @classmethod
-    def poll(cls, context):
-        why = refusal(context)
-        if why:
-            cls.poll_message_set(why)
-        return not why
+    def refused(cls, context):
+        return refusal(context)
 
     def execute(self, context):
         try:

@@ -4,20 +4,20 @@
 import bpy
 
 from ..bridge import decisions
+from .polled import Polled
 
 
-class LODESTONE_OT_copy_decisions(bpy.types.Operator):
+class LODESTONE_OT_copy_decisions(Polled, bpy.types.Operator):
     bl_idname = "lodestone.copy_decisions"
     bl_label = "Copy to Selected"
     bl_description = "Give the other selected objects this one's Use, Importance and Role"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
+    def refused(cls, context):
         if context.object is None or len(context.selected_objects) < 2:
-            cls.poll_message_set("Select other objects too")
-            return False
-        return True
+            return "Select other objects too"
+        return ""
 
     def execute(self, context):
         linked = 0

@@ -7,6 +7,7 @@ from bpy.types import Menu, Operator
 from bpy_extras.object_utils import AddObjectHelper
 
 from ..bridge.lenses import DISPLAY, is_lens
+from .polled import InObjectMode, Polled
 
 SHAPES = (
     ("SPHERE", "Sphere", "All directions alike", "SPHERE", 0),
@@ -31,7 +32,7 @@ def add_lens(context, shape, radius, strength, location, rotation=(0.0, 0.0, 0.0
     return made
 
 
-class LODESTONE_OT_detail_lens_add(AddObjectHelper, Operator):
+class LODESTONE_OT_detail_lens_add(InObjectMode, AddObjectHelper, Operator):
     bl_idname = "lodestone.detail_lens_add"
     bl_label = "Detail Lens"
     bl_description = "Add an Empty in whose sphere or box everything is drawn finer"
@@ -55,14 +56,10 @@ class LODESTONE_OT_detail_lens_add(AddObjectHelper, Operator):
     )
 
     @classmethod
-    def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
-            return False
+    def refused(cls, context):
         if context.collection is None or context.collection.library is not None:
-            cls.poll_message_set("The active collection is linked from a library")
-            return False
-        return True
+            return "The active collection is linked from a library"
+        return super().refused(context)
 
     def execute(self, context):
         add_lens(
@@ -71,18 +68,17 @@ class LODESTONE_OT_detail_lens_add(AddObjectHelper, Operator):
         return {"FINISHED"}
 
 
-class LODESTONE_OT_detail_lens_enable(Operator):
+class LODESTONE_OT_detail_lens_enable(Polled, Operator):
     bl_idname = "lodestone.detail_lens_enable"
     bl_label = "Make Detail Lens"
     bl_description = "Use the selected Empties as detail lenses: arrows and the like become spheres"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
+    def refused(cls, context):
         if not _candidates(context):
-            cls.poll_message_set("Select Empties that are no lenses yet")
-            return False
-        return True
+            return "Select Empties that are no lenses yet"
+        return ""
 
     def execute(self, context):
         for item in _candidates(context):

@@ -142,7 +142,7 @@ class _Session(read_levels.Reading):
         self.start(lambda: self.asked.make(kept, view, self.work.new_job))
 
 
-class LODESTONE_OT_false_color_picture(sessions.InWindow, bpy.types.Operator):
+class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.false_color_picture"
     bl_label = "False-Color Picture"
     bl_description = (
@@ -155,14 +155,6 @@ class LODESTONE_OT_false_color_picture(sessions.InWindow, bpy.types.Operator):
 
     seen_from: EnumProperty(name="Seen From", items=SEEN_FROM, default="CAMERA")
     mode: EnumProperty(name="Color By", items=MODES, default="LEVEL")
-
-    @classmethod
-    def poll(cls, context):
-        why = "" if context.scene.camera else "Set a scene camera"
-        why = why or sessions.refusal()
-        if why:
-            cls.poll_message_set(why)
-        return not why
 
     def _asked(self, context):
         chosen = context.window_manager.lodestone_overlay.mode

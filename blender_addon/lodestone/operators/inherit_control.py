@@ -6,9 +6,10 @@ from bpy.props import StringProperty
 
 from ..bridge import quality
 from ..core import quality_tree
+from .polled import Polled
 
 
-class LODESTONE_OT_inherit_control(bpy.types.Operator):
+class LODESTONE_OT_inherit_control(Polled, bpy.types.Operator):
     bl_idname = "lodestone.inherit_control"
     bl_label = "Inherit"
     bl_description = "Take the value from Pixel Error again"
@@ -17,11 +18,10 @@ class LODESTONE_OT_inherit_control(bpy.types.Operator):
     key: StringProperty(options={"HIDDEN"})  # "": all of them
 
     @classmethod
-    def poll(cls, context):
+    def refused(cls, context):
         if not quality.overrides(context.scene.lodestone):
-            cls.poll_message_set("Everything inherits already")
-            return False
-        return True
+            return "Everything inherits already"
+        return ""
 
     def execute(self, context):
         keys = [self.key] if self.key else list(quality_tree.CONTROL)

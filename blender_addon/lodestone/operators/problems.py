@@ -6,6 +6,7 @@ from bpy.props import StringProperty
 
 from ..bridge import ids, ignored
 from ..core import causes, last_check
+from .polled import InObjectMode, Polled
 
 
 def split(context):
@@ -85,20 +86,13 @@ class _OfCause:
         return f"{cls.bl_description}: {cause.sentence}" if cause else cls.bl_description
 
 
-class LODESTONE_OT_select_problem(_OfCause, bpy.types.Operator):
+class LODESTONE_OT_select_problem(_OfCause, InObjectMode, bpy.types.Operator):
     bl_idname = "lodestone.select_problem"
     bl_label = "Select"
     bl_description = "Select the objects that have this problem"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     key: StringProperty(options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
-            return False
-        return True
 
     def execute(self, context):
         cause = find(context, self.key)
@@ -114,7 +108,7 @@ class LODESTONE_OT_select_problem(_OfCause, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LODESTONE_OT_copy_problems(_OfCause, bpy.types.Operator):
+class LODESTONE_OT_copy_problems(_OfCause, Polled, bpy.types.Operator):
     bl_idname = "lodestone.copy_problems"
     bl_label = "Copy"
     bl_description = "Copy as text, with the names of everything that has the problem"
@@ -123,12 +117,11 @@ class LODESTONE_OT_copy_problems(_OfCause, bpy.types.Operator):
     key: StringProperty(description="Empty for all rows", options={"HIDDEN"})
 
     @classmethod
-    def poll(cls, context):
+    def refused(cls, context):
         found = split(context)
         if found is None or not (found.shown or found.ignored):
-            cls.poll_message_set("No problems to copy")
-            return False
-        return True
+            return "No problems to copy"
+        return ""
 
     def execute(self, context):
         context.window_manager.clipboard = text_of(context, self.key)
@@ -149,17 +142,21 @@ def text_of(context, key=""):
     return "\n".join([*lines, *([exact] if exact else [])]) + "\n"
 
 
-class LODESTONE_OT_ignore_problem(_OfCause, bpy.types.Operator):
+class _Ignoring(Polled):
+    @classmethod
+    def refused(cls, context):
+        if ids.library_of(context.scene):
+            return "The scene is linked: its decisions are made in its own file"
+        return ""
+
+
+class LODESTONE_OT_ignore_problem(_OfCause, _Ignoring, bpy.types.Operator):
     bl_idname = "lodestone.ignore_problem"
     bl_label = "Ignore"
     bl_description = "Do not show again until it changes; batch jobs still report it"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     key: StringProperty(options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        return _writable(cls, context)
 
     def execute(self, context):
         cause = find(context, self.key)
@@ -170,31 +167,20 @@ class LODESTONE_OT_ignore_problem(_OfCause, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LODESTONE_OT_restore_problems(bpy.types.Operator):
+class LODESTONE_OT_restore_problems(_Ignoring, bpy.types.Operator):
     bl_idname = "lodestone.restore_problems"
     bl_label = "Restore"
     bl_description = "Show the ignored problems again"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     @classmethod
-    def poll(cls, context):
-        if not _writable(cls, context):
-            return False
-        if not ignored.keys(context.scene):
-            cls.poll_message_set("No problem is ignored")
-            return False
-        return True
+    def refused(cls, context):
+        none = "" if ignored.keys(context.scene) else "No problem is ignored"
+        return super().refused(context) or none
 
     def execute(self, context):
         ignored.clear(context.scene)
         return {"FINISHED"}
-
-
-def _writable(cls, context):
-    if ids.library_of(context.scene):
-        cls.poll_message_set("The scene is linked: its decisions are made in its own file")
-        return False
-    return True
 
 
 _CLASSES = (

@@ -14,6 +14,7 @@ from ..core.picture import Settings
 from ..core.store_levels import is_store
 from ..core.text import sentence
 from . import session as sessions
+from .polled import Polled
 
 FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing)
 
@@ -79,7 +80,13 @@ class Reading(sessions.Session):
         return kept
 
 
-class LODESTONE_OT_read_levels(sessions.InWindow, bpy.types.Operator):
+class OfCamera(Polled):
+    @classmethod
+    def refused(cls, context):
+        return sessions.refusal() if context.scene.camera else "Set a scene camera"
+
+
+class LODESTONE_OT_read_levels(OfCamera, sessions.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.read_levels"
     bl_label = "Read Scene"
     bl_description = (
@@ -89,14 +96,6 @@ class LODESTONE_OT_read_levels(sessions.InWindow, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     failures = FAILURES
-
-    @classmethod
-    def poll(cls, context):
-        why = "" if context.scene.camera else "Set a scene camera"
-        why = why or sessions.refusal()
-        if why:
-            cls.poll_message_set(why)
-        return not why
 
     def execute(self, context):
         try:

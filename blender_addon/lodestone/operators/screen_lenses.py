@@ -7,6 +7,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
 from ..bridge import ids
+from .polled import Polled
 
 MOST = 64  # a list that nobody reads; each is looked at for everything that is drawn
 
@@ -33,7 +34,7 @@ def lens_count(camera):
     return 0 if settings is None else len(settings.screen_lenses)
 
 
-class _OfCamera:
+class _OfCamera(Polled):
     @classmethod
     def refused(cls, context):
         camera = camera_of(context)
@@ -49,13 +50,11 @@ class LODESTONE_OT_screen_lens_add(_OfCamera, Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
-        why = cls.refused(context)
+    def refused(cls, context):
+        why = super().refused(context)
         if not why and lens_count(camera_of(context)) >= MOST:
             why = f"A camera has at most {MOST} screen lenses"
-        if why:
-            cls.poll_message_set(why)
-        return not why
+        return why
 
     def execute(self, context):
         settings = camera_of(context).lodestone
@@ -73,13 +72,11 @@ class LODESTONE_OT_screen_lens_remove(_OfCamera, Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
-        why = cls.refused(context)
+    def refused(cls, context):
+        why = super().refused(context)
         if not why and active_lens(camera_of(context)) is None:
             why = "There is no screen lens"
-        if why:
-            cls.poll_message_set(why)
-        return not why
+        return why
 
     def execute(self, context):
         camera = camera_of(context)
@@ -101,15 +98,13 @@ class LODESTONE_OT_screen_lens_drag(_OfCamera, Operator):
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}
 
     @classmethod
-    def poll(cls, context):
-        why = cls.refused(context)
+    def refused(cls, context):
+        why = super().refused(context)
         if not why and active_lens(camera_of(context)) is None:
             why = "There is no screen lens"
         if not why and camera_region(context, camera_of(context)) is None:
             why = "Look through the scene's camera in a 3D view"
-        if why:
-            cls.poll_message_set(why)
-        return not why
+        return why
 
     def invoke(self, context, event):
         lens = active_lens(camera_of(context))

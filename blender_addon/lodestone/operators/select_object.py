@@ -4,6 +4,8 @@
 import bpy
 from bpy.props import StringProperty
 
+from .polled import InObjectMode
+
 
 def select_object(context, name):
     """Makes it the only selected and active object. False when the view layer has no such one."""
@@ -17,20 +19,13 @@ def select_object(context, name):
     return True
 
 
-class LODESTONE_OT_select_object(bpy.types.Operator):
+class LODESTONE_OT_select_object(InObjectMode, bpy.types.Operator):
     bl_idname = "lodestone.select_object"
     bl_label = "Select"
     bl_description = "Object whose stand-in differs most on screen; click to select it"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     path: StringProperty(options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
-            return False
-        return True
 
     def execute(self, context):
         # A path of placements: the innermost name that is an object here

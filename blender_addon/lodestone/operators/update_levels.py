@@ -13,6 +13,7 @@ from ..core import motion_file, progress, store_path
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
 from . import session as sessions
+from .polled import Polled
 
 UNDO_NAME = "Update Levels"
 
@@ -105,7 +106,7 @@ class _InWindow(sessions.InWindow):
         return outcome
 
 
-class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
+class LODESTONE_OT_update_levels(Polled, _InWindow, bpy.types.Operator):
     bl_idname = "lodestone.update_levels"
     bl_label = "Update Levels"
     bl_description = (
@@ -117,11 +118,8 @@ class LODESTONE_OT_update_levels(_InWindow, bpy.types.Operator):
     confirm: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
-    def poll(cls, context):
-        why = sessions.refusal()
-        if why:
-            cls.poll_message_set(why)
-        return not why and context.scene is not None
+    def refused(cls, context):
+        return sessions.refusal() if context.scene else "There is no scene"
 
     def execute(self, context):
         try:
