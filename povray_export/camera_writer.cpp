@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/camera_writer.h"
 
+#include "base/maths.h"
 #include "povray_export/number.h"
 
 #include <cmath>
@@ -8,10 +9,6 @@
 
 namespace lodestone::povray {
 namespace {
-
-bool finite(const glm::dvec3& value) {
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
 
 /// POV-Ray's lens has a quarter of its aperture as radius (measured), and is in focus where rays are
 /// as long as the one to focal_point: a plane across the view, in units of `direction`.

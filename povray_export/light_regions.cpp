@@ -9,12 +9,12 @@
 namespace lodestone::povray {
 namespace {
 
-constexpr size_t kOwn = 48;      // points that make a thing a region of its own
-constexpr size_t kCell = 16;     // fewest points of a box
-constexpr size_t kPieces = 128;  // boxes of one thing
-constexpr size_t kFewLamps = 6;  // that light a box: it is not cut further
-constexpr double kWorth = 0.8;   // of the lights at all points: what a cut must leave at most
-constexpr size_t kGaps = 12;     // widest gaps between points along an axis that are tried
+constexpr size_t kOwn = 48;            // points that make a thing a region of its own
+constexpr size_t kCell = 16;           // fewest points of a box
+constexpr size_t kPieces = 128;        // boxes of one thing
+constexpr size_t kFewLamps = 6;        // that light a box: it is not cut further
+constexpr double kWorthCutting = 0.8;  // of the lights at all points: what a cut must leave at most
+constexpr size_t kGaps = 12;           // widest gaps between points along an axis that are tried
 
 class Maker {
 public:
@@ -142,7 +142,7 @@ private:
                 continue;
             }
             const Plane plane = best_plane(part.points, least);
-            if (!(plane.cost <= kWorth * static_cast<double>(part.points.size() * lamps))) {
+            if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size() * lamps))) {
                 done.push_back(std::move(part));
                 continue;
             }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/light_writer.h"
 
+#include "base/maths.h"
 #include "povray_export/number.h"
 
 #include <algorithm>
@@ -10,17 +11,12 @@
 namespace lodestone::povray {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDegrees = 180 / kPi;
 // POV-Ray's fading is 2 / (1 + (d/e)^2): with a tiny e it is an exact 1/d^2 times 2 e^2.
 constexpr double kNear = 1e-3;
 constexpr double kWideSun = 0.2;      // half angle above which the fewest first rays miss shadows
 constexpr int kMostRays = 129;        // along an edge
 constexpr double kNarrowSun = 0.009;  // half angle of a sun whose penumbra is a few pixels
-
-bool finite(const glm::dvec3& value) {
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
 
 glm::dvec3 perpendicular(const glm::dvec3& unit) {
     const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);

@@ -50,7 +50,7 @@ Key rounded(Key key, uint64_t step) {
     return out;
 }
 
-glm::dvec4 color_of(Key key) {
+glm::dvec4 color_of_key(Key key) {
     glm::dvec4 color;
     for (int i = 3; i >= 0; --i, key >>= 16u) {
         const float value = static_cast<float>(key & 0xffffu) / 65535.0f;
@@ -61,7 +61,7 @@ glm::dvec4 color_of(Key key) {
 
 /// The color without its brightness.
 Key hue_of(Key key) {
-    glm::dvec4 color = color_of(key);
+    glm::dvec4 color = color_of_key(key);
     const double most = std::max({color.x, color.y, color.z});
     if (most > 0)
         color /= most;
@@ -300,7 +300,7 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
         std::set<Key> hues;
         glm::dvec3 sum(0.0);
         for (const Key key : keys) {
-            sum += glm::dvec3(color_of(key));
+            sum += glm::dvec3(color_of_key(key));
             if (hues.size() <= kMostHues)
                 hues.insert(hue_of(key));
         }
@@ -327,7 +327,7 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
             slot.surface.to_uv = slot.planes[plane];
         }
         if (slot.colored) {
-            const glm::dvec4 color = color_of(key);
+            const glm::dvec4 color = color_of_key(key);
             slot.surface.color = color;
             if (hue.x >= 0 && slot.surface.uvs)
                 slot.surface.color =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/penumbra.h"
 
+#include "base/maths.h"
 #include "quality/criterion.h"
 #include "quality/light_arrival.h"
 
@@ -12,8 +13,6 @@
 
 namespace lodestone::povray {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double of_sun(const Light& sun, const View& view, std::span<const Bound> occluders) {
     constexpr double kFlattest = 0.1;  // sine of the elevation; below it shadows cross the scene

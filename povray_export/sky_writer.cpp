@@ -2,6 +2,7 @@
 #include "povray_export/sky_writer.h"
 
 #include "base/files.h"
+#include "base/maths.h"
 #include "measure/environment_lights.h"
 #include "povray_export/number.h"
 
@@ -15,10 +16,6 @@ namespace {
 // Part of the brightest that a light of the sky has at least: fainter ones cast rays at every point
 // for what no display shows, and are what is left of rounding.
 constexpr double kFaintest = 2e-3;
-
-bool finite(const glm::dvec3& value) {
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
 
 const char* keyword_of(PictureFormat format) {
     switch (format) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <vector>
 
 namespace lodestone::tools {
@@ -14,7 +15,6 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kWidth = 640;
 constexpr double kAspect = 16.0 / 9;
 
@@ -53,7 +53,7 @@ lds_camera camera_at(const Vector& eye, const Vector& target, double angle_deg, 
     Vector right = cross(direction, world_up);
     right = scaled(right, 1 / length(right));
     const Vector up = cross(right, direction);
-    const double width = 2 * std::tan(angle_deg * kPi / 360);
+    const double width = 2 * std::tan(angle_deg * std::numbers::pi / 360);
     lds_camera camera{};
     camera.struct_size = sizeof camera;
     camera.near_clip = 0.1;
@@ -127,7 +127,8 @@ lds_camera camera_around(lds_model* model, double angle_deg, double aspect) {
                           ball.center[2] - middle[2]};
         radius = std::max(radius, length(away) + ball.radius);
     }
-    const double half = std::atan(std::tan(angle_deg * kPi / 360) / std::max(1.0, aspect));
+    const double half =
+        std::atan(std::tan(angle_deg * std::numbers::pi / 360) / std::max(1.0, aspect));
     const Vector back = scaled({0.55, -0.72, 0.42}, radius / std::sin(half));
     Vector eye{};
     for (size_t i = 0; i < 3; ++i)

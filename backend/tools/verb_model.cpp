@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <malloc.h>
+#include <numbers>
 
 namespace lodestone::tools {
 namespace {
@@ -53,7 +54,6 @@ void split_loose_parts(const Arguments& arguments, lds_model* model, int32_t thr
 
 /// Fills ratio, triangles, error or pixels. Throws UsageError unless exactly one way is given.
 void set_target(const Arguments& arguments, lds_simplify_options& options) {
-    constexpr double kPi = 3.14159265358979323846;
     options.ratio = arguments.number("ratio", 0, 0, 1);
     options.triangles = arguments.count("triangles", 0);
     options.error = arguments.number("error", 0, 0, 1e12);
@@ -69,7 +69,8 @@ void set_target(const Arguments& arguments, lds_simplify_options& options) {
     if (!seen)
         return;
     if (distance > 0) {
-        options.error = pixels * distance * 2 * std::tan(angle_deg * kPi / 360) / height;
+        options.error =
+            pixels * distance * 2 * std::tan(angle_deg * std::numbers::pi / 360) / height;
     } else if (arguments.has("height") && !arguments.has("distance")) {
         options.pixels = pixels;
         options.height_px = height;

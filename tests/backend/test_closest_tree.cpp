@@ -11,8 +11,6 @@ using namespace lodestone;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 glm::dvec3 point_in(Random& random, double size) {
     return size * (2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0);
 }

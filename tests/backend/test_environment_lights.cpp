@@ -16,7 +16,6 @@ using measure::EnvironmentLights;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using Radiance = std::function<double(const glm::dvec3&)>;
 
 /// A world whose picture (8 bit, linear numbers) has this radiance by direction, in red.

@@ -11,8 +11,6 @@ using namespace gltf_text;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 std::string with(const std::string& cameras, const std::string& lights, const std::string& nodes) {
     return gltf(kOneMesh + R"("extensionsUsed":["KHR_lights_punctual"],)" + R"("cameras":[)" +
                 cameras + R"(],"extensions":{"KHR_lights_punctual":{"lights":[)" + lights +

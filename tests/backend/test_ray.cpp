@@ -17,8 +17,6 @@ using namespace lodestone;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Mesh moved(const Mesh& mesh, double scale, const glm::dvec3& offset) {
     Mesh out = mesh;
     for (glm::vec3& position : out.positions)

@@ -12,7 +12,6 @@ using measure::SurfaceInertia;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Patch = std::function<glm::dvec3(double, double)>;

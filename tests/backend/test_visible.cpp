@@ -20,7 +20,6 @@ using measure::VisibleOptions;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Attributes attributes_of(const Mesh& mesh, uint64_t rays = 4096, uint64_t seed = 1) {

@@ -8,8 +8,6 @@ using namespace lodestone::povray;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Normal map of heights (in widths of a texel) given by their slopes across and down.
 template <typename Slope>
 Texture normals(int width, int height, const Slope& slope) {

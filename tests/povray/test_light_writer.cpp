@@ -156,7 +156,6 @@ TEST(PovrayLight, WithoutShadowsAConeKeepsItsShapeAndSaysSo) {
 }
 
 TEST(PovrayLight, WhatIsNotFiniteOrHasNoSizeIsNamedAndLeftOut) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Light sun = light_of(LightKind::Sun);
     sun.direction = {0, 0, 0};
     Light point = light_of(LightKind::Point);

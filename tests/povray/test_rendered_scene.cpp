@@ -59,7 +59,6 @@ TEST(PovrayRender, SunAndSkyLightAMatteSurfaceByTheirFormulas) {
     ExportOptions options;
     options.folder = scratch("light");
     options.antialiasing = Antialiasing::Off;
-    constexpr double kPi = std::numbers::pi;
     const auto center = [&](const glm::dvec3& albedo, const glm::dvec3& sky, const Light& light) {
         Builder builder;
         builder.model.world.color = sky;

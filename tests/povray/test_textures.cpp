@@ -14,8 +14,6 @@ using scenes::render;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A square with uv -1.25...2.25 that fills a picture of 28 x 28 pixels, an eighth each.
 Mesh patch(double low = -1.25, double high = 2.25) {
     Mesh mesh = shapes::quad(0.875F, 0.875F);

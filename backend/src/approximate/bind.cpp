@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/bind.h"
 
+#include "base/maths.h"
 #include "measure/surface_samples.h"
 
 #include <algorithm>
@@ -16,10 +17,6 @@ constexpr uint32_t kLevelPoints = 1024;
 constexpr uint64_t kSeed = 1;
 // A walk ends sooner, unless the surface is very fine.
 constexpr int kSteps = 256;
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 Anchor anchor_at(const PoseSurface& surface, const Nearest& nearest, const glm::dvec3& place) {
     Anchor anchor;

@@ -2,6 +2,7 @@
 #include "approximate/cluster.h"
 
 #include "approximate/cell_groups.h"
+#include "base/maths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +18,9 @@ constexpr double kCellsPerLeft = 1.6;
 // Bytes it takes in all, for each vertex and each triangle.
 constexpr size_t kScratch = 40;
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 /// The triangles with finite corners; nothing when these are all.
 std::optional<Mesh> finite_part(const Mesh& mesh) {
-    if (std::all_of(mesh.positions.begin(), mesh.positions.end(), finite))
+    if (all_finite(mesh.positions))
         return {};
     std::vector<uint8_t> keep(mesh.triangles.size());
     for (size_t i = 0; i < keep.size(); ++i) {

@@ -5,6 +5,7 @@
 #include "approximate/curve.h"
 #include "approximate/sheets.h"
 #include "approximate/wedges.h"
+#include "base/maths.h"
 #include "base/parallel.h"
 
 #include <glm/common.hpp>
@@ -16,10 +17,6 @@
 
 namespace lodestone::approximate {
 namespace {
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// Finds the output vertex of (vertex, attributes), or makes it.
 class OutputVertices {

@@ -28,7 +28,7 @@ uint32_t root_of(std::vector<uint32_t>& parents, uint32_t i) {
     return i;
 }
 
-bool finite(const Mesh& mesh, const Triangle& t) {
+bool finite_triangle(const Mesh& mesh, const Triangle& t) {
     for (int corner = 0; corner < 3; ++corner) {
         const glm::vec3& p = mesh.positions[t[corner]];
         if (!std::isfinite(p.x + p.y + p.z))
@@ -182,7 +182,7 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
         Found& part = found[numbers[i]];
         if (fresh)
             part.slot = mesh.slot(i);
-        if (!finite(mesh, t))
+        if (!finite_triangle(mesh, t))
             continue;
         const double area = 0.5 * glm::length(area_vector(mesh, i));
         glm::dvec3 middle(0.0);
@@ -240,7 +240,7 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
     out.part_of.assign(numbers.size(), kNoPart);
     for (size_t i = 0; i < numbers.size(); ++i) {
         const auto at = new_numbers.find(numbers[i]);
-        if (at == new_numbers.end() || !finite(mesh, mesh.triangles[i]))
+        if (at == new_numbers.end() || !finite_triangle(mesh, mesh.triangles[i]))
             continue;
         out.part_of[i] = at->second;
         ++out.triangles;

@@ -24,10 +24,6 @@ uint32_t spread(uint32_t v) {  // two zeros behind each of ten bits
     return (v | v << 2u) & 0x09249249u;
 }
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 }  // namespace
 
 std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/follow.h"
 
+#include "base/maths.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +11,6 @@ namespace {
 
 /// A normal this near to those of all its triangles belongs to a flat face.
 constexpr double kFlat = 1e-4;
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 glm::dvec3 unit(const glm::dvec3& v) {
     const double length = glm::length(v);
@@ -56,7 +50,7 @@ void check(const BoundLevel& level) {
         fail(Status::InvalidArgument, "a look's error is not finite");
     for (const std::vector<glm::vec3>* list :
          {&level.mesh.positions, &level.mesh.normals, &level.normals}) {
-        if (!std::all_of(list->begin(), list->end(), [](const glm::vec3& v) { return finite(v); }))
+        if (!all_finite(*list))
             fail(Status::InvalidArgument, "a bound level has numbers that are not finite");
     }
 }

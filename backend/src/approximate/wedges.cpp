@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/wedges.h"
 
+#include "base/maths.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,10 +51,6 @@ glm::dvec3 nearest(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b
     }
     const double sum = va + vb + vc;
     return {va / sum, vb / sum, vc / sum};
-}
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 /// Nobody sees the difference, whatever light falls on them.

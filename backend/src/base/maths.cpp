@@ -32,6 +32,10 @@ bool Affine::finite() const {
     return std::all_of(rows, rows + 12, [](double value) { return std::isfinite(value); });
 }
 
+bool all_finite(std::span<const glm::vec3> points) {
+    return std::all_of(points.begin(), points.end(), [](const glm::vec3& p) { return finite(p); });
+}
+
 namespace {
 
 /// Whether a symmetric matrix is diagonal but for rounding.

@@ -9,10 +9,34 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 namespace lodestone {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline bool finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool all_finite(std::span<const glm::vec3> points);
+
+/// `low` for what is not a number.
+inline double limited(double value, double low, double high) {
+    return value >= low ? glm::min(value, high) : low;
+}
+inline glm::dvec3 limited(const glm::dvec3& v, double low, double high) {
+    return {limited(v.x, low, high), limited(v.y, low, high), limited(v.z, low, high)};
+}
+inline double largest(const glm::dvec3& v) {
+    return glm::max(v.x, glm::max(v.y, v.z));
+}
 
 /// x -> linear * x + offset. Column-major inside (GLM), row-major 3x4 in the C interface.
 struct Affine {
@@ -40,8 +64,8 @@ struct Eigen {
 Eigen eigen_symmetric(const glm::dmat3& matrix);
 
 struct Box3 {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+    glm::dvec3 low{kInfinity};
+    glm::dvec3 high{-kInfinity};
 
     bool empty() const { return low.x > high.x; }
     void add(const glm::dvec3& point) {

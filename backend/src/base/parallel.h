@@ -12,6 +12,9 @@ namespace lodestone {
 /// is rethrown after the others have stopped.
 void parallel_for(size_t count, const std::function<void(size_t)>& body);
 
+/// Small items that a thread takes at a time: a loop over blocks of them costs little by itself.
+inline constexpr size_t kBlock = 256;
+
 /// Threads a parallel loop started here would use.
 int hardware_threads();
 

@@ -11,7 +11,7 @@ namespace lodestone::build {
 namespace {
 
 constexpr uint64_t kTrianglesOfBox = 12;
-constexpr int kSubdivisions = 1;  // an ellipsoid drawn with 80 triangles
+constexpr int kDrawnSubdivisions = 1;  // an ellipsoid drawn with 80 triangles
 constexpr uint64_t kTrianglesOfEllipsoid = 80;
 
 /// A view in which a representation is good enough when its error is at most `error`.
@@ -76,7 +76,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
             std::max(flat.child_error, representation.summary.error * stretch(node.world));
         Mesh part = representation.summary.kind == Kind::Mesh
                         ? *source(representation)
-                        : tessellated(representation, kSubdivisions);
+                        : tessellated(representation, kDrawnSubdivisions);
         part.slots.resize(part.triangles.size(), 0);
         std::vector<uint16_t> moved;
         for (const uint32_t material : representation.materials) {

@@ -29,11 +29,12 @@ constexpr double kLayerWidth = 16;
 constexpr double kFlat = 0.05;
 // Below this mean opacity nothing solid stands for it: it would hide what shines through.
 constexpr double kLeastOpacity = 0.9;
-constexpr int kSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
+constexpr int kMeasuredSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 
 Mesh tessellated(const Candidate& primitive) {
-    return primitive.kind == Kind::Box ? tessellate_box(primitive.primitive)
-                                       : tessellate_ellipsoid(primitive.primitive, kSubdivisions);
+    return primitive.kind == Kind::Box
+               ? tessellate_box(primitive.primitive)
+               : tessellate_ellipsoid(primitive.primitive, kMeasuredSubdivisions);
 }
 
 /// What stands for a candidate where rays are cast; `solid` holds it unless it is a mesh.

@@ -21,7 +21,7 @@ constexpr size_t kMostPlaces = 8;  // of a flat thing that are looked at
 constexpr size_t kMostOccurrences = size_t{1} << 20;
 constexpr uint64_t kMostWork = 400'000'000;  // boxes and triangles looked at
 constexpr int kSamples = 32;
-constexpr double kNear = 1.0 / 16;  // over the width: see kLayerWidth of the judge
+constexpr double kNearLayers = 1.0 / 16;  // over the width: see kLayerWidth of the judge
 
 /// The surface of a leaf.
 struct Shape {
@@ -170,7 +170,7 @@ private:
     void look_around(size_t number, std::vector<Hash>& out) {
         job_.check();
         const Place& place = places_[number];
-        const double gap = kNear * place.width;
+        const double gap = kNearLayers * place.width;
         const auto visit = [&](size_t i) {
             ++work_;
             const Place& other = places_[i];
@@ -205,7 +205,7 @@ private:
         if (!(std::abs(volume) > 0) || !std::isfinite(1 / volume))
             return false;
         const glm::dmat3 back = glm::inverse(wide.world.linear);
-        const double gap = kNear * narrow.width / stretch(wide.world);
+        const double gap = kNearLayers * narrow.width / stretch(wide.world);
         const Box3& box = model_.objects[wide.object].bound().box;
         Shape& shape = shapes_[narrow.object];
         if (shape.samples.empty())

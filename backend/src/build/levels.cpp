@@ -7,7 +7,6 @@ namespace lodestone::build {
 namespace {
 
 // Fewer triangles than this are left to primitives.
-constexpr size_t kFewestTriangles = 8;
 
 bool shows_vertex_colors(const Material& material) {
     return material.vertex_colors || (material.other && shows_vertex_colors(*material.other));

@@ -9,6 +9,9 @@
 
 namespace lodestone::build {
 
+/// Below these a mesh is not worth it beside primitives.
+inline constexpr size_t kFewestTriangles = 8;
+
 /// Falling by `ratio` from `first` on, as long as a mesh is worth it beside primitives; less than
 /// `triangles`.
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio);

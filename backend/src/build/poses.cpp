@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/poses.h"
 
+#include "base/maths.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace lodestone::build {
-namespace {
-
-bool finite(const Pose& pose) {
-    return std::all_of(pose.points.begin(), pose.points.end(), [](const glm::vec3& p) {
-        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    });
-}
-
-}  // namespace
 
 Poses::Poses(std::span<const Model* const> models) {
     for (const Model* model : models) {
@@ -40,7 +33,7 @@ std::optional<Bind> Poses::of(const Object& object, Hash settings) const {
         if (there.pose->connectivity != object.pose->connectivity)
             continue;
         const Pose& pose = *there.pose;
-        if (!finite(pose))
+        if (!all_finite(pose.points))
             continue;
         if (bind.object == nullptr) {
             bind.object = &there;

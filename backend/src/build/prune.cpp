@@ -2,6 +2,7 @@
 #include "build/prune.h"
 
 #include "approximate/simplify.h"
+#include "build/levels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,6 @@ namespace {
 using approximate::Crowd;
 
 constexpr size_t kFewestParts = 8;
-constexpr size_t kFewestTriangles = 8;  // of the rest
 // Parts of more triangles than this are simplified as well as thinned.
 constexpr size_t kPlainPart = 12;
 constexpr double kMostGrowth = 64;
@@ -169,13 +169,13 @@ private:
 
     /// Moves growth towards what shows as much as the whole crowd; true when it does already.
     bool correct(std::vector<double>& growth, const std::vector<double>& now) const {
-        constexpr double kNear = 0.02;
+        constexpr double kSameArea = 0.02;
         bool right = true;
         for (size_t kind = 0; kind < growth.size(); ++kind) {
             if (!(now[kind + 1] > 0) || !(visible_[kind] > 0))
                 continue;
             const double ratio = visible_[kind] / now[kind + 1];
-            right = right && std::abs(ratio - 1) <= kNear;
+            right = right && std::abs(ratio - 1) <= kSameArea;
             growth[kind] =
                 std::clamp(growth[kind] * std::clamp(ratio, 0.5, 2.0), 0.25, kMostGrowth);
         }

@@ -5,6 +5,7 @@
 #include "approximate/grid.h"
 #include "approximate/simplify.h"
 #include "base/clock.h"
+#include "build/levels.h"
 #include "measure/deviation.h"
 
 #include <algorithm>
@@ -21,13 +22,6 @@ struct Reduced {
     std::shared_ptr<const Mesh> mesh;
     std::optional<measure::Deviation> deviation;
 };
-
-std::vector<Material> materials_of(const Model& model, const Representation& representation) {
-    std::vector<Material> materials;
-    for (const uint32_t material : representation.materials)
-        materials.push_back(model.materials.at(material));
-    return materials;
-}
 
 /// What is transparent is neither missed nor matched; what it looks like does not count.
 measure::Deviation deviation_of(const measure::DeviationReference& reference, const Mesh& level,

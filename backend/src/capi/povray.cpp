@@ -18,8 +18,8 @@ using namespace lodestone::capi;
 namespace {
 
 // Size of version 1: callers built with it go on working.
-constexpr size_t kFirstOptions = offsetof(lds_povray_options, antialias_threshold);
-constexpr size_t kFirstReport = offsetof(lds_export_report, lamps);
+constexpr size_t kFirstPovrayOptions = offsetof(lds_povray_options, antialias_threshold);
+constexpr size_t kFirstPovrayReport = offsetof(lds_export_report, lamps);
 
 double error_of(double value, const char* what) {
     if (!(value >= 0) || !std::isfinite(value))
@@ -71,8 +71,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(model, "model");
         require(cut, "cut");
         require(folder, "folder");
-        require_size(out_report, kFirstReport, "out_report");
-        const lds_povray_options given = grown(options, kFirstOptions, "options");
+        require_size(out_report, kFirstPovrayReport, "out_report");
+        const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
         if (cut->generation != model->generation)
             fail(Status::StaleId, "the cut belongs to another model");
         const ThreadLimit limit(given.threads);
@@ -104,7 +104,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.cpu_s = report.cpu_s;
         out.lamps = report.lamps;
         out.lights_each = report.lights_each;
-        hand_out_grown(out_report, out, kFirstReport, "out_report");
+        hand_out_grown(out_report, out, kFirstPovrayReport, "out_report");
     });
 }
 
@@ -115,7 +115,7 @@ lds_status lds_povray_run(const char* folder, const char* picture,
         require(folder, "folder");
         require(picture, "picture");
         checked(out_report, "out_report");
-        const lds_povray_options given = grown(options, kFirstOptions, "options");
+        const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
         povray::RunOptions wanted;
         wanted.folder = folder;
         wanted.program = given.program == nullptr ? "" : given.program;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a picture is taken with, in the C interface: cameras, lights, world, views.
+#include "base/maths.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 
@@ -48,7 +49,6 @@ Light light_of(const lds_light* light) {
         fail(Status::InvalidArgument, "light '", out.name, "' has no finite power");
     if (out.kind != LightKind::Point && glm::length(out.direction) == 0)
         fail(Status::InvalidArgument, "light '", out.name, "' has no direction");
-    constexpr double kPi = std::numbers::pi;
     out.radius = at_least(given.radius, 0, "light.radius");
     out.angle = between(given.angle, 0, kPi + 1e-6, "light.angle");
     if (out.kind == LightKind::Spot) {

@@ -104,10 +104,10 @@ public:
 
 private:
     bool enter() {
-        constexpr int kMostDepth = 64;
-        if (++depth_ > kMostDepth)
+        constexpr int kMostNested = 64;
+        if (++depth_ > kMostNested)
             complaint = "its JSON is nested too deeply";
-        return depth_ <= kMostDepth;
+        return depth_ <= kMostNested;
     }
 
     int depth_ = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/maths.h"
 #include "format/gltf_accessor.h"
 #include "format/gltf_material.h"
 #include "format/gltf_own_material.h"
@@ -18,10 +19,6 @@ namespace {
 using tinygltf::Value;
 
 constexpr double kGltfIor = 1.5;
-
-double limited(double value, double low, double high) {
-    return value >= low ? std::min(value, high) : low;  // not a number: low
-}
 
 glm::dvec4 color_in(const std::vector<double>& numbers, double usual) {
     glm::dvec4 out(usual);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/maths.h"
 #include "format/bake.h"
 #include "format/gltf_file.h"
 #include "format/gltf_material.h"
@@ -17,18 +18,10 @@ using tinygltf::Value;
 
 constexpr double kBrightest = 1e6;
 
-double limited(double value, double low, double high) {
-    return value >= low ? std::min(value, high) : low;  // not a number: low
-}
-
 /// tinygltf leaves out what is this near to a default: it is made the default, so that what is
 /// written is what is read.
 double plain(double value, double usual) {
     return std::abs(value - usual) < 1e-11 ? usual : value;
-}
-
-glm::dvec3 limited(const glm::dvec3& color, double high) {
-    return {limited(color.x, 0, high), limited(color.y, 0, high), limited(color.z, 0, high)};
 }
 
 /// A power of two, so that dividing by it and multiplying again changes no bit; 1 for what is dim.
@@ -38,7 +31,7 @@ double strength_of(const glm::dvec3& emission) {
 }
 
 bool within_one(const glm::dvec3& scale) {
-    return scale == limited(scale, 1);
+    return scale == limited(scale, 0, 1);
 }
 
 /// Two textures of the same file's bytes, whatever the numbers mean.
@@ -74,7 +67,7 @@ MaterialWriter::Layer MaterialWriter::base_layer(const Material& material) {
     const Texture& color = material.base_color_texture;
     const Texture& alpha = opaque ? Texture{} : material.alpha_texture;
     Layer out;
-    out.factor = {limited(material.base_color, 1), limited(material.alpha, 0, 1)};
+    out.factor = {limited(material.base_color, 0, 1), limited(material.alpha, 0, 1)};
     if (!color && !alpha)
         return out;
     bool direct = color && color.channel == Channel::Color && within_one(color.scale) &&
@@ -130,10 +123,10 @@ MaterialWriter::Layer MaterialWriter::roughness_layer(const Material& material) 
 MaterialWriter::Layer MaterialWriter::emission_layer(const Material& material) {
     const Texture& glow = material.emission_texture;
     Layer out;
-    out.factor = {limited(material.emission, kBrightest), 1};
+    out.factor = {limited(material.emission, 0, kBrightest), 1};
     if (!glow)
         return out;
-    if (glow.channel == Channel::Color && glow.scale == limited(glow.scale, kBrightest) &&
+    if (glow.channel == Channel::Color && glow.scale == limited(glow.scale, 0, kBrightest) &&
         sayable(glow, ColorSpace::Srgb)) {
         out.texture = glow;
         out.factor = {glow.scale, 1};

@@ -2,6 +2,7 @@
 #include "format/gltf_own_material.h"
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "format/gltf_accessor.h"
 #include "format/gltf_file.h"
 #include "format/gltf_picture.h"
@@ -42,10 +43,10 @@ constexpr NumberWord kNumbers[] = {
     {"mix", &Material::mix, 0, 1},
 };
 
-constexpr std::pair<const char*, glm::dvec3 Material::*> kColors[] = {
+constexpr std::pair<const char*, glm::dvec3 Material::*> kColorFields[] = {
     {"base_color", &Material::base_color}, {"emission", &Material::emission}};
 
-constexpr std::pair<const char*, Texture Material::*> kTextures[] = {
+constexpr std::pair<const char*, Texture Material::*> kTextureFields[] = {
     {"base_color_texture", &Material::base_color_texture},
     {"roughness_texture", &Material::roughness_texture},
     {"metallic_texture", &Material::metallic_texture},
@@ -112,7 +113,7 @@ Value::Object difference(const Material& material, const Material& seen, Picture
         if (!same_bits(number, seen.*word.field) && number >= word.low && number <= word.high)
             out[word.key] = Value(number);
     }
-    for (const auto& [key, field] : kColors) {
+    for (const auto& [key, field] : kColorFields) {
         const glm::dvec3& color = material.*field;
         bool same = true;
         for (int i = 0; i < 3; ++i)
@@ -120,7 +121,7 @@ Value::Object difference(const Material& material, const Material& seen, Picture
         if (!same && finite(numbers_of(color)))
             out[key] = list_of(numbers_of(color));
     }
-    for (const auto& [key, field] : kTextures) {
+    for (const auto& [key, field] : kTextureFields) {
         const Texture& texture = material.*field;
         if (hash_of(texture) == hash_of(seen.*field))
             continue;
@@ -205,11 +206,11 @@ void add(const Value& words, PictureReader& pictures, Material& material, int de
         if (words.Has(word.key))
             material.*word.field = number_in(words.Get(word.key), word.key, word.low, word.high);
     }
-    for (const auto& [key, field] : kColors) {
+    for (const auto& [key, field] : kColorFields) {
         if (words.Has(key))
             read_list(words.Get(key), key, 0, std::span<double, 3>(&(material.*field).x, 3));
     }
-    for (const auto& [key, field] : kTextures) {
+    for (const auto& [key, field] : kTextureFields) {
         if (words.Has(key))
             material.*field = texture_of(words.Get(key), key, pictures);
     }

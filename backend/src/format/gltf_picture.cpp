@@ -11,11 +11,7 @@
 #include <tiny_gltf.h>
 
 namespace lodestone::format {
-namespace {
-
-constexpr uint64_t kMostFileBytes = uint64_t{1} << 30u;
-
-}  // namespace
+namespace {}  // namespace
 
 PictureReader::PictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
                              const std::string& name, size_t bytes)
@@ -68,7 +64,7 @@ PicturePtr PictureReader::file(const std::string& uri, ColorSpace space, const s
         fail(Status::Io, "'", uri.substr(0, 200), "' is not inside the folder of the model");
     PicturePtr& found = files_[{path->string(), space}];
     if (found == nullptr)
-        found = made(read_file(*path, kMostFileBytes), space, label);
+        found = made(read_file(*path, image::kMostFileBytes), space, label);
     return found;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/gltf_view.h"
 
+#include "base/maths.h"
 #include "base/text.h"
 
 #include <tiny_gltf.h>
@@ -12,7 +13,6 @@
 namespace lodestone::format {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLumenPerWatt = 683;
 constexpr double kAspect = 16.0 / 9;  // where a camera leaves it open
 

@@ -14,8 +14,6 @@
 namespace lodestone::format {
 namespace {
 
-constexpr uint64_t kMostFileBytes = uint64_t{1} << 30u;
-
 /// Takes up to three numbers off; what is not there keeps its value.
 void take_numbers(std::string_view& words, std::array<double, 3>& numbers) {
     for (double& number : numbers) {
@@ -120,7 +118,7 @@ PicturePtr MapPictures::find(const std::string& file, ColorSpace space) {
         throw Error(Status::BadFile, found->second);
     try {
         return known_[{key, space}] =
-                   image::make_picture(read_file(*path, kMostFileBytes), space, file);
+                   image::make_picture(read_file(*path, image::kMostFileBytes), space, file);
     } catch (const Error& e) {
         broken_[key] = e.what();
         throw;

@@ -33,9 +33,9 @@ struct Part {
     std::vector<uint32_t> materials;  // one a triangle, into the names of usemtl
 };
 
-class Parser {
+class ObjParser {
 public:
-    Parser(std::string_view bytes, const std::filesystem::path& path, Problems& problems)
+    ObjParser(std::string_view bytes, const std::filesystem::path& path, Problems& problems)
         : bytes_(bytes),
           folder_(path.parent_path()),
           name_(path.stem().string()),
@@ -393,7 +393,7 @@ std::string in_one_line(const std::string& name) {
 }  // namespace
 
 Model read_obj(std::string_view bytes, const std::filesystem::path& path, Problems& problems) {
-    return Parser(bytes, path, problems).read();
+    return ObjParser(bytes, path, problems).read();
 }
 
 std::string write_obj(const Mesh& mesh, std::span<const Material> materials,

@@ -61,9 +61,9 @@ bool space(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-class Parser {
+class PlyParser {
 public:
-    Parser(std::string_view bytes, const std::string& name, Problems& problems)
+    PlyParser(std::string_view bytes, const std::string& name, Problems& problems)
         : bytes_(bytes), name_(name), problems_(problems) {}
 
     Mesh read() {
@@ -436,7 +436,7 @@ private:
 }  // namespace
 
 Mesh read_ply(std::string_view bytes, const std::string& name, Problems& problems) {
-    return Parser(bytes, name, problems).read();
+    return PlyParser(bytes, name, problems).read();
 }
 
 }  // namespace lodestone::format

@@ -24,7 +24,7 @@ constexpr double kLargePart =
     1.0 / 4;  // these lie across everything: they are clusters of their own
 constexpr size_t kFewestClusters = 8;  // of fewer no groups are made
 constexpr int kBins = 32;
-constexpr uint32_t kDeepest = 64;  // cuts one inside the other; then by number
+constexpr uint32_t kDeepestCut = 64;  // cuts one inside the other; then by number
 
 struct Part {
     Box3 box;
@@ -130,7 +130,7 @@ private:
         Cost best{true, std::numeric_limits<double>::infinity()};
         int best_axis = -1;
         int best_bin = 0;
-        for (int axis = 0; axis < 3 && depth < kDeepest; ++axis) {
+        for (int axis = 0; axis < 3 && depth < kDeepestCut; ++axis) {
             if (!(middles.size()[axis] > 0))
                 continue;
             std::array<Bin, kBins> bins;

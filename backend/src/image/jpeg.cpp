@@ -13,20 +13,20 @@
 namespace lodestone::image {
 namespace {
 
-struct Reader {
+struct JpegReader {
     jpeg_decompress_struct jpeg{};
     jpeg_error_mgr errors{};
     std::jmp_buf out{};
     char complaint[JMSG_LENGTH_MAX] = "";
 
-    Reader() = default;
-    ~Reader() { jpeg_destroy_decompress(&jpeg); }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
+    JpegReader() = default;
+    ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+    JpegReader(const JpegReader&) = delete;
+    JpegReader& operator=(const JpegReader&) = delete;
 };
 
 void on_error(j_common_ptr jpeg) {
-    auto* reader = static_cast<Reader*>(jpeg->client_data);
+    auto* reader = static_cast<JpegReader*>(jpeg->client_data);
     jpeg->err->format_message(jpeg, reader->complaint);
     std::longjmp(reader->out, 1);  // NOLINT(cert-err52-cpp)
 }
@@ -38,7 +38,7 @@ void on_message(j_common_ptr jpeg, int level) {
         on_error(jpeg);
 }
 
-bool start(Reader& reader, std::string_view bytes) {
+bool start(JpegReader& reader, std::string_view bytes) {
     if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     reader.jpeg.err = jpeg_std_error(&reader.errors);
@@ -54,14 +54,14 @@ bool start(Reader& reader, std::string_view bytes) {
     return true;
 }
 
-bool begin_rows(Reader& reader) {
+bool begin_rows(JpegReader& reader) {
     if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     jpeg_start_decompress(&reader.jpeg);
     return true;
 }
 
-bool next_row(Reader& reader, unsigned char* row) {
+bool next_row(JpegReader& reader, unsigned char* row) {
     if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     return jpeg_read_scanlines(&reader.jpeg, &row, 1) == 1;
@@ -70,7 +70,7 @@ bool next_row(Reader& reader, unsigned char* row) {
 }  // namespace
 
 Image decode_jpeg(std::string_view bytes, const std::string& name) {
-    Reader reader;
+    JpegReader reader;
     if (!start(reader, bytes))
         fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
     const J_COLOR_SPACE space = reader.jpeg.jpeg_color_space;

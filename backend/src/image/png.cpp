@@ -53,14 +53,14 @@ void on_write(png_structp png, png_bytep data, size_t size) {
 
 void on_flush(png_structp) {}
 
-struct Reader {
+struct PngReader {
     Complaint complaint;
     Source source;
     png_structp png = nullptr;
     png_infop info = nullptr;
     size_t packed_row = 0;  // bytes of a row as the file packs it
 
-    explicit Reader(std::string_view bytes) : source{bytes.data(), bytes.size()} {
+    explicit PngReader(std::string_view bytes) : source{bytes.data(), bytes.size()} {
         png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, on_error, on_warning);
         if (png != nullptr)
             info = png_create_info_struct(png);
@@ -69,13 +69,13 @@ struct Reader {
             throw std::bad_alloc();
         }
     }
-    ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
 };
 
 /// Up to the first row; afterwards rows are RGBA of 8 or 16 bits. False: see the complaint.
-bool start(Reader& reader) {
+bool start(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     png_set_read_fn(reader.png, &reader.source, on_read);
@@ -91,7 +91,7 @@ bool start(Reader& reader) {
     return true;
 }
 
-bool read_rows(Reader& reader, png_bytepp rows) {
+bool read_rows(PngReader& reader, png_bytepp rows) {
     if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     png_read_image(reader.png, rows);
@@ -137,7 +137,7 @@ bool write_rows(Writer& writer, png_bytepp rows, int width, int height, int chan
 }  // namespace
 
 Image decode_png(std::string_view bytes, const std::string& name) {
-    Reader reader(bytes);
+    PngReader reader(bytes);
     if (!start(reader))
         fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
     const size_t width = png_get_image_width(reader.png, reader.info);

@@ -13,6 +13,9 @@ namespace lodestone::image {
 /// `name` of errors is the picture's. Throws Error(BadFile).
 Image decoded(const Picture& picture);
 
+/// No file of a picture is larger.
+inline constexpr uint64_t kMostFileBytes = uint64_t{1} << 30u;
+
 /// A picture of a file's bytes, proved to decode. What decoding told is remembered by hash for the
 /// life of the process, so a second time costs the hash only. Throws Error(BadFile) calling it
 /// `name` when it is no PNG, JPEG or OpenEXR. Any thread.

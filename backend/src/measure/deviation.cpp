@@ -20,7 +20,6 @@ constexpr double kQuantile = 0.999;
 // their places alone answer for.
 constexpr double kLookQuantile = 0.99;
 constexpr double kLeastLookShare = 0.002;
-constexpr size_t kBlock = 256;
 // Of levels as fine as scans a few vertices decide the quantile: those of the stand-in are taken
 // all, up to so many at least.
 constexpr uint32_t kLevelVertices = 16384;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/environment_lights.h"
 
+#include "base/maths.h"
 #include "image/sampler.h"
 
 #include <algorithm>
@@ -10,10 +11,9 @@
 namespace lodestone::measure {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kWidth = 128;  // texels that are looked at; details beyond it light nothing
 constexpr int kHeight = 64;
-constexpr int kBlock = 8;       // a side of the blocks whose darkest is the uniform sky
+constexpr int kSquare = 8;      // a side of the blocks whose darkest is the uniform sky
 constexpr int kNormals = 512;   // ways of facing that the strengths are fitted for
 constexpr double kMost = 1e9;   // radiance: more is a mistake of the picture's maker
 constexpr int kRounds = 30;     // of spreading the suns
@@ -70,12 +70,12 @@ public:
     /// The radiance that every block of texels has.
     glm::dvec3 take_uniform() {
         glm::dvec3 least(kMost);
-        for (int top = 0; top < height_; top += kBlock) {
-            for (int left = 0; left < width_; left += kBlock) {
+        for (int top = 0; top < height_; top += kSquare) {
+            for (int left = 0; left < width_; left += kSquare) {
                 glm::dvec3 sum(0.0);
                 double weight = 0;
-                for (int y = top; y < std::min(top + kBlock, height_); ++y) {
-                    for (int x = left; x < std::min(left + kBlock, width_); ++x) {
+                for (int y = top; y < std::min(top + kSquare, height_); ++y) {
+                    for (int x = left; x < std::min(left + kSquare, width_); ++x) {
                         sum += at(x, y).power();
                         weight += at(x, y).solid_angle;
                     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/looks.h"
 
+#include "base/maths.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -79,7 +81,6 @@ glm::dvec3 Looks::light_of(const glm::dvec3& color) {
 }
 
 Looks::Lights Looks::lights_alike(const glm::dvec3& color) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Lights out;
     for (int i = 0; i < 3; ++i) {
         // Encoding rises with light, and shows all that is above 1 as 1.

@@ -15,7 +15,6 @@ constexpr uint32_t kLeastVotes = 3;
 // Texture coordinates have six unknowns, and must prove right on more points than make them.
 constexpr size_t kLeastTextured = 8;
 constexpr double kLeastRight = 0.9;
-constexpr size_t kBlock = 256;
 
 /// Texture coordinates as an affine function of the place on a plane.
 struct UvMap {

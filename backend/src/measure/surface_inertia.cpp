@@ -10,8 +10,6 @@
 namespace lodestone::measure {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double trace(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
 }

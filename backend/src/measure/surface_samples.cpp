@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kVertexRays = 16;
 constexpr uint32_t kMostRaysPerSample = 16;  // for visible points of a mesh that is hard to hit
-constexpr size_t kBlock = 256;
 
 double area_of(const Mesh& mesh, size_t triangle) {
     const double area = 0.5 * glm::length(area_vector(mesh, triangle));

@@ -13,7 +13,6 @@
 namespace lodestone::measure {
 namespace {
 
-constexpr uint32_t kBlock = 256;                 // rays a thread casts at a time
 constexpr uint64_t kBatch = uint64_t{1} << 16u;  // rays between two serial sums
 constexpr double kConfidence = 1.96;             // 95 % of a normal distribution
 constexpr double kEarlyStop = 1.04;

@@ -10,10 +10,6 @@ namespace {
 
 constexpr glm::vec4 kWhite(1);
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 /// Drops vertices nothing uses, keeping order.
 void compact(Mesh& mesh) {
     constexpr uint32_t kUnused = ~uint32_t{0};
@@ -124,7 +120,7 @@ void check(const Mesh& mesh) {
 void repair(Mesh& mesh, const std::string& object, Problems& problems) {
     std::vector<uint8_t> keep;
     size_t dropped = 0;
-    if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+    if (!all_finite(mesh.positions)) {
         keep.assign(mesh.triangles.size(), 1);
         for (size_t i = 0; i < mesh.triangles.size(); ++i) {
             const Triangle& t = mesh.triangles[i];

@@ -16,7 +16,9 @@ const char* suffix_of(PictureFormat format) {
 }
 
 std::string file_name(const Picture& picture) {
-    return hex16(picture.hash) + "." + suffix_of(picture.format);
+    std::string name = hex16(picture.hash);
+    name += '.';
+    return name += suffix_of(picture.format);
 }
 
 }  // namespace lodestone

@@ -11,8 +11,6 @@
 namespace lodestone {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 glm::dvec2 on_box(const glm::dvec3& p, const glm::dvec3& normal) {
     const glm::dvec3 size = glm::abs(normal);
     if (size.x >= size.y && size.x >= size.z)

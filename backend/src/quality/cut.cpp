@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/cut.h"
 
+#include "base/maths.h"
 #include "quality/criterion.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace lodestone::quality {
 namespace {
 
 constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
 bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,

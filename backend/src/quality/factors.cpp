@@ -2,6 +2,7 @@
 #include "quality/factors.h"
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "quality/criterion.h"
 
 #include <algorithm>
@@ -13,14 +14,9 @@
 namespace lodestone::quality {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSteepest = 8;       // depth exaggeration
 constexpr double kMiddleShown = 0.5;  // what is displayed brighter needs all detail
 constexpr double kLeastShown = 1.0 / 128;
-
-double largest(const glm::dvec3& color) {
-    return std::max({color.x, color.y, color.z});
-}
 
 void refuse_nonsense(const Modifiers& modifiers) {
     if (!(modifiers.depth >= 0 && modifiers.depth <= kSteepest))
@@ -65,7 +61,6 @@ bool glows(const Model& model, const Representation& representation) {
 /// Brightest radiance that a white surface at this place may send from this light.
 /// source: Blender's energy units, see DESIGN 8
 double lit(const Light& light, const Bound& bound) {
-    constexpr double kPi = std::numbers::pi;
     const double power = std::max(0.0, light.power) * largest(light.color);
     if (light.kind == LightKind::Sun)
         return power / kPi;

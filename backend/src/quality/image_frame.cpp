@@ -2,6 +2,7 @@
 #include "quality/image_frame.h"
 
 #include "base/error.h"
+#include "base/maths.h"
 
 #include <glm/common.hpp>
 
@@ -11,8 +12,6 @@
 
 namespace lodestone::quality {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ImageRect everything() {
     return {glm::dvec2(-kInfinity), glm::dvec2(kInfinity), false};

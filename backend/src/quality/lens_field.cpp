@@ -2,6 +2,7 @@
 #include "quality/lens_field.h"
 
 #include "base/error.h"
+#include "base/maths.h"
 
 #include <glm/common.hpp>
 
@@ -11,10 +12,6 @@
 
 namespace lodestone::quality {
 namespace {
-
-double largest(const glm::dvec3& values) {
-    return std::max({values.x, values.y, values.z});
-}
 
 void refuse_nonsense(const DetailLens& lens) {
     const auto number = [&](double value, const char* what, bool zero) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/light_arrival.h"
 
+#include "base/maths.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,12 +12,6 @@
 
 namespace lodestone::quality {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// 1 within the cone, falling smoothly to 0 at its edge.
 double in_cone(const Light& spot, double cosine) {

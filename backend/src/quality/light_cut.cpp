@@ -14,7 +14,7 @@
 namespace lodestone::quality {
 namespace {
 
-constexpr double kMostSteps = 3;   // of one point, for each of the mean
+constexpr double kMostOfMean = 3;  // of one point, for each of the mean
 constexpr uint32_t kTogether = 8;  // lamps of a light that are found together
 
 /// Radiance a point sends to the eye of an unhidden light.
@@ -203,7 +203,7 @@ private:
             most = std::max(most, steps);
         }
         const double mean = std::sqrt(square / static_cast<double>(difference_.size()));
-        return mean <= pixel_error && most <= kMostSteps * pixel_error;
+        return mean <= pixel_error && most <= kMostOfMean * pixel_error;
     }
 
     const LightTree& tree_;

@@ -106,11 +106,11 @@ private:
     bool round(std::vector<uint32_t>& open) {
         job_.check();
         const size_t count = open.size();
-        constexpr size_t kNone = std::numeric_limits<size_t>::max();
-        std::vector<size_t> best(count, kNone);
+        constexpr size_t kNoPartner = std::numeric_limits<size_t>::max();
+        std::vector<size_t> best(count, kNoPartner);
         for (size_t i = 0; i < count; ++i) {
             double least = std::numeric_limits<double>::infinity();
-            size_t tie = kNone;
+            size_t tie = kNoPartner;
             const size_t from = i > kWindow ? i - kWindow : 0;
             for (size_t k = from; k < std::min(count, i + kWindow + 1); ++k) {
                 if (k == i || !alike(light(open[i]), light(open[k])) || parted(open[i], open[k]))
@@ -128,7 +128,7 @@ private:
         bool any = false;
         for (size_t i = 0; i < count; ++i) {
             const size_t k = best[i];
-            if (k == kNone || k < i || best[k] != i)
+            if (k == kNoPartner || k < i || best[k] != i)
                 continue;
             any = true;
             const uint32_t node = join(open[i], open[k]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/off_screen.h"
 
+#include "base/maths.h"
 #include "quality/criterion.h"
 
 #include <algorithm>
@@ -130,7 +131,6 @@ void OffScreenField::find_mirrors(const Model& model) {
 }
 
 double OffScreenField::shadow_pixel(const Light& light, const Bound& bound) const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Sweep sweep{bound.center, {}, bound.radius, 0};
     double away = kInfinity;  // metres from the light
     if (light.kind == LightKind::Sun) {

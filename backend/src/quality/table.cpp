@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/table.h"
 
+#include "base/maths.h"
+
 #include <algorithm>
 #include <limits>
 
 namespace lodestone::quality {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Nothing that is drawn costs less than this: a primitive, placed once.
 constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;

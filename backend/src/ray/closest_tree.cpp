@@ -52,10 +52,6 @@ struct Around {
     }
 };
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
-
 /// The axes that most of the surface is square to, when boxes along them are much smaller than those
 /// along x, y, z: of what was modelled straight and placed askew. Otherwise none.
 std::optional<glm::dmat3> better_axes(const std::vector<glm::vec3>& positions,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ray/scene.h"
 
+#include "base/maths.h"
 #include "ray/closest_tree.h"
 #include "ray/embree.h"
 
@@ -14,10 +15,6 @@ namespace {
 
 /// Everything is scaled into the unit sphere; rays start at most on a sphere a little larger.
 constexpr double kRimRadius = 1.0625;
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 }  // namespace
 

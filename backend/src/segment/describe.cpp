@@ -30,7 +30,7 @@ Json out(const Affine& transform) {
 }
 
 /// Pictures in order of first use, each once.
-class Pictures {
+class PictureList {
 public:
     size_t index_of(const PicturePtr& picture) {
         const auto [at, fresh] = index_.try_emplace(picture->hash, index_.size());
@@ -52,7 +52,7 @@ private:
     Json json_ = Json::array();
 };
 
-Json out(const Texture& t, Pictures& pictures) {
+Json out(const Texture& t, PictureList& pictures) {
     return {{"picture", pictures.index_of(t.picture)},
             {"channel", static_cast<int>(t.channel)},
             {"extension", static_cast<int>(t.extension)},
@@ -62,7 +62,7 @@ Json out(const Texture& t, Pictures& pictures) {
             {"offset", out(t.offset)}};
 }
 
-Json out(const Material& m, Pictures& pictures) {
+Json out(const Material& m, PictureList& pictures) {
     Json json = {{"name", m.name},           {"base_color", out(m.base_color)},
                  {"roughness", m.roughness}, {"metallic", m.metallic},
                  {"specular", m.specular},   {"emission", out(m.emission)}};
@@ -206,7 +206,7 @@ Json describe(const Model& model) {
                  {"version", LODESTONE_VERSION},
                  {"root", model.root == kNoObject ? Json() : Json(model.root)}};
     Json& materials = json["materials"] = Json::array();
-    Pictures pictures;
+    PictureList pictures;
     for (const Material& material : model.materials)
         materials.push_back(out(material, pictures));
     Json& objects = json["objects"] = Json::array();
