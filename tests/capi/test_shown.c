@@ -37,6 +37,63 @@ static void test_a_surface_is_all_that_is_drawn_in_its_colors(lds_model* model, 
     EXPECT(lds_cut_set_colors(cut, NULL, 0) == LDS_OK);
 }
 
+static void test_batches_are_all_that_is_drawn(lds_model* model, lds_cut* cut) {
+    size_t count = 9;
+    EXPECT(lds_cut_make_batches(NULL, cut, &count) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_make_batches(model, cut, NULL) == LDS_ERROR_INVALID_ARGUMENT && count == 9);
+    lds_batch* batch = NULL;
+    EXPECT(lds_batch_create(model, cut, 0, NULL, &batch) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_make_batches(model, cut, &count) == LDS_OK && count == 1);
+    uint64_t key = 0;
+    uint64_t triangles = 0;
+    EXPECT(lds_cut_batch_keys(cut, NULL, &triangles, 1) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_batch_keys(cut, &key, &triangles, 1) == LDS_OK && key != 0 && triangles == 24);
+    EXPECT(lds_batch_create(model, cut, 1, NULL, &batch) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_job job;
+    memset(&job, 0, sizeof job);
+    job.struct_size = sizeof job;
+    job.cancel = 1;
+    EXPECT(lds_batch_create(model, cut, 0, &job, &batch) == LDS_ERROR_CANCELLED && batch == NULL);
+    EXPECT(lds_batch_create(model, cut, 0, NULL, &batch) == LDS_OK);
+    EXPECT(lds_batch_vertex_count(batch) == 16 && lds_batch_triangle_count(batch) == 24);
+    static float positions[16][3];
+    static int16_t normals[16][4];
+    static uint8_t colors[16][4];
+    static uint32_t corners[24][3];
+    EXPECT(lds_batch_copy(batch, NULL, &normals[0][0], &colors[0][0], &corners[0][0]) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_batch_copy(batch, &positions[0][0], &normals[0][0], &colors[0][0], &corners[0][0]) ==
+           LDS_OK);
+    EXPECT(colors[0][3] == 255 && corners[23][2] < 16);
+    double box[6] = {0};
+    EXPECT(lds_batch_box(batch, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_batch_box(batch, box) == LDS_OK && box[0] == 0 && box[3] == 6 && box[5] == 1);
+    EXPECT(lds_batch_vertex_count(NULL) == 0 && lds_batch_triangle_count(NULL) == 0);
+    lds_batch_destroy(batch);
+    lds_batch_destroy(NULL);
+}
+
+static void test_changed_placements_are_where_they_are_now(lds_model* model, lds_object group,
+                                                           const lds_view* view) {
+    double there[12];
+    memcpy(there, kIdentity, sizeof there);
+    there[3] = -7;
+    EXPECT(lds_model_change_placement(NULL, group, 0, there, 0) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_change_placement(model, group, 2, there, 0) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_change_placement(model, group, 0, there, 16) == LDS_ERROR_INVALID_ARGUMENT);
+    there[0] = NAN;
+    EXPECT(lds_model_change_placement(model, group, 0, there, 0) == LDS_ERROR_INVALID_ARGUMENT);
+    there[0] = 1;
+    EXPECT(lds_model_change_placement(model, group, 0, there, 0) == LDS_OK);
+    EXPECT(lds_model_change_placement(model, group, 1, NULL, 15) == LDS_OK);
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, view, NULL, &cut) == LDS_OK);
+    lds_choice choice;
+    EXPECT(lds_cut_choice_count(cut) == 1 && lds_cut_choice_copy(cut, &choice, 1) == LDS_OK);
+    EXPECT(choice.world[3] == -7);
+    lds_cut_destroy(cut);
+}
+
 static void test_things_are_found_where_they_are(lds_model* model, lds_cut* cut, lds_object cube) {
     int32_t drawn = -1;
     size_t position = 9;
@@ -96,7 +153,11 @@ int main(void) {
     test_a_surface_is_all_that_is_drawn_in_its_colors(model, cut);
     test_things_are_found_where_they_are(model, cut, cube);
     test_pictures_of_what_is_shown_must_be_linear();
+    test_batches_are_all_that_is_drawn(model, cut);
     lds_cut_destroy(cut);
+    lds_object group;
+    EXPECT(lds_model_find_object(model, "pair", &group) == LDS_OK);
+    test_changed_placements_are_where_they_are_now(model, group, &view);
     lds_model_destroy(model);
     return finish();
 }

@@ -458,6 +458,11 @@ LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group
    replaces the placement's coarsest level. */
 LDS_API lds_status lds_model_pin_placement(lds_model* model, lds_object group, size_t position,
                                            uint32_t lod);
+/* What has become of the placement at `position` of a group since levels were built: it is at another
+   place (null: where it was), and hidden from ray classes as by lds_model_hide_placement. Groups
+   around it are opened: their stand-ins show it as it was. For viewers; levels are not built of it. */
+LDS_API lds_status lds_model_change_placement(lds_model* model, lds_object group, size_t position,
+                                              const double transform[12], uint32_t hidden);
 /* Where the placement at `position` of a group is when the shutter closes, in the group's frame; null:
    it rests there. For lds_modifiers.when_moving; no store keeps it. */
 LDS_API lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,
@@ -963,6 +968,29 @@ LDS_API lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t
    opaque, darker where a triangle is turned away from above. capacity counts triangles. */
 LDS_API lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t* out_colors,
                                         size_t capacity);
+
+/* Batches: what cameras see of a cut, in portions for a viewer that keeps them. A portion that shows
+   the same in another cut has the same key there (colors of lds_cut_set_colors included): only the
+   others are to be made. Kept with the cut until the next call. */
+LDS_API lds_status lds_cut_make_batches(lds_model* model, lds_cut* cut, size_t* out_count);
+/* out_keys uint64[count], never 0; out_triangles uint64[count], a guess for composites. */
+LDS_API lds_status lds_cut_batch_keys(const lds_cut* cut, uint64_t* out_keys,
+                                      uint64_t* out_triangles, size_t capacity);
+typedef struct lds_batch lds_batch;
+/* Reads the meshes it needs and puts them together. It outlives cut and model. */
+LDS_API lds_status lds_batch_create(lds_model* model, const lds_cut* cut, size_t position,
+                                    lds_job* job, lds_batch** out_batch);
+LDS_API void lds_batch_destroy(lds_batch* batch);
+LDS_API size_t lds_batch_vertex_count(const lds_batch* batch);
+LDS_API size_t lds_batch_triangle_count(const lds_batch* batch);
+/* Corners of the box around it, in the world: the lower ones first; zeros around nothing. */
+LDS_API lds_status lds_batch_box(const lds_batch* batch, double out_box[6]);
+/* out_positions float32[vertices][3], in the world; out_normals int16[vertices][4], unit normals times
+   32767, zero where the surface is flat, and 32767 as the fourth where it glows; out_colors
+   uint8[vertices][4], sRGB and how much light it stops; out_triangles uint32[triangles][3]. */
+LDS_API lds_status lds_batch_copy(const lds_batch* batch, float* out_positions,
+                                  int16_t* out_normals, uint8_t* out_colors,
+                                  uint32_t* out_triangles);
 
 /* ---- POV-Ray -------------------------------------------------------------------------------- */
 

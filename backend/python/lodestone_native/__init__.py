@@ -7,7 +7,7 @@ call does, and says in one sentence when it cannot.
 
 from .bake import BakeStep
 from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
-from .cut import Cut, most_demanding, release_meshes
+from .cut import BatchMesh, Cut, change_placement, most_demanding, release_meshes
 from .enums import (
     AlphaMode,
     Antialias,
@@ -71,6 +71,7 @@ __all__ = [
     "Antialias",
     "BakeOp",
     "BakeStep",
+    "BatchMesh",
     "Budget",
     "BuildOptions",
     "Camera",
@@ -110,6 +111,7 @@ __all__ = [
     "StrandBuffers",
     "View",
     "abi_version",
+    "change_placement",
     "image_add_text",
     "image_compare",
     "image_compare_shown",

@@ -5,7 +5,7 @@ import ctypes
 import struct
 from array import array
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from . import structs
@@ -16,6 +16,23 @@ from .library import check, library
 from .model import Model
 from .structs import Object, record, text_out
 from .view import Budget, View
+
+
+class BatchMesh(NamedTuple):
+    """What a graphics card is given of a batch: positions array('f') [vertex][3] in the world;
+    normals array('h') [vertex][4], unit times 32767, zero where flat, the fourth 32767 where it
+    glows; colors array('B') [vertex][4], sRGB and how much light it stops; triangles array('I')
+    [triangle][3]. `box`: its lower and its upper corner."""
+
+    positions: array
+    normals: array
+    colors: array
+    triangles: array
+    box: tuple[float, ...]
+
+    @property
+    def bytes(self) -> int:
+        return sum(len(part) * part.itemsize for part in self[:4])
 
 
 class Choice(NamedTuple):
@@ -137,12 +154,53 @@ class Cut(Handle):
             check(library().lds_cut_surface_copy(self.handle, floats, bytes_, triangles))
         return corners, colors
 
+    def make_batches(self) -> tuple[array, array]:
+        """Divides what cameras see into batches: (keys, triangles), array('Q') each. Equal keys
+        show the same in any cut."""
+        out = ctypes.c_size_t()
+        lib = library()
+        check(lib.lds_cut_make_batches(self.model.handle, self.handle, ctypes.byref(out)))
+        keys, triangles = (array("Q", bytes(8 * out.value)) for _ in range(2))
+        to = (keys.buffer_info()[0], triangles.buffer_info()[0])
+        check(lib.lds_cut_batch_keys(self.handle, *to, out.value))
+        return keys, triangles
+
+    def batch_mesh(self, position: int, job: Job | None = None) -> BatchMesh:
+        """Of make_batches(). Reads the meshes it needs."""
+        made, lib = ctypes.c_void_p(), library()
+        out = ctypes.byref(made)
+        check(lib.lds_batch_create(self.model.handle, self.handle, position, job, out))
+        try:
+            vertices = lib.lds_batch_vertex_count(made)
+            box = (ctypes.c_double * 6)()
+            check(lib.lds_batch_box(made, box))
+            mesh = BatchMesh(
+                array("f", bytes(12 * vertices)),
+                array("h", bytes(8 * vertices)),
+                array("B", bytes(4 * vertices)),
+                array("I", bytes(12 * lib.lds_batch_triangle_count(made))),
+                tuple(box),
+            )
+            check(lib.lds_batch_copy(made, *(part.buffer_info()[0] for part in mesh[:4])))
+        finally:
+            lib.lds_batch_destroy(made)
+        return mesh
+
 
 def most_demanding(model: Model, group: Object) -> str:
     """The path below a group to what opens it by its importance or limit; "" when nothing does."""
     out = ctypes.c_char_p()
     check(library().lds_model_most_demanding(model.handle, group, ctypes.byref(out)))
     return text_out(out.value)
+
+
+def change_placement(
+    model: Model, group: Object, position: int, transform: Sequence[float] | None, hidden: int = 0
+) -> None:
+    """Of the child at `position` of a group, after levels were built: it is elsewhere (None: where
+    it was), or hidden from RayClasses. Groups around it are opened."""
+    rows = None if transform is None else (ctypes.c_double * 12)(*transform)
+    check(library().lds_model_change_placement(model.handle, group, position, rows, hidden))
 
 
 def release_meshes(model: Model) -> None:

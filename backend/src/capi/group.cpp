@@ -170,6 +170,29 @@ lds_status lds_model_pin_placement(lds_model* model, lds_object group, size_t po
     });
 }
 
+lds_status lds_model_change_placement(lds_model* model, lds_object group, size_t position,
+                                      const double transform[12], uint32_t hidden) {
+    return guard([&] {
+        require(model, "model");
+        std::vector<Placement>& placements = group_at(*model, group).placements;
+        if (position >= placements.size())
+            fail(Status::InvalidArgument, "child ", position, " of ", placements.size());
+        const RayMask mask = ray_mask(hidden);
+        Placement& placement = placements[position];
+        if (transform != nullptr) {
+            const Affine there = Affine::from_rows(transform);
+            if (!there.finite())
+                fail(Status::InvalidArgument, "the transform of '", placement.name,
+                     "' holds numbers that are not finite");
+            placement.transform = there;
+        }
+        placement.hidden = mask;
+        // No level is as coarse: nothing but the groups around it is limited by that.
+        placement.coarsest = std::min(placement.coarsest, kAnyLevel - 1);
+        model->summarized = false;
+    });
+}
+
 lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,
                                     const double closing[12]) {
     return guard([&] {

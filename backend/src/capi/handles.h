@@ -6,6 +6,7 @@
 
 #include "build/settings.h"
 #include "model/faces.h"
+#include "quality/batches.h"
 #include "quality/budget.h"
 #include "quality/surface.h"
 #include "segment/store.h"
@@ -51,6 +52,8 @@ struct lds_cut {
     uint64_t originals = 0;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
     lodestone::quality::Surface surface;
+    std::vector<lodestone::quality::Batch> batches;
+    std::vector<glm::dvec3> batch_colors;  // that they were made with
 };
 
 namespace lodestone::capi {
