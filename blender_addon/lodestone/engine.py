@@ -14,12 +14,13 @@ from dataclasses import replace
 
 import bpy
 
-from . import preferences
+from . import preferences, preview
 from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import (
     compare_plan,
+    edits,
     kept_model,
     last_check,
     last_render,
@@ -63,6 +64,12 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
         requirements.names(data, self.lodestone_libraries)
         requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
+    def view_update(self, context, depsgraph):
+        preview.update(self, context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        preview.draw(self, context, depsgraph)
+
     def render(self, depsgraph):
         try:
             run = _Run(self, depsgraph)
@@ -90,6 +97,7 @@ class _Run:
         self.engine = engine
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
+        edits.reading()
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
@@ -212,6 +220,8 @@ class _Run:
                 raise Refused("folder_unwritable", text) from None
             options = self._build_options(self.settings.view(view, size))
             self.left = model.build(str(self.store), options, self.work.new_job("Levels")).left
+            if self.left == 0:
+                edits.settle()
         try:
             kept = store_path.scene_folder(self.store)
             with _folder.use(kept, self.keep, self.frame) as folder:

@@ -12,6 +12,7 @@ from .bridge import camera, check, lenses, poses, scene, shutter
 from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .bridge.settings import SceneSettings
+from .core import edits
 from .core.native import lodestone_native as native
 from .core.problems import Problems
 from .core.text import sentence, valid
@@ -143,6 +144,7 @@ def prepared(target, request):
     global _request
     render = target.render
     request.without_camera = target.camera is None
+    edits.reading()
     names = ("engine", "use_compositing", "use_sequencer")
     before = {name: getattr(render, name) for name in names}
     camera_before, stand_in = target.camera, None

@@ -11,9 +11,11 @@ import traceback
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
+from . import preview
 from .bridge import kept_view
 from .core import false_colors, kept_model
 from .core.native import lodestone_native as native
+from .panels import viewport_levels
 
 MOST_TRIANGLES = 400_000
 DELAY_S = 0.05
@@ -34,12 +36,26 @@ def _changed(self, context):
     _tag_redraw()
 
 
+SEEN_FROM = (
+    ("CAMERA", "Scene Camera", "What the picture uses, from wherever it is looked at"),
+    ("VIEW", "This View", "What each viewport that shows levels uses itself"),
+)
+
+
 class LODESTONE_PG_overlay(bpy.types.PropertyGroup):
     mode: EnumProperty(
         name="Color By",
         description="Color what the scene camera's picture uses",
         items=MODES,
         default="NONE",
+        update=_changed,
+        options={"SKIP_SAVE"},
+    )
+    seen_from: EnumProperty(
+        name="From",
+        description="Whose levels are colored",
+        items=SEEN_FROM,
+        default="CAMERA",
         update=_changed,
         options={"SKIP_SAVE"},
     )
@@ -131,7 +147,11 @@ def _refresh_later():
     context = bpy.context
     try:
         mode = settings(context).mode
-        if mode != "NONE" and not refresh(context, context.scene, mode):
+        if (
+            mode != "NONE"
+            and settings(context).seen_from == "CAMERA"
+            and not refresh(context, context.scene, mode)
+        ):
             if kept_model.get(context.scene.name) is not None:
                 return 4 * DELAY_S  # it is in use
     except native.LodestoneError as error:
@@ -156,6 +176,9 @@ def _draw():
     """In every 3D viewport; an exception here would be printed at each redraw."""
     context = bpy.context
     mode = settings(context).mode
+    if settings(context).seen_from == "VIEW":
+        _draw_own(context, mode)
+        return
     if mode == "NONE" or not context.space_data.overlay.show_overlays:
         return
     try:
@@ -163,6 +186,17 @@ def _draw():
     except Exception:
         traceback.print_exc()
         settings(context).mode = "NONE"
+
+
+def _draw_own(context, mode):
+    """The legend of what preview.py colors itself."""
+    if mode == "NONE" or not context.space_data.overlay.show_overlays:
+        return
+    if not preview.shows_levels(context):
+        _draw_text(context, (), ("Lodestone: this viewport shows no levels",))
+        return
+    asked = context.scene.lodestone.pixel_error_viewport
+    _draw_text(context, false_colors.legend(mode, asked), ())
 
 
 def _draw_colors(context, mode):
@@ -278,10 +312,14 @@ class LODESTONE_VIEW3D_PT_false_colors(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         chosen = settings(context)
-        layout.label(text="Levels of the Scene Camera")
+        viewport_levels.draw_levels(layout, context)
+        layout.separator()
         layout.prop(chosen, "mode")
         column = layout.column()
         column.active = chosen.mode != "NONE"
+        column.prop(chosen, "seen_from")
+        column = column.column()
+        column.active = chosen.seen_from == "CAMERA"
         column.prop(chosen, "opacity")
         column.operator("lodestone.read_levels", icon="FILE_REFRESH")
         column.operator_menu_enum("lodestone.false_color_picture", "seen_from", icon="IMAGE_DATA")
@@ -290,8 +328,12 @@ class LODESTONE_VIEW3D_PT_false_colors(bpy.types.Panel):
 def _draw_header(self, context):
     chosen = settings(context)
     icon = "COLOR" if chosen.mode != "NONE" else "NONE"
+    row = self.layout.row(align=True)
+    if context.scene.render.engine == preview.ENGINE:
+        shown = preview.shows_levels(context)
+        row.operator("lodestone.show_levels", text="", icon="MOD_DECIM", depress=shown)
     name = LODESTONE_VIEW3D_PT_false_colors.__name__
-    self.layout.popover(panel=name, text="Levels", icon=icon)
+    row.popover(panel=name, text="Levels", icon=icon)
 
 
 @bpy.app.handlers.persistent

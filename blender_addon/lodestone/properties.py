@@ -303,6 +303,24 @@ class _Identified:
         update=_decided,
         override={"LIBRARY_OVERRIDABLE"},
     )
+    use_pin_viewport: BoolProperty(
+        name="Pin in Viewports",
+        description="Always draw it with this level in viewports that show levels, from wherever "
+        "it is seen. Renders are not affected",
+        default=False,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    pin_viewport: IntProperty(
+        name="Pinned Level",
+        description="The number of the level (LOD) that viewports always draw it with. Where it "
+        "has no such one, its coarsest",
+        default=0,
+        min=0,
+        max=31,
+        update=_decided,
+        override={"LIBRARY_OVERRIDABLE"},
+    )
     importance: FloatProperty(
         name="Importance",
         description="It and all that is in it are drawn so many times finer than Pixel Error asks "

@@ -79,6 +79,15 @@ class Window(unittest.TestCase):
     def test_seeing(self):
         self.succeeds(self.blender("window_seeing.py"))
 
+    def test_viewport(self):
+        child = self.blender("window_viewport.py")
+        code = child.wait(240)
+        said = self.log.read_text("utf-8", "replace")
+        self.assertEqual(code, 0, said)
+        self.assertIn("WINDOW STEPS DONE", said)
+        self.assertEqual(said.count("Traceback"), 1, said)  # of what is broken on purpose
+        self.assertEqual(said.count("RuntimeError: broken on purpose"), 1)
+
     def test_auto_structure(self):
         self.succeeds(self.blender("window_auto_structure.py", "--enable-event-simulate"))
         kept = os.environ.get("LODESTONE_SCREENS")

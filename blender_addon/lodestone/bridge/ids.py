@@ -88,12 +88,15 @@ def is_environment(datablock: Any) -> bool:
     return settings is not None and settings.role == "ENVIRONMENT"
 
 
-def decision_of(datablock: Any) -> Decision:
-    """About how finely an object or collection is drawn."""
+def decision_of(datablock: Any, viewport: bool = False) -> Decision:
+    """About how finely an object or collection is drawn, in renders or in viewports."""
     settings = settings_of(datablock)
     if settings is None:
         return UNDECIDED
-    pin = settings.pin_render if settings.use_pin_render else -1
+    if viewport:
+        pin = settings.pin_viewport if settings.use_pin_viewport else -1
+    else:
+        pin = settings.pin_render if settings.use_pin_render else -1
     return decision(settings.use, settings.coarsest, settings.importance, pin)
 
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import bpy
 
-from ..core import store_levels, store_path, view_statistics
+from ..core import preview_tree, store_levels, store_path, view_statistics
 from ..core.native import lodestone_native as native
 from ..core.picture import Settings
 from ..core.problems import Problems
 from . import camera as cameras
-from . import lenses, quality, viewport_view
+from . import lenses, preview_scene, quality, viewport_view
 
 _chooser = view_statistics.Chooser()
 
@@ -46,15 +46,46 @@ def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
     if store.model is None or seen is None:
         return None
     own = scene.lodestone
-    parts_of = lenses.parts_stored(store.model)
+    model, decided, chooser = store.model, (), _chooser
+    if preview_scene.any_pin():
+        _pinned.follow(store, scene)
+        model, decided, chooser = _pinned.model, _pinned.decided(), _pinned.chooser
+    parts_of = lenses.parts_stored(model)
     detail = lenses.detail(lens_objects(scene), parts_of, Problems())
     settings = Settings(
         pixel_error=own.pixel_error_viewport if own.use_levels else 0.0,
         modifiers=native.Modifiers(lenses=detail) if detail else None,
     )
     triangles = round(1e6 * own.budget_viewport) if own.use_levels else 0
-    key = (*seen, triangles, _hashable(settings))
-    return _chooser.statistics(store.model, key, *seen, settings, triangles, "viewport")
+    key = (*seen, triangles, decided, _hashable(settings))
+    return chooser.statistics(model, key, *seen, settings, triangles, "viewport")
+
+
+class _Pinned:
+    """A store's model as viewports draw it, for where something is pinned."""
+
+    def __init__(self) -> None:
+        self.model: Any = None
+        self.chooser = view_statistics.Chooser()
+        self._key: Hashable = None
+        self._model: Any = None  # preview_tree.Decided
+
+    def follow(self, store: Any, scene: Any) -> None:
+        """Reads it when it is not yet that of the store. Raises LodestoneError."""
+        names = preview_scene.names_of(scene)
+        key = (id(store), names)
+        if self._key != key:
+            self.model = native.Model.read(str(store.folder))
+            self._model = preview_tree.Decided(self.model, names)
+            self._key = key
+
+    def decided(self) -> Hashable:
+        changes = preview_scene.decisions(self._model.tree)
+        self._model.apply(changes)
+        return tuple(sorted(changes.items()))
+
+
+_pinned = _Pinned()
 
 
 def settings_of(scene: Any, model: Any) -> Settings:
@@ -94,5 +125,6 @@ def _hashable(settings: Settings) -> Hashable:
 
 
 def forget() -> None:
-    global _chooser
+    global _chooser, _pinned
     _chooser = view_statistics.Chooser()
+    _pinned = _Pinned()

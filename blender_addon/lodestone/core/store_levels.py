@@ -23,6 +23,7 @@ class Store:
     """The levels of a store by uid; `problem` says why there are none."""
 
     def __init__(self, folder: Path) -> None:
+        self.folder = folder
         self.problem = ""
         self._levels: dict[str, tuple[Level, ...]] = {}
         self._model: Any = None

@@ -9,7 +9,7 @@ from bpy.props import BoolProperty
 
 from .. import extract_engine
 from ..bridge import decisions
-from ..core import motion_file, progress, store_path
+from ..core import edits, motion_file, progress, store_path
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
 from . import session as sessions
@@ -47,7 +47,9 @@ def update_levels(context, scope):
         with extraction.model as model:
             options = build_options(extraction, keys, request.poses)
             store.mkdir(parents=True, exist_ok=True)
-            return model.build(str(store), options)
+            report = model.build(str(store), options)
+            edits.settle()
+            return report
     except BaseException:
         decisions.take_back(changed)
         raise
@@ -96,6 +98,7 @@ class _InWindow(sessions.InWindow):
             sessions.status(context, progress.building(done, total))
             return {"PASS_THROUGH"}
         report = session.worked()
+        edits.settle()
         session.close(keep=True)
         outcome = self.end(context, {"FINISHED"})
         bpy.ops.ed.undo_push(message=UNDO_NAME)

@@ -23,11 +23,12 @@ def _draw_decisions(layout, context, item):
     column.prop(settings, "use")
     if settings.use == "LIMIT":
         column.prop(settings, "coarsest", text="LOD")
-    row = column.row(heading="Pin in Renders")
-    row.prop(settings, "use_pin_render", text="")
-    sub = row.row()
-    sub.active = settings.use_pin_render
-    sub.prop(settings, "pin_render", text="LOD")
+    for where in ("render", "viewport"):
+        row = column.row(heading=f"Pin in {where.title()}s")
+        row.prop(settings, f"use_pin_{where}", text="")
+        sub = row.row()
+        sub.active = getattr(settings, f"use_pin_{where}")
+        sub.prop(settings, f"pin_{where}", text="LOD")
     sub = column.column()
     sub.active = settings.use in {"AUTOMATIC", "LIMIT"} and not settings.use_pin_render
     sub.prop(settings, "importance")
