@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Convexity: meshes that hide nothing of themselves, and boxes or ellipsoids just inside or around.
+#pragma once
+
+#include "model/representation.h"
+
+#include <optional>
+
+namespace lodestone::measure {
+
+/// A box or ellipsoid scaled about its center, beside a convex mesh.
+struct Scaled {
+    double scale = 1;
+    double gap = 0;  // metres: how far its outline is from the mesh's, seen from anywhere
+};
+
+struct Convexity {
+    /// One closed solid, its outside outside, and convex but for edges so flat that what they hide gets
+    /// next to no light, as the diagonals of quads.
+    bool convex = false;
+    double hollow = 0;  // metres: how deep these lie at most below its convex hull
+    /// Images in it are no larger than in a flat mirror: it is flat or convex, and so are its normals.
+    bool flattens = false;
+};
+
+/// cost: 1 to 2 us a triangle.
+Convexity convexity_of(const Mesh& mesh);
+
+/// The largest copy of a box or ellipsoid inside a convex mesh; nothing when its center is not.
+std::optional<Scaled> inside(const Mesh& convex, const Primitive& solid, bool box);
+/// The smallest around any mesh; nothing when it has no vertices.
+std::optional<Scaled> around(const Mesh& mesh, const Primitive& solid, bool box);
+
+}  // namespace lodestone::measure
