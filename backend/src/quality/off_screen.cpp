@@ -24,25 +24,12 @@ constexpr double kSkySuns = 12;
 // What mirrors weighs by the pixels it covers, up to so many: what is wrong in a door knob is small
 // whatever it shows, and bent so strongly that nothing in it is as large as in a flat mirror.
 constexpr double kWholeMirror = 64.0 * 64.0;
-constexpr double kLeastShare = 1 / (kMostImportance * kMostImportance);  // its root counts
-
-bool reached(const Light& light) {
-    return light.shadow && light.power != 0 && std::isfinite(light.power);
-}
 
 /// How far from its place a light's surface reaches, metres.
 double extent(const Light& light) {
     return light.kind == LightKind::Area
                ? 0.5 * (glm::length(light.edge_u) + glm::length(light.edge_v))
                : std::max(0.0, light.radius);
-}
-
-/// The largest share of anything that a representation's materials image.
-double imaged(const Model& model, const Representation& representation) {
-    double most = 0;
-    for (const uint32_t index : representation.materials)
-        most = std::max(most, quality::imaged(model.materials.at(index)));
-    return most;
 }
 
 /// Of every object, what is below it included.
@@ -78,6 +65,59 @@ double imaged(const Material& material) {
     return share;
 }
 
+double imaged(const Model& model, const Representation& representation) {
+    double most = 0;
+    for (const uint32_t index : representation.materials)
+        most = std::max(most, imaged(model.materials.at(index)));
+    return most;
+}
+
+double imaged(double share, const View& view, const Bound& bound, double away) {
+    const double wide = 2 * bound.radius / pixel_size(view, away);
+    return share * std::min(1.0, wide * wide / kWholeMirror);
+}
+
+bool shadows(const Light& light) {
+    return light.shadow && light.power != 0 && std::isfinite(light.power);
+}
+
+ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* pyramid,
+                         const Box3& scene, const glm::dvec3& eye) {
+    ShadowReach reach;
+    Sweep& sweep = reach.sweep;
+    sweep = {bound.center, {}, bound.radius, 0};
+    if (light.kind == LightKind::Sun) {
+        const double length = glm::length(light.direction);
+        if (!(length > 0))
+            return reach;
+        reach.away = kInfinity;
+        sweep.direction = light.direction / length;
+        sweep.growth = std::tan(0.5 * std::clamp(light.angle, 0.0, 3.0));
+    } else {
+        const glm::dvec3 ray = bound.center - light.position;
+        const double away = glm::length(ray);
+        if (!(away > bound.radius + extent(light))) {
+            reach.seen = true;
+            return reach;
+        }
+        reach.away = away;
+        sweep.direction = ray / away;
+        sweep.growth = (bound.radius + extent(light)) / away;
+    }
+    const Stretch seen =
+        pyramid != nullptr ? pyramid->touched(sweep, scene) : touched(sweep, scene);
+    if (seen.empty())
+        return reach;
+    reach.seen = true;
+    reach.last = seen.last;
+    // The nearest that the ball, as large as it ends, comes to the eye
+    const double along =
+        std::clamp(glm::dot(eye - sweep.start, sweep.direction), seen.first, seen.last);
+    reach.z = std::max(0.0, glm::length(sweep.start + along * sweep.direction - eye) -
+                                (sweep.radius + seen.last * sweep.growth));
+    return reach;
+}
+
 OffScreenField::OffScreenField(const Model& model, const View& view)
     : view_(view), lights_(model.lights), pyramid_(view) {
     if (model.root >= model.objects.size())
@@ -108,9 +148,8 @@ void OffScreenField::find_mirrors(const Model& model) {
         if (!(shares[index] > 0) || pyramid_.outside(bound))
             return;
         const double away = distance(bound, view_.camera.position);
-        const double wide = 2 * bound.radius / pixel_size(view_, away);
-        const double share = shares[index] * std::min(1.0, wide * wide / kWholeMirror);
-        if (share > kLeastShare)
+        const double share = imaged(shares[index], view_, bound, away);
+        if (share > kLeastImaged)
             parts.push({index, world, {bound, away, share}, number++});
     };
     add(model.root, Affine{});
@@ -131,31 +170,12 @@ void OffScreenField::find_mirrors(const Model& model) {
 }
 
 double OffScreenField::shadow_pixel(const Light& light, const Bound& bound) const {
-    Sweep sweep{bound.center, {}, bound.radius, 0};
-    double away = kInfinity;  // metres from the light
-    if (light.kind == LightKind::Sun) {
-        const double length = glm::length(light.direction);
-        if (!(length > 0))
-            return kInfinity;
-        sweep.direction = light.direction / length;
-        sweep.growth = std::tan(0.5 * std::clamp(light.angle, 0.0, 3.0));
-    } else {
-        const glm::dvec3 ray = bound.center - light.position;
-        away = glm::length(ray);
-        if (!(away > bound.radius + extent(light)))
-            return 0;  // all around it may be in its shadow
-        sweep.direction = ray / away;
-        sweep.growth = (bound.radius + extent(light)) / away;
-    }
-    const Stretch seen = pyramid_.touched(sweep, scene_);
-    if (seen.empty())
+    const ShadowReach reach = shadow_reach(light, bound, &pyramid_, scene_, view_.camera.position);
+    if (!reach.seen)
         return kInfinity;
-    // The nearest that the ball, as large as it ends, comes to the eye
-    const double along = std::clamp(glm::dot(view_.camera.position - sweep.start, sweep.direction),
-                                    seen.first, seen.last);
-    const double z = glm::length(sweep.start + along * sweep.direction - view_.camera.position) -
-                     (sweep.radius + seen.last * sweep.growth);
-    return pixel_size(view_, std::max(0.0, z)) / (1 + seen.last / away);
+    if (reach.away == 0)
+        return 0;  // all around it may be in its shadow
+    return pixel_size(view_, reach.z) / (1 + reach.last / reach.away);
 }
 
 double OffScreenField::coarser(const Bound& bound, double z) const {
@@ -172,7 +192,7 @@ double OffScreenField::coarser(const Bound& bound, double z) const {
     for (const Light& light : lights_) {
         if (least <= here)
             return 1;
-        if (reached(light))
+        if (shadows(light))
             least = std::min(least, shadow_pixel(light, bound));
     }
     return std::max(1.0, least / here);

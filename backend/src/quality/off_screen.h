@@ -12,6 +12,29 @@ namespace lodestone::quality {
 /// Share of the light from around that a surface sends on as an image of it, the mean over all
 /// directions; 0 for what is rough, 1 for what refracts.
 double imaged(const Material& material);
+/// The largest of a representation's materials.
+double imaged(const Model& model, const Representation& representation);
+
+/// The same weighed by the pixels something covers: what is wrong in a door knob is small whatever it
+/// shows. Below kLeastImaged it does not count.
+double imaged(double share, const View& view, const Bound& bound, double away);
+inline constexpr double kLeastImaged = 1 / (kMostImportance * kMostImportance);  // its root counts
+
+/// Whether a light throws shadows at all.
+bool shadows(const Light& light);
+
+/// Where the shadow of a ball can be, itself included: a swept ball.
+struct ShadowReach {
+    bool seen = false;  // in the part of the world that is asked about
+    double z = 0;       // there no nearer to the eye, metres
+    double last = 0;    // there no farther from the ball's center
+    /// From the light to the ball's center: infinite for suns; 0: the ball may be all around it.
+    double away = 0;
+    Sweep sweep;
+};
+/// In the pyramid, or anywhere (null), as far as the scene's box goes.
+ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* pyramid,
+                         const Box3& scene, const glm::dvec3& eye);
 
 /// How much coarser than at its distance something may be that is not in the picture: by how large a
 /// pixel is, at least, where its shadow may fall (equation 5.17) and along the way to it by what

@@ -46,6 +46,30 @@ void Stretch::cut_by(const Sweep& sweep, const HalfSpace& space) {
         last = -1;
 }
 
+bool touches(const Sweep& sweep, const glm::dvec3& center, double radius) {
+    const double both = sweep.radius + radius;
+    const glm::dvec3 to = center - sweep.start;
+    if (glm::length(to) <= both || sweep.growth >= 1)
+        return true;
+    // Of the distance less what the ball has grown by: the least along the way
+    const double along = glm::dot(to, sweep.direction);
+    const double beside = glm::length(to - along * sweep.direction);
+    const double slope = std::sqrt(1 - sweep.growth * sweep.growth);
+    return along + sweep.growth * beside / slope >= 0 &&
+           beside * slope - sweep.growth * along <= both;
+}
+
+Stretch touched(const Sweep& sweep, const Box3& box) {
+    Stretch out{0, std::numeric_limits<double>::infinity()};
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 normal(0.0);
+        normal[axis] = 1;
+        out.cut_by(sweep, {normal, -box.low[axis]});
+        out.cut_by(sweep, {-normal, box.high[axis]});
+    }
+    return out;
+}
+
 Pyramid::Pyramid(const View& view) {
     const Camera& camera = view.camera;
     const glm::dvec3 right = camera.right * half_frame(view, view.width, glm::length(camera.right));
@@ -75,15 +99,9 @@ bool Pyramid::outside(const Bound& bound) const {
 }
 
 Stretch Pyramid::touched(const Sweep& sweep, const Box3& box) const {
-    Stretch out{0, std::numeric_limits<double>::infinity()};
+    Stretch out = quality::touched(sweep, box);
     for (const HalfSpace& space : sides_)
         out.cut_by(sweep, space);
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 normal(0.0);
-        normal[axis] = 1;
-        out.cut_by(sweep, {normal, -box.low[axis]});
-        out.cut_by(sweep, {-normal, box.high[axis]});
-    }
     return out;
 }
 

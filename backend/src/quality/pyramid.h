@@ -32,6 +32,12 @@ struct Stretch {
     void cut_by(const Sweep& sweep, const HalfSpace& space);
 };
 
+/// Whether any of a sweep's balls touches another ball.
+bool touches(const Sweep& sweep, const glm::dvec3& center, double radius);
+
+/// What of a sweep, from its start on, touches a box.
+Stretch touched(const Sweep& sweep, const Box3& box);
+
 /// Four sides through the eye (orthographic: along the view) and what is in front of it, a little
 /// wider than the frame: by a pixel, and by how far a lens blurs what is at the near clip.
 class Pyramid {
