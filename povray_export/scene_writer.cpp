@@ -10,6 +10,8 @@
 #include "povray_export/light_writer.h"
 #include "povray_export/magnification.h"
 #include "povray_export/number.h"
+#include "povray_export/occurrence_text.h"
+#include "povray_export/own_uses.h"
 #include "povray_export/render_settings.h"
 #include "povray_export/representation_writer.h"
 #include "povray_export/scene_lights.h"
@@ -38,31 +40,6 @@ double thread_cpu_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// A user's name inside a comment: letters, digits and underscores only.
-std::string plain(const std::string& name) {
-    std::string out;
-    for (const char c : name) {
-        const bool kept =
-            (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-        out += kept ? c : '_';
-        if (out.size() == 60)
-            break;
-    }
-    return out.empty() ? "unnamed" : out;
-}
-
-/// POV-Ray's flags; only ever on single objects, as it loses no_image in some of its CSG.
-void append_hidden(std::string& out, RayMask hidden) {
-    if ((hidden & kCameraRays) != 0)
-        out += " no_image";
-    if ((hidden & kReflectionRays) != 0)
-        out += " no_reflection";
-    if ((hidden & kShadowRays) != 0)
-        out += " no_shadow";
-    if ((hidden & kRadiosityRays) != 0)
-        out += " no_radiosity";
-}
-
 /// Below an Environment group, or a stand-in for a group that holds Environment.
 bool environment(const Model& model, const quality::Cut& cut,
                  const std::vector<uint8_t>& holds_environment, uint32_t node) {
@@ -73,14 +50,6 @@ bool environment(const Model& model, const quality::Cut& cut,
             return true;
     }
     return false;
-}
-
-std::string name_of_node(const Model& model, const quality::Cut& cut, uint32_t node) {
-    const quality::Node& here = cut.nodes[node];
-    if (here.parent == quality::kNoParent)
-        return model.objects[here.object].name;
-    const Object& group = model.objects[cut.nodes[here.parent].object];
-    return group.representations[0].assembly().placements[here.placement].name;
 }
 
 /// As much of an include file as can name its pictures.
@@ -95,9 +64,12 @@ std::string beginning_of(const std::filesystem::path& path) {
 
 struct Use {
     uint32_t node;
+    uint32_t lod;
     size_t position;  // in cut.chosen
     size_t file;      // index of the include file
     Affine world;
+    RayMask hidden;        // ray classes that do not see it
+    RayMask in_place = 0;  // of what the camera sees, for these classes only
 };
 
 struct Include {
@@ -138,6 +110,7 @@ public:
         if (!options_.covered_only)
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
         write_includes();
+        hide_replaced();
         const double after_files = thread_cpu_s();
         name_problems();
         if (!sky_.file.empty()) {
@@ -176,11 +149,61 @@ private:
                  "': ", error.message());
     }
 
+    /// What classes of rays meet, where there is light at all.
+    std::span<const quality::RayCut> rays() const {
+        return lit() ? options_.rays : std::span<const quality::RayCut>{};
+    }
+
+    void collect_own() {
+        const bool softened =
+            shading_.area_samples > 1 && shading_.shadow_error <= view_.pixel_error;
+        for (const OwnUse& own : own_uses(model_, cut_, rays(), softened))
+            add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures);
+    }
+
+    /// Hides from classes what they meet something else in place of, which must be there.
+    void hide_replaced() {
+        std::vector<RayMask> replaced(cut_.nodes.size(), 0);
+        for (const Use& use : uses_) {
+            if (includes_[use.file].drawn)
+                replaced[use.node] |= use.in_place;
+        }
+        replaced = spread(cut_, std::move(replaced));
+        for (Use& use : uses_) {
+            if (use.in_place == 0)
+                use.hidden |= replaced[use.node];
+        }
+    }
+
+    /// Of a representation of its node, in its file.
+    void add_use(Use use, bool textures) {
+        const quality::Node& node = cut_.nodes[use.node];
+        const Representation& representation =
+            model_.objects.at(node.object).representations.at(use.lod);
+        if (!make_invertible(use.world)) {
+            problems_.push_back({quality::path_of(model_, cut_, use.node), Severity::Warning,
+                                 "singular_transform",
+                                 "is scaled to nothing or to a line, so it is not drawn"});
+            return;
+        }
+        // Copies of one representation share a file, those that are textured for their nearest
+        const RepresentationOptions as{textures, options_.uvs, std::nullopt};
+        const auto [at, fresh] =
+            known_.try_emplace(file_hash(representation, as), includes_.size());
+        if (fresh) {
+            includes_.emplace_back().representation = &representation;
+            includes_.back().options = as;
+        }
+        use.file = at->second;
+        uses_.push_back(use);
+        double& texel = includes_[use.file].texel;
+        texel = std::min(texel, texel_of(node, representation, use.world));
+    }
+
     void collect() {
-        std::unordered_map<Hash, size_t> known;
         const std::vector<uint8_t> holds_environment =
             options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
-        const RepresentationOptions as{!options_.false_color, options_.uvs, std::nullopt};
+        const std::vector<uint8_t> nobody = left_out(cut_, rays());
         for (size_t position = 0; position < cut_.chosen.size(); ++position) {
             const uint32_t index = cut_.chosen[position];
             if ((uses_.size() & 1023u) == 0)
@@ -192,25 +215,12 @@ private:
                 continue;
             if (options_.covered_only && environment(model_, cut_, holds_environment, index))
                 continue;
-            Use use{index, position, 0, node.world};
-            if (!make_invertible(use.world)) {
-                problems_.push_back({quality::path_of(model_, cut_, index), Severity::Warning,
-                                     "singular_transform",
-                                     "is scaled to nothing or to a line, so it is not drawn"});
+            if (nobody[index] != 0)
                 continue;
-            }
-            // Copies of one representation share a file, those that are textured for their nearest
-            const Hash hash = file_hash(representation, as);
-            const auto [at, fresh] = known.try_emplace(hash, includes_.size());
-            if (fresh)
-                includes_.emplace_back().representation = &representation;
-            use.file = at->second;
-            uses_.push_back(use);
-            double& texel = includes_[use.file].texel;
-            texel = std::min(texel, texel_of(node, representation, use.world));
+            add_use({index, node.lod, position, 0, node.world, node.hidden}, !options_.false_color);
         }
+        collect_own();
         for (Include& include : includes_) {
-            include.options = as;
             if (shading_.texture_error > 0 && include.options.textures && pictured(include))
                 include.options.texel = exponent_of(include.texel);
             include.hash = file_hash(*include.representation, include.options);
@@ -314,6 +324,15 @@ private:
         return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
     }
 
+    /// Lights are chosen by what the camera sees, as if all rays met that.
+    RayMask hidden_in_plan(const Use& use) const {
+        const RayMask own = cut_.nodes[use.node].hidden;
+        if (use.in_place != 0)
+            return kAllRays;
+        // What has flags is not parted; this one says nothing to lights
+        return use.hidden == own ? own : static_cast<RayMask>(own | kRadiosityRays);
+    }
+
     /// By which lights what is drawn; its numbers are those of the uses that are drawn.
     LightPlan light_plan(const std::vector<Bound>& occluders) {
         const double error = options_.light_error.value_or(view_.pixel_error);
@@ -327,7 +346,7 @@ private:
         for (const Use& use : uses_) {
             if (includes_[use.file].drawn)
                 drawn.push_back(
-                    {includes_[use.file].representation, use.world, cut_.nodes[use.node].hidden});
+                    {includes_[use.file].representation, use.world, hidden_in_plan(use)});
         }
         LightPlan plan = plan_lights(model_, drawn, view_, error, problems_, job_);
         if (!plan.empty())
@@ -344,6 +363,7 @@ private:
             if (!includes_[use.file].drawn)
                 continue;
             drawn.push_back(&use);
+            report_.unseen += use.in_place != 0 ? 1 : 0;
             if (plan.empty())
                 append_object(out, use, times);
         }
@@ -357,16 +377,15 @@ private:
     /// What of it is `within` a box (world frame).
     void append_object(std::string& out, const Use& use, double times,
                        const std::optional<Box3>& within = {}) const {
-        const quality::Node& node = cut_.nodes[use.node];
         out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
         if (options_.false_color) {
             const Kind kind = includes_[use.file].representation->summary.kind;
-            append_flat_texture(out, options_.colors.empty() ? color_of(kind, node.lod)
+            append_flat_texture(out, options_.colors.empty() ? color_of(kind, use.lod)
                                                              : options_.colors[use.position]);
             out += ' ';
         }
         append_matrix(out, magnified(use.world, times));
-        append_hidden(out, node.hidden);
+        append_hidden(out, use.hidden);
         if (within) {
             out += " clipped_by{box{";
             append_vector(out, within->low * times, 15);
@@ -374,9 +393,9 @@ private:
             append_vector(out, within->high * times, 15);
             out += "}}";
         }
-        out += "} // " + plain(name_of_node(model_, cut_, use.node)) + ", LOD ";
-        append_count(out, node.lod);
-        out += '\n';
+        out += "} // " + comment_of(model_, cut_, use.node) + ", LOD ";
+        append_count(out, use.lod);
+        out += use.in_place != 0 ? ", unseen\n" : "\n";
     }
 
     std::string scene() {
@@ -465,6 +484,7 @@ private:
     PictureFolder pictures_;
     std::vector<Use> uses_;
     std::vector<Include> includes_;
+    std::unordered_map<Hash, size_t> known_;  // by file_hash without texel
     ExportReport report_;
     Sky sky_;
 };

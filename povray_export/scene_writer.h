@@ -5,10 +5,11 @@
 #include "base/job.h"
 #include "model/model.h"
 #include "povray_export/shading.h"
-#include "quality/cut.h"
+#include "quality/ray_cut.h"
 
 #include <filesystem>
 #include <optional>
+#include <span>
 
 namespace lodestone::povray {
 
@@ -24,6 +25,9 @@ struct ExportOptions {
     bool covered_only = false;
     /// How far lights are approximated, in place of the view's Pixel Error; 0: all as they are.
     std::optional<double> light_error;
+    /// What classes of rays meet in place of parts of the cut, by its nodes; not in false colors, nor
+    /// where only what is covered counts.
+    std::span<const quality::RayCut> rays{};
     bool uvs =
         true;  // texture coordinates where a texture uses them; false: textures are their means
 };
@@ -34,6 +38,7 @@ struct ExportReport {
     uint64_t written = 0;  // files not found again
     uint64_t representations = 0;
     uint64_t occurrences = 0;  // objects in the scene
+    uint64_t unseen = 0;       // of these that the camera does not see, but some other rays
     uint64_t lamps = 0;        // lights but suns
     double lights_each = 0;    // lamps, and lights for several, that light a seen point, on average
     double cpu_s = 0;          // of all threads

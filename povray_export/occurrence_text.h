@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Occurrence text: what is said about an occurrence besides its shape and place: flags, a comment.
+#pragma once
+
+#include "quality/cut.h"
+
+#include <string>
+
+namespace lodestone::povray {
+
+/// POV-Ray's flags; only ever on single objects, as it loses no_image in some of its CSG.
+void append_hidden(std::string& out, RayMask hidden);
+
+/// The name of a node's placement, as far as it may stand in a comment: letters, digits and
+/// underscores only, at most 60.
+std::string comment_of(const Model& model, const quality::Cut& cut, uint32_t node);
+
+}  // namespace lodestone::povray
