@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "choosing.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -18,7 +19,34 @@ const OptionHelp kOffScreen{"off-screen", "HOW",
                             "shadows and images in mirrors "
                             "need) or shadows (images may be coarse)"};
 
+const OptionHelp kRayClasses{
+    "ray-classes", "LIST",
+    "which rays may meet coarser levels than the camera's, where the picture cannot tell: any of "
+    "shadow, reflection, radiosity, with commas between"};
+
 namespace {
+
+constexpr std::array<std::pair<const char*, uint32_t>, 3> kClasses{
+    {{"shadow", LDS_RAYS_SHADOW},
+     {"reflection", LDS_RAYS_REFLECTION},
+     {"radiosity", LDS_RAYS_RADIOSITY}}};
+
+/// A mask of lds_rays. Throws UsageError.
+uint32_t classes_of(const std::optional<std::string>& list) {
+    uint32_t mask = 0;
+    for (size_t at = 0; list && at <= list->size();) {
+        const size_t end = std::min(list->find(',', at), list->size());
+        const std::string word = list->substr(at, end - at);
+        const auto* found = std::find_if(kClasses.begin(), kClasses.end(),
+                                         [&](const auto& name) { return word == name.first; });
+        if (found == kClasses.end())
+            throw UsageError("--ray-classes has '" + word +
+                             "'; shadow, reflection or radiosity expected");
+        mask |= found->second;
+        at = end + 1;
+    }
+    return mask;
+}
 
 /// The place of what an option says among its words, the first by default. Throws UsageError.
 template <size_t Count>
@@ -44,6 +72,7 @@ Choosing::Choosing(const Arguments& arguments, lds_view& view)
     modifiers_.criterion =
         word_of<4>(arguments, "criterion", {"resolution", "feature", "area", "distance"});
     modifiers_.off_screen = word_of<3>(arguments, "off-screen", {"full", "reflected", "shadows"});
+    modifiers_.ray_classes = classes_of(arguments.text("ray-classes"));
     view_.modifiers = &modifiers_;
     budget_.struct_size = sizeof budget_;
     found_.struct_size = sizeof found_;
@@ -69,6 +98,33 @@ CutHandle Choosing::cut(lds_model* model, lds_job* job) {
     if (found_.fits == 0)
         std::fprintf(stderr, "warning: even the coarsest levels cost more than the budget\n");
     return CutHandle(made);
+}
+
+Fields Choosing::rays(const lds_cut* cut) const {
+    Fields out;
+    for (const auto& [name, rays] : kClasses) {
+        if ((modifiers_.ray_classes & rays) == 0)
+            continue;
+        lds_ray_summary summary{};
+        summary.struct_size = sizeof summary;
+        check(lds_cut_get_rays(cut, rays, &summary));
+        std::printf(
+            "%s: %llu occurrences, %llu triangles; %llu of its own, off by at most %.3f px\n", name,
+            static_cast<unsigned long long>(summary.occurrences),
+            static_cast<unsigned long long>(summary.triangles),
+            static_cast<unsigned long long>(summary.own), summary.largest_error_px);
+        out.push_back({name, Fields{{"own", summary.own},
+                                    {"occurrences", summary.occurrences},
+                                    {"triangles", summary.triangles},
+                                    {"bytes", summary.bytes},
+                                    {"largest_error_px", summary.largest_error_px},
+                                    {"kept_need", summary.kept_need},
+                                    {"kept_shape", summary.kept_shape},
+                                    {"kept_contact", summary.kept_contact},
+                                    {"all_triangles", summary.all_triangles},
+                                    {"all_bytes", summary.all_bytes}}});
+    }
+    return out;
 }
 
 void Choosing::report(Fields& fields) const {

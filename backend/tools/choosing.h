@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing: what --max-triangles, --max-memory, --criterion and --off-screen mean, for every verb that makes a cut.
+// Choosing: what --max-triangles, --max-memory, --criterion, --off-screen and --ray-classes mean, for every verb that makes a cut.
 #pragma once
 
 #include "arguments.h"
@@ -12,6 +12,7 @@ extern const OptionHelp kMaxTriangles;
 extern const OptionHelp kMaxMemory;
 extern const OptionHelp kCriterion;
 extern const OptionHelp kOffScreen;
+extern const OptionHelp kRayClasses;
 
 class Choosing {
 public:
@@ -23,6 +24,8 @@ public:
     /// The view's cut; with a budget view.pixel_error becomes what fits, and a warning is said where
     /// nothing does.
     CutHandle cut(lds_model* model, lds_job* job);
+    /// What the classes of rays asked for meet: printed, and for a report; empty without any.
+    Fields rays(const lds_cut* cut) const;
     /// Adds to a report how the threshold was found.
     void report(Fields& fields) const;
 

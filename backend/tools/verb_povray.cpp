@@ -143,11 +143,13 @@ int run_povray(const Arguments& arguments) {
     rendered.struct_size = sizeof rendered;
     const std::string camera = view.camera.name == nullptr ? "--eye" : view.camera.name;
     std::string largest;
+    Fields rays;
     {
         Progress progress("exporting");
         const CutHandle cut = choosing.cut(model.get(), progress.job());
         check(lds_cut_get_summary(cut.get(), &summary));
         largest = summary.largest_error_name;
+        rays = choosing.rays(cut.get());
         check(lds_povray_export(model.get(), cut.get(), &view, folder.path().c_str(), &options,
                                 progress.job(), &exported));
     }
@@ -171,12 +173,15 @@ int run_povray(const Arguments& arguments) {
     report.push_back({"camera", camera});
     summary.largest_error_name = largest.c_str();
     report.push_back({"cut", fields_of(summary)});
+    if (!rays.empty())
+        report.push_back({"rays", std::move(rays)});
     report.push_back({"export", Fields{{"bytes", exported.bytes},
                                        {"files", exported.files},
                                        {"written", exported.written},
                                        {"cpu_s", exported.cpu_s},
                                        {"lamps", exported.lamps},
-                                       {"lights_each", exported.lights_each}}});
+                                       {"lights_each", exported.lights_each},
+                                       {"unseen", exported.unseen}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},
                                        {"wall_s", rendered.wall_s},

@@ -36,6 +36,9 @@ int run_cut(const Arguments& arguments) {
     report.push_back({"pixel_error", view.pixel_error});
     choosing.report(report);
     report.push_back({"cut", fields_of(summary)});
+    Fields rays = choosing.rays(cut.get());
+    if (!rays.empty())
+        report.push_back({"rays", std::move(rays)});
     if (arguments.has("list")) {
         std::vector<lds_choice> choices(lds_cut_choice_count(cut.get()));
         check(lds_cut_choice_copy(cut.get(), choices.data(), choices.size()));

@@ -172,11 +172,53 @@ static void test_what_moves_is_coarser_only_where_that_counts(void) {
     lds_model_destroy(model);
 }
 
+static void test_classes_of_rays_are_counted_and_named(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_modifiers modifiers = lds_modifiers_default();
+    EXPECT(modifiers.ray_classes == 0);
+    modifiers.ray_classes = LDS_RAYS_SHADOW;
+    lds_view view = view_before(30, 640, 360);
+    view.modifiers = &modifiers;
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    lds_ray_summary summary;
+    memset(&summary, 0, sizeof summary);
+    EXPECT(lds_cut_get_rays(cut, LDS_RAYS_SHADOW, &summary) == LDS_ERROR_INVALID_ARGUMENT);
+    summary.struct_size = sizeof summary;
+    EXPECT(lds_cut_get_rays(cut, LDS_RAYS_SHADOW, &summary) == LDS_OK);
+    EXPECT(summary.rays == LDS_RAYS_SHADOW && summary.occurrences == 2 && summary.own == 0);
+    EXPECT(summary.triangles == 24 && summary.all_triangles == 24 && summary.kept_need == 2);
+    EXPECT(lds_cut_get_rays(cut, LDS_RAYS_REFLECTION, &summary) == LDS_OK);
+    EXPECT(summary.occurrences == 2 && summary.kept_need == 0); /* not asked for: the camera's */
+    EXPECT(lds_cut_get_rays(cut, 3, &summary) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_get_rays(NULL, 1, &summary) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_ray_choice choice;
+    memset(&choice, 0, sizeof choice);
+    choice.struct_size = sizeof choice;
+    EXPECT(lds_cut_choice_rays(model, cut, 1, LDS_RAYS_SHADOW, &choice) == LDS_OK);
+    EXPECT(choice.met == LDS_MET_NEED && choice.object.index == cube.index && choice.lod == 0);
+    EXPECT(choice.kind == LDS_KIND_MESH && choice.scale == 1 && choice.error == 0);
+    EXPECT(lds_cut_choice_rays(model, cut, 1, LDS_RAYS_RADIOSITY, &choice) == LDS_OK);
+    EXPECT(choice.met == LDS_MET_OFF);
+    EXPECT(lds_cut_choice_rays(model, cut, 2, LDS_RAYS_SHADOW, &choice) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    lds_object other;
+    lds_model* foreign = two_cubes(&other);
+    EXPECT(lds_cut_choice_rays(foreign, cut, 0, LDS_RAYS_SHADOW, &choice) == LDS_ERROR_STALE_ID);
+    lds_model_destroy(foreign);
+    lds_cut_destroy(cut);
+    modifiers.ray_classes = 8;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_model_destroy(model);
+}
+
 int main(void) {
     test_a_view_without_modifiers_is_one_of_version_1();
     test_nonsense_is_refused_by_name();
     test_a_budget_says_what_fits();
     test_a_reason_names_every_factor();
     test_what_moves_is_coarser_only_where_that_counts();
+    test_classes_of_rays_are_counted_and_named();
     return finish();
 }

@@ -62,6 +62,19 @@ class CommandPovray(unittest.TestCase):
         self.assertTrue((scene / "scene.pov").is_file())
         self.assertEqual(size, (32, 18))
 
+    def test_classes_of_rays_are_reported_and_nonsense_refused(self):
+        look = ("cut", self.model, "--eye", "5,5,5")
+        report = self.folder / "cut.json"
+        done = self.run_command(*look, "--ray-classes", "shadow,reflection", "--json", report)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rays = json.loads(report.read_text())["rays"]
+        self.assertEqual(list(rays), ["shadow", "reflection"])
+        self.assertEqual((rays["shadow"]["own"], rays["shadow"]["triangles"]), (0, 12))
+        for nonsense in ("shadows", "shadow,", "", "camera"):
+            done = self.run_command(*look, "--ray-classes", nonsense)
+            self.assertEqual(done.returncode, 2, nonsense)
+            self.assertIn("expected", done.stderr)
+
     def test_a_budget_finds_the_pixel_error_that_fits(self):
         store, report = self.folder / "store", self.folder / "cut.json"
         self.assertEqual(self.run_command("build", self.model, store).returncode, 0)

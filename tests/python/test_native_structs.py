@@ -105,6 +105,8 @@ class Functions(unittest.TestCase):
             (enums.LensFilter, "LDS_LENS_FILTER_"),
             (enums.Criterion, "LDS_CRITERION_"),
             (enums.OffScreen, "LDS_OFF_SCREEN_"),
+            (enums.Rays, "LDS_RAYS_"),
+            (enums.Met, "LDS_MET_"),
             (enums.Drawn, "LDS_DRAWN_"),
             (enums.SimplifyMode, "LDS_SIMPLIFY_"),
             (enums.Channel, "LDS_CHANNEL_"),

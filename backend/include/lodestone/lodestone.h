@@ -817,6 +817,13 @@ typedef enum lds_off_screen {
     LDS_OFF_SCREEN_SHADOWS = 2    /* as their shadows in it need: images of them may be coarse */
 } lds_off_screen;
 
+/* Classes of rays that may meet coarser representations than the camera's rays (5.3): a mask. */
+typedef enum lds_rays {
+    LDS_RAYS_REFLECTION = 1,
+    LDS_RAYS_SHADOW = 2,
+    LDS_RAYS_RADIOSITY = 4
+} lds_rays;
+
 /* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
    stays within 1/64 to 64. */
 typedef struct lds_modifiers {
@@ -835,6 +842,7 @@ typedef struct lds_modifiers {
                             below 1/2, unless the world behind is brighter */
     const lds_camera* closing; /* the camera when the shutter closes; null: it rests */
     int32_t off_screen;        /* lds_off_screen */
+    uint32_t ray_classes;      /* lds_rays; 0: every ray meets what the camera sees */
 } lds_modifiers;
 LDS_API lds_modifiers lds_modifiers_default(void);
 
@@ -932,6 +940,46 @@ typedef struct lds_reason {
 /* model: the cut's, its levels unchanged since. */
 LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
                                          lds_reason* out_reason);
+/* What a class of rays meets, in place of what the camera sees. */
+typedef struct lds_ray_summary {
+    uint32_t struct_size;
+    uint32_t rays;           /* the class: one of lds_rays */
+    uint64_t own;            /* occurrences and groups it meets a coarser representation of */
+    uint64_t occurrences;    /* it meets */
+    uint64_t triangles;      /* placed, that it meets */
+    uint64_t bytes;          /* of these in POV-Ray's memory */
+    double largest_error_px; /* bound: how far edges of shadows or images are off by these */
+    uint64_t
+        kept_need; /* choices it meets as the camera does, because nothing coarser is good enough */
+    uint64_t kept_shape;    /* because a stand-in would shadow or mirror its own original */
+    uint64_t kept_contact;  /* because something else is too near */
+    uint64_t all_triangles; /* placed, that the camera or any class meets */
+    uint64_t all_bytes;     /* of these in POV-Ray's memory */
+} lds_ray_summary;
+/* Of a class that the cut's modifiers ask for; of another one: as the camera's. */
+LDS_API lds_status lds_cut_get_rays(const lds_cut* cut, uint32_t rays,
+                                    lds_ray_summary* out_summary);
+typedef enum lds_met {
+    LDS_MET_OFF = 0,    /* the class was not asked for, or does not meet it: as the camera's */
+    LDS_MET_OWN = 1,    /* a coarser representation of its own */
+    LDS_MET_GROUP = 2,  /* a stand-in for a group around it */
+    LDS_MET_NEED = 3,   /* as the camera's: nothing coarser is good enough */
+    LDS_MET_SHAPE = 4,  /* as the camera's: a stand-in would shadow or mirror its own original */
+    LDS_MET_CONTACT = 5 /* as the camera's: something else is too near */
+} lds_met;
+/* What a class meets of one choice. */
+typedef struct lds_ray_choice {
+    uint32_t struct_size;
+    int32_t met;       /* lds_met */
+    lds_object object; /* whose representation it meets */
+    uint32_t lod;
+    int32_t kind;
+    double scale;    /* of a box or ellipsoid about its center, so that it is inside or around */
+    double error;    /* metres in the world; 0 where it meets what the camera sees */
+    double error_px; /* bound: how far edges of its shadow or image are off */
+} lds_ray_choice;
+LDS_API lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t position,
+                                       uint32_t rays, lds_ray_choice* out_choice);
 /* How a cut draws one thing of the scene. */
 typedef enum lds_drawn {
     LDS_DRAWN_MISSING = 0,  /* the model has no such occurrence */
@@ -1037,6 +1085,7 @@ typedef struct lds_export_report {
     uint64_t lamps;     /* lights but suns */
     double lights_each; /* lamps, and lights that stand for several, that light a point of the
                              picture, on average */
+    uint64_t unseen;    /* occurrences that only some classes of rays meet */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

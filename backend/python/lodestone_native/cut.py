@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from . import structs
-from .enums import Drawn
+from .enums import Drawn, Rays
 from .handle import Handle
 from .job import Job
 from .library import check, library
@@ -97,6 +97,22 @@ class Cut(Handle):
         check(
             library().lds_cut_choice_reason(
                 self.model.handle, self.handle, position, ctypes.byref(out)
+            )
+        )
+        return record(out)
+
+    def rays(self, rays: Rays) -> Any:
+        """What a class of rays meets: fields as lds_ray_summary's."""
+        out = structs.RaySummary()
+        check(library().lds_cut_get_rays(self.handle, rays, ctypes.byref(out)))
+        return record(out)
+
+    def choice_rays(self, position: int, rays: Rays) -> Any:
+        """What a class of rays meets of a choice: fields as lds_ray_choice's."""
+        out, handle = structs.RayChoice(), self.handle
+        check(
+            library().lds_cut_choice_rays(
+                self.model.handle, handle, position, rays, ctypes.byref(out)
             )
         )
         return record(out)

@@ -85,6 +85,25 @@ class OffScreen(IntEnum):
     SHADOWS = 2  # as far as it shows their shadows: images of them may be coarse
 
 
+class Rays(IntEnum):
+    """Classes of rays that may meet coarser representations than the camera's rays."""
+
+    REFLECTION = 1
+    SHADOW = 2
+    RADIOSITY = 4
+
+
+class Met(IntEnum):
+    """Why a class of rays meets what it meets of a choice."""
+
+    OFF = 0  # the class was not asked for, or does not meet it: as the camera's
+    OWN = 1  # a coarser representation of its own
+    GROUP = 2  # a stand-in for a group around it
+    NEED = 3  # as the camera's: nothing coarser is good enough
+    SHAPE = 4  # as the camera's: a stand-in would shadow or mirror its own original
+    CONTACT = 5  # as the camera's: something else is too near
+
+
 class Drawn(IntEnum):
     """How a cut draws one thing of the scene."""
 

@@ -88,6 +88,8 @@ PROTOTYPES = (
     ("lds_cut_choice_copy", I, [C, P(s.Choice), Z]),
     ("lds_cut_choice_path", T, [C, Z]),
     ("lds_cut_choice_reason", I, [M, C, Z, P(s.Reason)]),
+    ("lds_cut_get_rays", I, [C, U, P(s.RaySummary)]),
+    ("lds_cut_choice_rays", I, [M, C, Z, U, P(s.RayChoice)]),
     ("lds_cut_find_choice", I, [M, C, s.Object, P(c_double), P(c_int32), P(c_size_t)]),
     ("lds_model_most_demanding", I, [M, s.Object, P(c_char_p)]),
     ("lds_model_release_meshes", I, [M]),

@@ -452,6 +452,7 @@ class Modifiers(Sized):
         ("when_dark", c_int32),
         ("closing", POINTER(Camera)),
         ("off_screen", c_int32),
+        ("ray_classes", c_uint32),
     ]
 
 
@@ -570,6 +571,36 @@ class Reason(Sized):
     ]
 
 
+class RaySummary(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("rays", c_uint32),
+        ("own", c_uint64),
+        ("occurrences", c_uint64),
+        ("triangles", c_uint64),
+        ("bytes", c_uint64),
+        ("largest_error_px", c_double),
+        ("kept_need", c_uint64),
+        ("kept_shape", c_uint64),
+        ("kept_contact", c_uint64),
+        ("all_triangles", c_uint64),
+        ("all_bytes", c_uint64),
+    ]
+
+
+class RayChoice(Sized):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("met", c_int32),
+        ("object", Object),
+        ("lod", c_uint32),
+        ("kind", c_int32),
+        ("scale", c_double),
+        ("error", c_double),
+        ("error_px", c_double),
+    ]
+
+
 class PovrayOptions(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -599,6 +630,7 @@ class ExportReport(Sized):
         ("cpu_s", c_double),
         ("lamps", c_uint64),
         ("lights_each", c_double),
+        ("unseen", c_uint64),
     ]
 
 

@@ -119,6 +119,7 @@ class Modifiers:
     when_moving: bool = False
     when_dark: bool = False
     off_screen: OffScreen = OffScreen.FULL
+    ray_classes: int = 0  # of Rays: they may meet coarser representations than the camera's rays
     closing: Camera | None = None  # the camera when the shutter closes
     criterion: Criterion = Criterion.RESOLUTION
 
@@ -136,6 +137,7 @@ class Modifiers:
             when_moving=int(self.when_moving),
             when_dark=int(self.when_dark),
             off_screen=self.off_screen,
+            ray_classes=int(self.ray_classes),
             closing=ctypes.pointer(self.closing.struct()) if self.closing else None,
         )
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/rays.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,10 +13,13 @@ namespace {
 
 constexpr size_t kFirstSummary = offsetof(lds_cut_summary, largest_error_choice);
 
-std::unique_ptr<lds_cut> finished(lds_model& model, View view, quality::Cut cut) {
+/// The cut's handle, with what its classes of rays meet.
+std::unique_ptr<lds_cut> finished(lds_model& model, View view, quality::Cut cut, const Job& job) {
     auto made = std::make_unique<lds_cut>();
     made->cut = std::move(cut);
     made->view = std::move(view);
+    made->rays = choose_rays(model, made->view, made->cut, job);
+    made->resident = quality::resident(model.model, made->cut, made->rays);
     made->generation = model.generation;
     for (const uint32_t index : made->cut.chosen) {
         made->paths.push_back(quality::path_of(model.model, made->cut, index));
@@ -37,7 +41,7 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         progress.stage(Stage::Choose);
         View given = view_of(view, model);
         quality::Cut cut = quality::choose(model->table_for(given.kinds), given, progress);
-        *out_cut = finished(*model, std::move(given), std::move(cut)).release();
+        *out_cut = finished(*model, std::move(given), std::move(cut), progress).release();
     });
 }
 
@@ -58,7 +62,13 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         report.pixel_error = found.pixel_error;
         report.cuts = found.cuts;
         made_for.pixel_error = found.pixel_error;
-        auto made = finished(*model, std::move(made_for), std::move(found.cut));
+        auto made = finished(*model, std::move(made_for), std::move(found.cut), progress);
+        // What classes meet besides is small; where it is too much, they meet what the camera sees
+        if (found.fits && given.bytes > 0 && made->resident.bytes > given.bytes) {
+            View plain = made->view;
+            plain.modifiers.ray_classes = 0;
+            made = finished(*model, std::move(plain), std::move(made->cut), progress);
+        }
         hand_out(out_report, report, "out_report");
         *out_cut = made.release();
     });

@@ -8,9 +8,11 @@
 #include "model/faces.h"
 #include "quality/batches.h"
 #include "quality/budget.h"
+#include "quality/ray_cut.h"
 #include "quality/surface.h"
 #include "segment/store.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -26,6 +28,8 @@ struct lds_model {
     std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
     std::optional<lodestone::quality::Table> table;  // for choosing; reset when the model changes
+    /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
+    std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::quality::Shape> shapes;
 
     /// Index of an id; throws Error(StaleId) for another model's.
     lodestone::ObjectIndex index_of(lds_object object) const;
@@ -45,9 +49,11 @@ struct lds_model {
 
 struct lds_cut {
     lodestone::quality::Cut cut;
-    lodestone::View view;            // that it was made for, with the threshold found
-    uint32_t generation = 0;         // of the model it was made from
-    std::vector<std::string> paths;  // by choice
+    std::vector<lodestone::quality::RayCut> rays;  // of the classes asked for
+    lodestone::quality::Resident resident;         // for the camera and these
+    lodestone::View view;                          // that it was made for, with the threshold found
+    uint32_t generation = 0;                       // of the model it was made from
+    std::vector<std::string> paths;                // by choice
     std::string largest_error_name;
     uint64_t originals = 0;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number

@@ -4,6 +4,7 @@
 #include "capi/chosen.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/rays.h"
 #include "povray_export/empty_scene.h"
 #include "povray_export/finish.h"
 #include "povray_export/runner.h"
@@ -82,6 +83,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         for (const uint32_t index : cut->cut.chosen)
             levels.push_back(cut->cut.nodes[index].lod);
         load_levels(*model, cut->cut, levels, progress);
+        load_own(*model, *cut, progress);
         if (given.false_color == 0)
             model->load_pictures();
         povray::ExportOptions wanted;
@@ -93,6 +95,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.covered_only = given.covered_only != 0;
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");
+        wanted.rays = cut->rays;
         if (given.light_error >= 0)
             wanted.light_error = given.light_error;
         const povray::ExportReport report = povray::export_scene(
@@ -104,6 +107,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.cpu_s = report.cpu_s;
         out.lamps = report.lamps;
         out.lights_each = report.lights_each;
+        out.unseen = report.unseen;
         hand_out_grown(out_report, out, kFirstPovrayReport, "out_report");
     });
 }
