@@ -105,9 +105,9 @@ def light_room(make: Maker, dice: random.Random, x: float, y: float, z: float) -
             make.lamp((x + i, y + j, z + 2.5), color, power)
 
 
-def house(native):
+def house(native, make: Maker | None = None):
     """Ten storeys of ten rooms without a front; walls, floors and the back are shared."""
-    make, dice = Maker(native), random.Random(5)
+    make, dice = make or Maker(native), random.Random(5)
     wide, high = COLUMNS * WIDTH, STOREYS * HEIGHT
     for column in range(COLUMNS + 1):
         x = column * WIDTH
