@@ -24,7 +24,7 @@ from lodestone import extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
-from lodestone.core import motion_file, progress, report, store_path  # noqa: E402
+from lodestone.core import motion_file, progress, report, store_path, unseen  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
@@ -200,6 +200,7 @@ class FileRun:
                 made, used = [], set()
                 seen = zip(requests, request.frames, request.modifiers)
                 for picture, (view, size), modifiers in seen:
+                    modifiers = _asked(modifiers, picture)
                     part = self._picture(scene, model, store, picture, view, size, modifiers)
                     made.append({**part, **built})
                     self.problems.extend_native(model.problems())
@@ -383,6 +384,18 @@ def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
         budget=quality.budget(own) if budget is None else budget,
         overrides=overrides,
     )
+
+
+def _asked(modifiers, picture: PictureRequest):
+    """The file's, with what a picture says about what it does not show."""
+    changed = {}
+    if picture.off_screen is not None:
+        changed["off_screen"] = native.OffScreen[picture.off_screen.upper()]
+    if picture.ray_classes is not None:
+        changed["ray_classes"] = unseen.rays_of(picture.ray_classes)
+    if not changed:
+        return modifiers
+    return replace(native.Modifiers() if modifiers is None else modifiers, **changed)
 
 
 def _replace_by_copy(source: Path, target: Path) -> None:

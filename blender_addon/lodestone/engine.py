@@ -102,6 +102,7 @@ class _Run:
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
         self.off_screen = settings.off_screen
+        self.ray_classes = quality.ray_classes(settings)
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
@@ -120,6 +121,7 @@ class _Run:
         self.plan = compare_plan.current()
         if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
             self.settings = replace(self.settings, pixel_error=0.0)
+            self.ray_classes = 0
         self.work = Work()
         self.frame = self.scene.frame_current
         self.clock = progress.StageClock(self.frame)
@@ -189,7 +191,9 @@ class _Run:
     def _modifiers(self, extraction, camera_object, closing):
         objects = self.depsgraph.objects
         detail = lenses.detail(objects, lenses.parts_in(extraction), self.problems)
-        return lenses.modifiers(detail, camera_object, self.coarser, closing, self.off_screen)
+        return lenses.modifiers(
+            detail, camera_object, self.coarser, closing, self.off_screen, self.ray_classes
+        )
 
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""

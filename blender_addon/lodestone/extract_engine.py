@@ -8,7 +8,7 @@ import traceback
 
 import bpy
 
-from .bridge import camera, check, lenses, poses, scene, shutter
+from .bridge import camera, check, lenses, poses, quality, scene, shutter
 from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .bridge.settings import SceneSettings
@@ -132,8 +132,9 @@ def _modifiers(depsgraph, frame_set, request, extraction):
         closing = shutter.read(depsgraph, frame_set, moving, model, seen)
     parts_of = lenses.parts_in(extraction)
     detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
+    unseen = (settings.off_screen, quality.ray_classes(settings))
     return [
-        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, settings.off_screen)
+        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, *unseen)
         for name, end in zip(names, closing)
     ]
 

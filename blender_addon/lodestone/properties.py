@@ -13,7 +13,7 @@ from bpy.props import (
 )
 
 from .lens_properties import LODESTONE_PG_lens
-from .quality_properties import Overrides
+from .quality_properties import Overrides, RayClasses
 
 ROLES = (
     ("ORDINARY", "Ordinary", "May be drawn as a simpler mesh, a box or an ellipsoid"),
@@ -151,7 +151,7 @@ class LODESTONE_PG_linked(bpy.types.PropertyGroup):
     role: EnumProperty(items=ROLES, default="ORDINARY", options={"HIDDEN"})
 
 
-class LODESTONE_PG_scene(Overrides, bpy.types.PropertyGroup):
+class LODESTONE_PG_scene(Overrides, RayClasses, bpy.types.PropertyGroup):
     use_levels: BoolProperty(
         name="Levels of Detail",
         description="Draw simpler levels of what is far or small. Off: the originals, as with a "

@@ -2,10 +2,10 @@
 """The controls below Pixel Error as properties: one that is drawn, which shows what it inherits
 until it is set, and one that is stored, which is below 0 while it inherits."""
 
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty
 
 from .bridge import quality
-from .core import quality_tree
+from .core import quality_tree, unseen
 
 
 def _reader(key):
@@ -58,3 +58,12 @@ for _control in quality_tree.CONTROLS:
     if _control.least is not None:
         Overrides.__annotations__[_control.key] = _drawn(_control)
         Overrides.__annotations__[quality.OWN + _control.key] = _stored(_control)
+
+
+class RayClasses:
+    """The same: which classes of rays may meet coarser levels than the camera's."""
+
+    __annotations__ = {
+        one.key: BoolProperty(name=one.label, description=one.description, default=False)
+        for one in unseen.CLASSES
+    }

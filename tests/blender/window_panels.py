@@ -21,7 +21,7 @@ OURS = {
     "RENDER": "LODESTONE_RENDER_PT_problems LODESTONE_RENDER_PT_sampling LODESTONE_RENDER_PT_film "
     "LODESTONE_RENDER_PT_levels LODESTONE_RENDER_PT_performance_threads "
     "LODESTONE_RENDER_PT_scene_files LODESTONE_RENDER_PT_levels_view RENDER_PT_context "
-    "LODESTONE_RENDER_PT_overrides",
+    "LODESTONE_RENDER_PT_overrides LODESTONE_RENDER_PT_unseen",
     "OUTPUT": "RENDER_PT_format",
     "VIEW_LAYER": "VIEWLAYER_PT_layer",
     "WORLD": "LODESTONE_WORLD_PT_surface",

@@ -138,7 +138,7 @@ def reason(**values):
 class _Cut:
     """As native.Cut, of one choice: an object 7 in group "House"."""
 
-    view = SimpleNamespace(pixel_error=1.0)
+    view = SimpleNamespace(pixel_error=1.0, modifiers=None)
 
     def __init__(self, **values):
         self._reason = reason(**values)

@@ -99,12 +99,13 @@ def modifiers(
     coarser: bool,
     closing: Any | None = None,
     off_screen: str = FULL,
+    ray_classes: int = 0,
 ) -> native.Modifiers | None:
     """All together, of a camera object; None: nothing bends quality. `coarser`: when moving or
     dark. `closing`: the camera as the shutter closes, None: it rests. `off_screen`: what the
-    picture does not show, by native.OffScreen's names."""
+    picture does not show, by native.OffScreen's names; `ray_classes`: of native.Rays."""
     screen_lenses = screen(camera)
-    if not (lenses or screen_lenses or coarser or off_screen != FULL):
+    if not (lenses or screen_lenses or coarser or off_screen != FULL or ray_classes):
         return None
     return native.Modifiers(
         lenses=lenses,
@@ -113,6 +114,7 @@ def modifiers(
         when_dark=coarser,
         closing=closing,
         off_screen=native.OffScreen[off_screen],
+        ray_classes=ray_classes,
     )
 
 

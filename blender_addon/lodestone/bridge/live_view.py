@@ -98,7 +98,13 @@ def settings_of(scene: Any, model: Any) -> Settings:
         pixel_error=quality.pixel_error(own),
         overrides=quality.overrides(own),
         budget=quality.budget(own),
-        modifiers=lenses.modifiers(detail, scene.camera, coarser, off_screen=own.off_screen),
+        modifiers=lenses.modifiers(
+            detail,
+            scene.camera,
+            coarser,
+            off_screen=own.off_screen,
+            ray_classes=quality.ray_classes(own),
+        ),
     )
 
 
@@ -120,6 +126,7 @@ def _hashable(settings: Settings) -> Hashable:
             modifiers.screen_lenses,
             modifiers.when_dark,
             modifiers.off_screen,
+            modifiers.ray_classes,
         )  # fmt: skip
     return (settings.pixel_error, settings.budget, bent)
 

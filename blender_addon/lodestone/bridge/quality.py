@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from ..core import quality_tree
+from ..core import quality_tree, unseen
 
 AUTOMATIC = "AUTOMATIC"  # the Antialiasing that inherits
 OWN = "own_"  # what is stored of a control with a number: below 0 it inherits
@@ -35,6 +35,13 @@ def of_scene(settings: Any) -> quality_tree.Quality:
 def budget(settings: Any) -> int:
     """Of renders, in bytes; 0: none."""
     return settings.budget_render * 1_000_000 if settings.use_levels else 0
+
+
+def ray_classes(settings: Any) -> int:
+    """Of renders, as native.Rays: those that may meet coarser levels than the camera's."""
+    if not settings.use_levels:
+        return 0
+    return unseen.mask(one.key for one in unseen.CLASSES if getattr(settings, one.key))
 
 
 def inherit(settings: Any, key: str) -> None:

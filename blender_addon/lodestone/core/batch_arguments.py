@@ -9,7 +9,7 @@ from pathlib import Path
 from . import batch_values
 from .batch_jobs import FileJob, PictureRequest
 from .batch_profile import read_profile
-from .batch_views import ANTIALIAS, NUMBERS, VIEW_KEYS, overrides_of, read_views
+from .batch_views import ANTIALIAS, NUMBERS, VIEW_KEYS, overrides_of, read_views, unseen_of
 from .file_names import LONGEST, fitting, folder_name
 
 KEEP = ("failed", "never", "always")
@@ -109,6 +109,12 @@ def _add_picture(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--budget", type=batch_values.memory, metavar="SIZE", help="50M, 2G: what "
                       "POV-Ray's scene may take; the Pixel Error grows until it fits"
                       )  # fmt: skip
+    verb.add_argument("--off-screen", type=batch_values.off_screen, metavar="HOW", help="how fine "
+                      "what the picture does not show is: full, reflected (as shadows and mirrors "
+                      "need) or shadows; default: the file's")  # fmt: skip
+    verb.add_argument("--ray-classes", type=batch_values.ray_classes, metavar="LIST", help="which "
+                      "rays may meet coarser levels than the camera's: shadow, reflection or both "
+                      "with a comma, or none; default: the file's")  # fmt: skip
     verb.add_argument("--false-color", action=BooleanOptionalAction, default=False,
                       help="paint by kind and LOD number")  # fmt: skip
     verb.add_argument("--covered-only", action=BooleanOptionalAction, default=False,
@@ -201,6 +207,7 @@ def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> Pictur
         antialias=options.antialias,
         overrides=overrides_of(vars(options)),
         budget=options.budget,
+        **unseen_of(vars(options)),
         false_color=options.false_color,
         covered_only=options.covered_only,
         size=options.size,

@@ -23,6 +23,8 @@ class PictureRequest:
     antialias: str | None = None
     overrides: dict[str, float] = field(default_factory=dict)  # of core/quality_tree.py's controls
     budget: int | None = None  # bytes of POV-Ray's scene
+    off_screen: str | None = None  # these two as core/unseen.py's words
+    ray_classes: str | None = None
     false_color: bool = False
     covered_only: bool = False
     size: tuple[int, int] | None = None

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 
+from . import unseen
 from .quality_tree import Control
 
 _MAX_SIZE = 65536
@@ -74,6 +75,21 @@ def control(wanted: Control) -> Callable[[str], float]:
         return found
 
     return value
+
+
+def off_screen(text: str) -> str:
+    """One of unseen.OFF_SCREEN."""
+    if text not in unseen.OFF_SCREEN:
+        raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(unseen.OFF_SCREEN)}")
+    return text
+
+
+def ray_classes(text: str) -> str:
+    """As unseen.text_of() has it."""
+    try:
+        return unseen.text_of(unseen.rays_of(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def positive(text: str) -> float:

@@ -19,6 +19,8 @@ VIEW_KEYS = (
     "antialias",
     *(control.key for control in NUMBERS),
     "budget",
+    "off_screen",
+    "ray_classes",
     "out",
     "false_color",
     "covered_only",
@@ -68,6 +70,7 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
             antialias=antialias,
             overrides=overrides_of({**vars(options), **entry}),
             budget=budget_of({**vars(options), **entry}),
+            **unseen_of({**vars(options), **entry}),
             false_color=bool(entry.get("false_color", options.false_color)),
             covered_only=bool(entry.get("covered_only", options.covered_only)),
             size=chosen,
@@ -86,6 +89,12 @@ def budget_of(values: Mapping[str, Any]) -> int | None:
     """Bytes. Raises argparse.ArgumentTypeError."""
     said = values.get("budget")
     return None if said is None else batch_values.memory(str(said))
+
+
+def unseen_of(values: Mapping[str, Any]) -> dict[str, str | None]:
+    """How fine what is not seen directly is asked for. Raises argparse.ArgumentTypeError."""
+    said = ((key, values.get(key)) for key in ("off_screen", "ray_classes"))
+    return {k: None if v is None else getattr(batch_values, k)(str(v)) for k, v in said}
 
 
 def _possible(name: str) -> bool:

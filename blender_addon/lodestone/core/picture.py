@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import cost_model, identity, locked_folder, quality_tree, report
+from . import cost_model, identity, locked_folder, quality_tree, report, unseen
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -74,6 +74,8 @@ class Settings:
         """What a picture's file says about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
         shown = (*self.quality, self.budget, self.false_color, self.covered_only)
+        if self.modifiers is not None:
+            shown += (int(self.modifiers.off_screen), int(self.modifiers.ray_classes))
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
@@ -107,6 +109,9 @@ def _cut_and_export(
     with settings.cut(model, camera, size, job) as cut:
         view, summary = cut.view, cut.summary()
         parts = {"cut": report.cut_part(summary)}
+        met = unseen.met(cut)
+        if met is not None:
+            parts["cut"]["rays"] = unseen.part(met)
         if settings.budget:
             parts["cut"].update(pixel_error=cut.pixel_error, fits=cut.fits)
         in_use = levels_in_use(model, cut)

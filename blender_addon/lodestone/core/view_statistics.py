@@ -6,7 +6,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Any
 
-from . import report
+from . import report, unseen
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS, Settings
 
@@ -14,7 +14,7 @@ from .picture import POVRAY_KINDS, Settings
 @dataclass(frozen=True)
 class Statistics:
     """`*_before`: of the originals. `pixel_error`: what a budget made of it. `choose_s`: how long
-    choosing took."""
+    choosing took. `bytes`: of all that any ray meets."""
 
     triangles_before: int
     triangles: int
@@ -27,6 +27,7 @@ class Statistics:
     pixel_error: float
     fits: bool
     choose_s: float
+    met: unseen.Met | None = None  # by classes of rays that have levels of their own
 
 
 class Chooser:
@@ -61,11 +62,12 @@ class Chooser:
         with native.Cut(model, settings.view(camera, size), None, wanted) as cut:
             summary = cut.summary()
             part = report.cut_part(summary)
+            met = unseen.met(cut)
             return Statistics(
                 triangles_before=self._before[0],
                 triangles=summary.triangles,
                 bytes_before=self._before[1],
-                bytes=summary.bytes,
+                bytes=summary.bytes if met is None else met.bytes,
                 kinds=part["kinds"],
                 occurrences=summary.occurrences,
                 largest_error_px=summary.largest_error_px,
@@ -73,6 +75,7 @@ class Chooser:
                 pixel_error=cut.pixel_error,
                 fits=cut.fits,
                 choose_s=time.perf_counter() - start,
+                met=met,
             )
 
 

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from . import progress
+from . import progress, unseen
 from .native import lodestone_native as native
 
 KINDS = {
@@ -75,7 +75,32 @@ def explain(cut: Any, drawn: Any, position: int, name: str) -> Explanation:
     lines = [_main_line(reason, cut.view.pixel_error)]
     lines += _factor_lines(reason)
     lines += _coarser_lines(cut, choice, reason)
+    lines += _ray_lines(cut, choice, position)
     return Explanation(title, tuple(lines))
+
+
+_KEPT = {
+    native.Met.NEED: "nothing coarser is good enough",
+    native.Met.SHAPE: "a coarser one would cover the original",
+    native.Met.CONTACT: "something else is too near",
+}
+
+
+def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
+    """What its shadow and its images in mirrors are of, where they may be coarser."""
+    modifiers, lines = cut.view.modifiers, []
+    for one in unseen.CLASSES:
+        if modifiers is None or not modifiers.ray_classes & int(one.rays):
+            continue
+        met = cut.choice_rays(position, one.rays)
+        if met.met in _KEPT:
+            lines.append(f"{one.label}: as it is seen, {_KEPT[met.met]}")
+        elif met.met != native.Met.OFF:
+            what = level_name(met.lod, met.kind)
+            if met.met == native.Met.GROUP:
+                what = f"group {cut.model.object_summary(met.object).name} as {what}"
+            lines.append(f"{one.label}: by {what}, off by at most {pixels(met.error_px)}")
+    return lines
 
 
 def _main_line(reason: Any, asked: float) -> str:

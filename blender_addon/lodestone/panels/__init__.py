@@ -10,6 +10,7 @@ _MODULES = (
     "simplify",
     "render_levels",
     "view_statistics",
+    "unseen",
     "overrides",
     "levels",
     "lens",

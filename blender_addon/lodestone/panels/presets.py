@@ -9,7 +9,7 @@ from bl_ui.utils import PresetPanel
 from bpy.types import Operator, Panel
 
 from ..bridge import quality
-from ..core import quality_tree
+from ..core import quality_tree, unseen
 
 # Name: Pixel Error, from which everything else follows
 PRESETS = {
@@ -33,6 +33,7 @@ _KEPT = (
     "budget_viewport",
     "coarser_moving_dark",
     "off_screen",
+    *(ray_class.key for ray_class in unseen.CLASSES),
     "antialias",
     *(quality.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
 )

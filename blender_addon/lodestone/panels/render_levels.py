@@ -33,7 +33,6 @@ class LODESTONE_RENDER_PT_levels(Panel):
         column.prop(settings, "budget_render", text="Budget Render (MB)")
         column.prop(settings, "budget_viewport", text="Viewport (M Triangles)")
         used.prop(settings, "coarser_moving_dark")
-        used.prop(settings, "off_screen")
         layout.use_property_decorate = False
         layout.prop(settings, "deforming")
         layout.prop(settings, "build_on_render")

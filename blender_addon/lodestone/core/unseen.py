@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the picture does not show directly: things off screen, and classes of rays (what casts its
+shadows, what its mirrors show), which may meet coarser levels than the camera sees."""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from .native import lodestone_native as native
+
+
+class RayClass(NamedTuple):
+    """`key`: the setting of a scene that switches it on. `word`: the command line's."""
+
+    key: str
+    word: str
+    label: str
+    rays: Any  # native.Rays
+    description: str
+
+
+CLASSES = (
+    RayClass(
+        "shadow_levels",
+        "shadow",
+        "Shadows",
+        native.Rays.SHADOW,
+        "Shadows are cast by coarser levels than the picture shows, as far as their edges in it "
+        "stay within Pixel Error. Not where something is so near that it could show",
+    ),
+    RayClass(
+        "reflection_levels",
+        "reflection",
+        "Reflections",
+        native.Rays.REFLECTION,
+        "Mirrors show coarser levels than the picture does, as far as their images in it stay "
+        "within Pixel Error: they are farther away by the way to the mirror",
+    ),
+)
+NONE = "none"
+OFF_SCREEN = tuple(one.name.lower() for one in native.OffScreen)
+
+
+class RayNumbers(NamedTuple):
+    """What a class of rays meets. `own`: how many things and groups it meets coarser; those it
+    does not, because they must be as they are, because a stand-in would shadow (or mirror) its own
+    original, and because something else is too near."""
+
+    ray_class: RayClass
+    own: int
+    triangles: int
+    largest_error_px: float
+    needed: int
+    shaped: int
+    touching: int
+
+
+class Met(NamedTuple):
+    """Of all classes that are switched on: each one's numbers, and what POV-Ray has to keep for
+    them and the camera together."""
+
+    classes: tuple[RayNumbers, ...]
+    triangles: int
+    bytes: int
+
+
+def mask(keys: Iterable[str]) -> int:
+    """Of the classes with these settings or words."""
+    wanted = set(keys)
+    return sum(int(one.rays) for one in CLASSES if wanted & {one.key, one.word})
+
+
+def text_of(rays: int) -> str:
+    """shadow,reflection as the command line has it; none."""
+    return ",".join(one.word for one in CLASSES if rays & int(one.rays)) or NONE
+
+
+def rays_of(text: str) -> int:
+    """Of text_of(). Raises ValueError with a sentence."""
+    words = text.split(",")
+    known = {one.word for one in CLASSES}
+    if words == [NONE]:
+        return 0
+    for word in words:
+        if word not in known:
+            raise ValueError(f"{word!r} is no class of rays ({', '.join(sorted(known))}, {NONE})")
+    return mask(words)
+
+
+def met(cut: Any) -> Met | None:
+    """Of a cut; None where it was made without classes."""
+    modifiers = cut.view.modifiers
+    wanted = modifiers.ray_classes if modifiers is not None else 0
+    found, last = [], None
+    for one in CLASSES:
+        if wanted & int(one.rays):
+            last = cut.rays(one.rays)
+            found.append(
+                RayNumbers(
+                    one,
+                    last.own,
+                    last.triangles,
+                    last.largest_error_px,
+                    last.kept_need,
+                    last.kept_shape,
+                    last.kept_contact,
+                )
+            )
+    return None if last is None else Met(tuple(found), last.all_triangles, last.all_bytes)
+
+
+def part(found: Met) -> dict[str, Any]:
+    """A report's."""
+    own = {
+        one.ray_class.word: {
+            "coarser": one.own,
+            "triangles": one.triangles,
+            "largest_error_px": one.largest_error_px,
+            "kept": {"needed": one.needed, "shaped": one.shaped, "touching": one.touching},
+        }
+        for one in found.classes
+    }
+    return {"classes": own, "triangles": found.triangles, "bytes": found.bytes}
