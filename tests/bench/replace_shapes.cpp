@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How alike the outlines of shapes and of their replacements are: replace_shapes FILE.ply...
-// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes, and
-// how far off color and brightness are, in 255ths, by 16 times the rays.
+// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes, how
+// far off area, centroid and tensor of composites are, in percent, and color and brightness, in 255ths,
+// by 16 times the rays.
 #include "approximate/composite.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
@@ -13,6 +14,7 @@
 #include "model/representation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -93,6 +95,20 @@ double mesh_bytes_within(const std::vector<Mesh>& levels, const std::vector<doub
     return best;
 }
 
+/// In percent: area, centroid over the radius of gyration, tensor over its trace.
+std::array<double, 3> misses(const Attributes& now, const Attributes& truth) {
+    const auto trace = [](const glm::dmat3& m) { return m[0][0] + m[1][1] + m[2][2]; };
+    double square = 0;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 off =
+            now.moments[i] / trace(now.moments) - truth.moments[i] / trace(truth.moments);
+        square += glm::dot(off, off);
+    }
+    return {100 * std::abs(now.visible_area / truth.visible_area - 1),
+            100 * glm::length(now.centroid - truth.centroid) / truth.radius_of_gyration(),
+            100 * std::sqrt(square)};
+}
+
 void compare_shape(const std::filesystem::path& path, bool last) {
     Problems problems;
     const Mesh mesh = format::read_ply(read_file(path), path.filename().string(), problems);
@@ -141,12 +157,21 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     errors.reserve(levels.size());
     for (const Mesh& level : levels)
         errors.push_back(reference.of(level).error);
+    options.rays = uint64_t{1} << 18u;
+    options.seed = 99;
+    const Attributes again = measure::measure_visible(mesh, {}, options).attributes;
     for (const approximate::Clustered& level :
          approximate::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
         const Mesh solid = tessellate(level.composite, 3);
         const std::string name = "composite " + std::to_string(count);
         found[name] = overlap(truth, silhouettes(solid, bound));
+        const std::array<double, 3> off =
+            misses(measure::measure_visible(tessellate(level.composite, 4), {}, options).attributes,
+                   again);
+        found[name + " area off"] = off[0];
+        found[name + " centroid off"] = off[1];
+        found[name + " tensor off"] = off[2];
         const double error = reference.of(solid).error;
         const auto bytes = static_cast<double>(count * kBytesPerPrimitive);
         found[name + " error"] = error / bound.radius;

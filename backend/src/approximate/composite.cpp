@@ -4,6 +4,7 @@
 #include "approximate/clusters.h"
 #include "approximate/stand_in_material.h"
 #include "approximate/standing.h"
+#include "approximate/whole.h"
 #include "measure/visible.h"
 #include "measure/visible_sampler.h"
 
@@ -23,10 +24,6 @@ namespace {
 constexpr uint32_t kSamples = 8192;
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
 constexpr int kClearRounds = 4;
-// What solids show grows with less than the square of their size: they hide more of each other.
-constexpr double kGrowth = 0.7;
-// Of one round; more than this is no correction.
-constexpr double kMostStep = 1.5;
 constexpr int kSubdivisions = 2;
 
 Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::VisiblePoint& at) {
@@ -97,18 +94,7 @@ Solid solid_of(const Attributes& attributes) {
 
 /// What of it can be seen, by rays; clear solids count as much as they cover.
 Attributes measured(const Clustered& level, const CompositeOptions& options, const Job& job) {
-    // Flat triangles have less area than what they lie on.
-    static const double kSwell = [] {
-        const Mesh ball = tessellate_ellipsoid({}, kSubdivisions);
-        double area = 0;
-        for (size_t i = 0; i < ball.triangles.size(); ++i)
-            area += 0.5 * glm::length(area_vector(ball, i));
-        return std::sqrt(4 * std::numbers::pi / area);
-    }();
-    Composite swollen = level.composite;
-    for (Solid& solid : swollen.solids)
-        solid.primitive.half_size *= solid.box ? 1 : kSwell;
-    const Mesh mesh = tessellate(swollen, kSubdivisions);
+    const Mesh mesh = as_large_triangles(level.composite);
     std::vector<Material> materials;
     bool clear = false;
     for (const double opacity : level.opacities) {
@@ -119,53 +105,10 @@ Attributes measured(const Clustered& level, const CompositeOptions& options, con
     const ray::SkinPtr skin =
         clear ? std::make_shared<const ray::Skin>(materials, texels) : nullptr;
     measure::VisibleOptions visible;
-    visible.rays = options.rays;
+    visible.rays = options.rays / 2;  // each round
     visible.seed = options.seed;
     return measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, visible, {}, job)
         .attributes;
-}
-
-glm::dmat3 power(const glm::dmat3& symmetric, double exponent, double least) {
-    const Eigen eigen = eigen_symmetric(symmetric);
-    glm::dmat3 along(0.0);
-    for (int i = 0; i < 3; ++i)
-        along[i][i] = std::pow(std::max(eigen.values[i], least), exponent);
-    return eigen.axes * along * glm::transpose(eigen.axes);
-}
-
-/// What takes points of one covariance to another, turning nothing.
-glm::dmat3 map_between(const glm::dmat3& from, const glm::dmat3& to) {
-    const double least = 1e-9 * (to[0][0] + to[1][1] + to[2][2]);
-    const glm::dmat3 root = power(to, 0.5, least);
-    return root * power(root * from * root, -0.5, least * least) * root;
-}
-
-/// Moves, stretches and scales all solids until what can be seen of them is what is wanted.
-void match_whole(Clustered& level, const Attributes& wanted, double floor,
-                 const CompositeOptions& options, const Job& job) {
-    for (int round = 0; round < options.rounds; ++round) {
-        const Attributes now = measured(level, options, job);
-        if (now.empty())
-            return;
-        glm::dmat3 map =
-            map_between(now.moments / now.visible_area, wanted.moments / wanted.visible_area);
-        // What is flat or has no extent at all cannot be told how to stretch.
-        const Eigen stretches = eigen_symmetric(map);
-        if (!options.shape ||
-            !(stretches.values.z > 1 / kMostStep && stretches.values.x < kMostStep))
-            map = glm::dmat3(1.0);
-        const double scale = std::clamp(std::pow(wanted.visible_area / now.visible_area, kGrowth) /
-                                            std::cbrt(glm::determinant(map)),
-                                        1 / kMostStep, kMostStep);
-        for (Solid& solid : level.composite.solids) {
-            Primitive& primitive = solid.primitive;
-            if (options.shape)
-                primitive.center = wanted.centroid + map * (primitive.center - now.centroid);
-            for (int i = 0; i < 3; ++i)
-                primitive.half_size[i] *= scale * glm::length(map * primitive.axes[i]);
-            primitive = kept_above(primitive, solid.box, floor);
-        }
-    }
 }
 
 double lowest(const Mesh& mesh) {
@@ -321,14 +264,41 @@ bool made_of_many(const Cluster& cluster, const Samples& samples, std::span<cons
 
 }  // namespace
 
+Mesh as_large_triangles(const Composite& composite) {
+    // Flat triangles have less area than what they lie on.
+    static const double kSwell = [] {
+        const Mesh ball = tessellate_ellipsoid({}, kSubdivisions);
+        double area = 0;
+        for (size_t i = 0; i < ball.triangles.size(); ++i)
+            area += 0.5 * glm::length(area_vector(ball, i));
+        return std::sqrt(4 * std::numbers::pi / area);
+    }();
+    Composite swollen = composite;
+    for (Solid& solid : swollen.solids)
+        solid.primitive.half_size *= solid.box ? 1 : kSwell;
+    return tessellate(swollen, kSubdivisions);
+}
+
 std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                   const Attributes& wanted, const CompositeOptions& options,
                                   const Job& job) {
     std::vector<Clustered> out;
-    Samples samples = seen(mesh, ray::Scene(mesh, skin), skin, options.seed);
+    const ray::Scene scene(mesh, skin);
+    Samples samples = seen(mesh, scene, skin, options.seed);
     if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
         return out;
     Clusters clusters(std::move(samples));
+    Attributes whole = wanted;
+    if (options.shape && options.measured > 0) {
+        measure::VisibleOptions visible;
+        visible.rays = options.measured;
+        visible.seed = options.seed;
+        const Attributes again =
+            measure::measure_visible(mesh, scene, skin, visible, {}, job).attributes;
+        if (!again.empty())
+            whole = again;
+    }
+    const VisibleSolids visible(options.rays, options.seed);
     for (const size_t count : kCounts) {
         clusters.split_to(count, job);
         const size_t parts = clusters.all().size();
@@ -342,7 +312,8 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
             level.clusters.push_back(cluster.number);
             level.opacities.push_back(1);
         }
-        match_whole(level, wanted, lowest(mesh), options, job);
+        match_whole(level.composite, whole, lowest(mesh), visible, options.shape, options.rounds,
+                    job);
         out.push_back(std::move(level));
     }
     return out;

@@ -22,16 +22,18 @@ struct Clustered {
 
 struct CompositeOptions {
     uint64_t seed = 1;
-    uint32_t rays = 8192;  // that each round of matching casts
-    bool shape = true;     // match centroid and variances of the whole, not its area alone
-    int rounds = 4;        // of matching
+    uint32_t rays = 16384;      // that each of the last rounds of matching casts, a quarter before
+    bool shape = true;          // match centroid and variances of the whole, not its area alone
+    int rounds = 12;            // of matching on the way, at most
+    uint32_t measured = 32768;  // rays that measure the mesh once more for this; 0: as `wanted` is
 };
 
 /// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:
 /// one cluster of each level is split into two for the next part. Clusters are split where they are
 /// largest (area times variance), in two by place and color (2-means). Parts hide parts of each
 /// other, so each level is matched again as a whole, by rays: visible area, centroid and variances
-/// are the mesh's (`wanted`). No solid reaches below the lowest point of the mesh. Empty where
+/// are the mesh's (`wanted`), or where no sizes give all of these (plates around a closed body) the
+/// ratios of the variances. No solid reaches below the lowest point of the mesh. Empty where
 /// nothing can be seen. The same bits on any number of threads.
 std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                   const Attributes& wanted, const CompositeOptions& options,
@@ -47,5 +49,8 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
 std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                         std::span<const uint32_t> parts, const Attributes& wanted,
                                         const CompositeOptions& options, const Job& job = {});
+
+/// For rays: few triangles an ellipsoid, with its area.
+Mesh as_large_triangles(const Composite& composite);
 
 }  // namespace lodestone::approximate
