@@ -98,8 +98,9 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
     const quality::LightTree tree = quality::make_light_tree(
         model.lights,
         [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
-    const quality::Reaches reaches = [&](const Light& light, const quality::LitPoint& point) {
-        return scene.reaches(light, point);
+    const quality::Reaches reaches = [&](const Light& light, const quality::LitPoint& point,
+                                         uint32_t& blocker) {
+        return scene.reaches(light, point, blocker);
     };
     const quality::LightShares shares = quality::find_shares(tree, points, reaches, job);
     std::vector<Bound> bounds;

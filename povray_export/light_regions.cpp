@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace lodestone::povray {
@@ -23,6 +24,7 @@ public:
         : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
 
     LightRegions make() {
+        note_lamps();
         std::vector<std::vector<uint32_t>> of_thing(bounds_.size());
         for (uint32_t i = 0; i < points_.size(); ++i)
             of_thing[points_[i].region].push_back(i);
@@ -68,26 +70,68 @@ private:
         double at = 0;
     };
 
-    /// Lamps that reach any of the points.
-    size_t lamps_of(std::span<const uint32_t> points) {
-        reached_.assign(shares_.empty() ? 0 : shares_[0].size(), 0);
-        size_t count = 0;
-        for (const uint32_t point : points) {
-            const std::vector<float>& share = shares_[point];
-            for (size_t i = 0; i < share.size(); ++i) {
-                if (share[i] > 0 && reached_[i] == 0) {
-                    reached_[i] = 1;
-                    ++count;
-                }
+    using Words = std::vector<uint64_t>;  // a bit for every lamp
+
+    /// The lamps that reach each point, `width_` words beside each other.
+    void note_lamps() {
+        const size_t lamps = shares_.empty() ? 0 : shares_[0].size();
+        width_ = (lamps + 63) / 64;
+        reaching_.assign(points_.size() * width_, 0);
+        for (size_t point = 0; point < points_.size(); ++point) {
+            for (size_t i = 0; i < lamps; ++i) {
+                if (shares_[point][i] > 0)
+                    reaching_[point * width_ + i / 64] |= uint64_t{1} << (i % 64);
             }
         }
+    }
+
+    void join(Words& lamps, uint32_t point) const {
+        for (size_t i = 0; i < width_; ++i)
+            lamps[i] |= reaching_[point * width_ + i];
+    }
+
+    static size_t count_of(const Words& lamps) {
+        size_t count = 0;
+        for (const uint64_t word : lamps)
+            count += static_cast<size_t>(std::popcount(word));
         return count;
+    }
+
+    /// Lamps that reach any of the points.
+    size_t lamps_of(std::span<const uint32_t> points) const {
+        Words lamps(width_, 0);
+        for (const uint32_t point : points)
+            join(lamps, point);
+        return count_of(lamps);
+    }
+
+    /// Of the points before each place, and from it on, the lamps that reach any. `places` rise.
+    void lamps_beside(std::span<const uint32_t> points, std::span<const size_t> places,
+                      std::vector<size_t>& before, std::vector<size_t>& behind) const {
+        before.resize(places.size());
+        behind.resize(places.size());
+        Words lamps(width_, 0);
+        size_t next = 0;
+        for (size_t k = 0; k < places.size(); ++k) {
+            for (; next < places[k]; ++next)
+                join(lamps, points[next]);
+            before[k] = count_of(lamps);
+        }
+        lamps.assign(width_, 0);
+        next = points.size();
+        for (size_t k = places.size(); k-- > 0;) {
+            for (; next > places[k]; --next)
+                join(lamps, points[next - 1]);
+            behind[k] = count_of(lamps);
+        }
     }
 
     Plane best_plane(const std::vector<uint32_t>& given, double least) {
         Plane best;
         best.cost = std::numeric_limits<double>::infinity();
         std::vector<uint32_t> points = given;
+        std::vector<size_t> before;
+        std::vector<size_t> behind;
         for (int axis = 0; axis < 3; ++axis) {
             std::stable_sort(points.begin(), points.end(), [&](uint32_t a, uint32_t b) {
                 return points_[a].position[axis] < points_[b].position[axis];
@@ -102,13 +146,16 @@ private:
                              [&](size_t a, size_t b) { return gap(a) > gap(b); });
             places.resize(std::min(places.size(), kGaps));
             places.push_back(points.size() / 2);
+            std::vector<size_t> rising = places;
+            std::sort(rising.begin(), rising.end());
+            lamps_beside(points, rising, before, behind);
             for (const size_t place : places) {
                 if (!(gap(place) > least))
                     continue;
-                const std::span<const uint32_t> all(points);
-                const double cost =
-                    static_cast<double>(place * lamps_of(all.first(place))) +
-                    static_cast<double>((points.size() - place) * lamps_of(all.subspan(place)));
+                const auto at = static_cast<size_t>(
+                    std::lower_bound(rising.begin(), rising.end(), place) - rising.begin());
+                const double cost = static_cast<double>(place * before[at]) +
+                                    static_cast<double>((points.size() - place) * behind[at]);
                 if (cost < best.cost)
                     best = {cost, axis,
                             (points_[points[place]].position[axis] +
@@ -204,7 +251,8 @@ private:
     std::vector<size_t> counts_;       // by thing
     std::vector<glm::dvec3> middles_;  // by thing
     std::vector<uint32_t> pooled_;     // by thing
-    std::vector<uint8_t> reached_;     // by lamp
+    std::vector<uint64_t> reaching_;   // by point, see note_lamps()
+    size_t width_ = 0;
     uint32_t next_ = 0;
 };
 

@@ -238,7 +238,8 @@ bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
     return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
 }
 
-double LitScene::reaches(const Light& light, const quality::LitPoint& point) const {
+double LitScene::reaches(const Light& light, const quality::LitPoint& point,
+                         uint32_t& blocker) const {
     if (!light.shadow && light.kind == LightKind::Point)
         return 1;
     const glm::dvec3 from = point.position + point.aside;
@@ -246,7 +247,8 @@ double LitScene::reaches(const Light& light, const quality::LitPoint& point) con
         const glm::dvec3 way = place - from;
         const double distance = glm::length(way);
         // As POV-Ray: what is that near to a light throws no shadow.
-        return distance <= kTolerance || !blocking_.occluded(from, way, 1 - kTolerance / distance);
+        return distance <= kTolerance ||
+               !blocking_.occluded(from, way, 1 - kTolerance / distance, blocker);
     };
     const double extent = quality::extent_of(light);
     const glm::dvec3 way = light.position - point.position;

@@ -18,7 +18,8 @@ public:
     std::vector<quality::LitPoint> points(const View& view, size_t count, const Job& job) const;
 
     /// Share of a light that reaches a point; what is see-through hides nothing.
-    double reaches(const Light& light, const quality::LitPoint& point) const;
+    /// `blocker`: see quality::Reaches.
+    double reaches(const Light& light, const quality::LitPoint& point, uint32_t& blocker) const;
     /// Whether any of a drawn thing is.
     bool partly_clear(uint32_t drawn) const {
         const Shape& shape = shapes_[shape_of_[drawn]];

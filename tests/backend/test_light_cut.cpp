@@ -14,7 +14,7 @@ using namespace lodestone::quality;
 namespace {
 
 const Clear kOpen = [](const glm::dvec3&, const glm::dvec3&) { return true; };
-const Reaches kEverywhere = [](const Light&, const LitPoint&) { return 1.0; };
+const Reaches kEverywhere = [](const Light&, const LitPoint&, uint32_t&) { return 1.0; };
 
 /// Lamps 3 m above a floor, from x = 0 on.
 std::vector<Light> lamps(size_t count, double apart) {
@@ -118,7 +118,7 @@ TEST(LightCut, WhatReachesNothingIsLeftOutAndARoomIsNoBrighter) {
     const LightTree tree = make_light_tree(
         lamps(32, 0.5),
         [&](const glm::dvec3& a, const glm::dvec3& b) { return side(a.x) == side(b.x); });
-    const Reaches wall = [&](const Light& light, const LitPoint& point) {
+    const Reaches wall = [&](const Light& light, const LitPoint& point, uint32_t&) {
         return side(light.position.x) == side(point.position.x) ? 1.0 : 0.0;
     };
     std::vector<LitPoint> points = floor_at(2);
@@ -136,7 +136,7 @@ TEST(LightCut, WhatReachesNothingIsLeftOutAndARoomIsNoBrighter) {
 TEST(LightCut, ALightWhosePlaceIsHiddenWhereItsLampsAreNotIsOpened) {
     const LightTree tree = make_light_tree(lamps(8, 0.5), kOpen);
     // A column hides every joined light, and no lamp.
-    const Reaches column = [&](const Light& light, const LitPoint&) {
+    const Reaches column = [&](const Light& light, const LitPoint&, uint32_t&) {
         return std::fmod(light.position.x, 0.5) == 0 ? 1.0 : 0.0;
     };
     EXPECT_EQ(cut(tree, floor_at(-20), 0.1, column).size(), 8u);
@@ -146,7 +146,7 @@ TEST(LightCut, LampsSeenByAPointBesideCount) {
     const LightTree tree = make_light_tree(lamps(2, 500), kOpen);
     std::vector<LitPoint> points = floor_at(0, 2);
     points[1].region = 1;
-    const Reaches slit = [&](const Light& light, const LitPoint& point) {
+    const Reaches slit = [&](const Light& light, const LitPoint& point, uint32_t&) {
         return light.position.x > 100 && point.region == 0 ? 0.0 : 1.0;
     };
     const auto count = [&] {

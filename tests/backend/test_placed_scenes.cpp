@@ -61,6 +61,7 @@ TEST_F(PlacedScenesTest, AnswersAreThoseOfEachPlacement) {
     }
     scenes.finish();
     size_t hits = 0;
+    uint32_t blocker = PlacedScenes::kNothing;
     for (int i = 0; i < 400; ++i) {
         const glm::dvec3 from{9 * random.uniform(), 9 * random.uniform(), 5};
         const glm::dvec3 way{random.uniform() - 0.5, random.uniform() - 0.5, -1};
@@ -76,6 +77,10 @@ TEST_F(PlacedScenesTest, AnswersAreThoseOfEachPlacement) {
             EXPECT_NEAR(found.t, nearest, 1e-9);
         }
         EXPECT_EQ(scenes.occluded(from, way, 100), found.hit);
+        // What blocked the ray before, or no number at all, changes nothing.
+        EXPECT_EQ(scenes.occluded(from, way, 100, blocker), found.hit);
+        if (i % 50 == 0)
+            blocker = 1000;
         hits += found.hit ? 1 : 0;
     }
     EXPECT_GT(hits, 50u);

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kMostOfMean = 3;  // of one point, for each of the mean
 constexpr uint32_t kTogether = 8;  // lamps of a light that are found together
+constexpr size_t kStrip =
+    128;  // points in a row that most lamps are hidden from by the same things
 
 /// Radiance a point sends to the eye of an unhidden light.
 glm::dvec3 sent(const Light& light, const LitPoint& point) {
@@ -141,11 +143,12 @@ private:
         std::vector<glm::dvec3> out(members_.size(), glm::dvec3(0.0));
         if (node.leaf())
             return out;
+        uint32_t blocker = kNoBlocker;
         for (size_t k = 0; k < members_.size(); ++k) {
             const LitPoint& point = points_[members_[k]];
             const glm::dvec3 all = sent(node.light, point);
             if (all.x + all.y + all.z > 0)
-                out[k] = reaches_(node.light, point) * all;
+                out[k] = reaches_(node.light, point, blocker) * all;
         }
         for (const uint32_t one : tree_.lamps(index)) {
             if (column_[one] == kNoLight)
@@ -228,17 +231,24 @@ LightShares find_shares(const LightTree& tree, std::span<const LitPoint> points,
     size_t lamps = 0;
     while (lamps < tree.nodes.size() && tree.nodes[lamps].leaf())
         ++lamps;
+    std::vector<uint32_t> lit_by;
+    for (uint32_t k = 0; k < lamps; ++k) {
+        if (lamp(tree.nodes[k].light))
+            lit_by.push_back(k);
+    }
     LightShares shares(points.size());
-    parallel_for(points.size(), [&](size_t i) {
-        job.check();
-        shares[i].assign(lamps, 0);
-        for (size_t k = 0; k < lamps; ++k) {
-            const Light& light = tree.nodes[k].light;
-            if (!lamp(light))
-                continue;
-            const glm::dvec3 all = arriving(light, points[i].position, points[i].normal);
-            if (all.x + all.y + all.z > 0)
-                shares[i][k] = static_cast<float>(reaches(light, points[i]));
+    parallel_for((points.size() + kStrip - 1) / kStrip, [&](size_t strip) {
+        std::vector<uint32_t> blockers(lamps, kNoBlocker);
+        const size_t end = std::min(points.size(), (strip + 1) * kStrip);
+        for (size_t i = strip * kStrip; i < end; ++i) {
+            job.check();
+            shares[i].assign(lamps, 0);
+            for (const uint32_t k : lit_by) {
+                const Light& light = tree.nodes[k].light;
+                const glm::dvec3 all = arriving(light, points[i].position, points[i].normal);
+                if (all.x + all.y + all.z > 0)
+                    shares[i][k] = static_cast<float>(reaches(light, points[i], blockers[k]));
+            }
         }
     });
     return shares;

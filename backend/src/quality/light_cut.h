@@ -19,8 +19,10 @@ struct LitPoint {
     std::vector<uint32_t> beside;  // points next to it: lamps that reach these count as reaching it
 };
 
-/// Share (0...1) of a light, 0 for one that is hidden, that reaches a point. Any thread.
-using Reaches = std::function<double(const Light&, const LitPoint&)>;
+/// Share (0...1) of a light, 0 for one that is hidden, that reaches a point. `blocker`: the callee's own
+/// number of what hid it from a point beside, kept by the caller; it changes no answer. Any thread.
+using Reaches = std::function<double(const Light&, const LitPoint&, uint32_t& blocker)>;
+inline constexpr uint32_t kNoBlocker = ~uint32_t{0};
 
 /// By point, by lamp: the share that reaches it; 0 for what is behind it.
 using LightShares = std::vector<std::vector<float>>;

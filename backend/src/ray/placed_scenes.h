@@ -31,6 +31,11 @@ public:
     Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+    /// The same, sooner where `blocker` is what blocked a ray beside this one: it is tried first, and
+    /// becomes what blocks this one. It changes no answer. kNothing: none is known.
+    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                  uint32_t& blocker) const;
+    static constexpr uint32_t kNothing = ~uint32_t{0};
 
     /// Of all that was added, world frame.
     const Box3& box() const { return all_; }
@@ -48,7 +53,8 @@ private:
         uint32_t count = 0;  // 0: inside
     };
 
-    void split(uint32_t first, uint32_t last);
+    void split(uint32_t first, uint32_t last, int depth);
+    uint32_t divide(uint32_t first, uint32_t last, const Box3& middles);
     template <typename Visit>
     void walk(const glm::dvec3& origin, const glm::dvec3& direction, double& far,
               const Visit& visit) const;
