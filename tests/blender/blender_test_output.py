@@ -141,7 +141,11 @@ class Output(unittest.TestCase):
         self.assertRegex(first, "^[0-9a-f]{16}$")
         self.scene.lodestone.antialias = "OFF"
         self.render()
-        self.assertNotEqual(png_text(self.folder / "picture.png")["Lodestone Settings"], first)
+        second = png_text(self.folder / "picture.png")["Lodestone Settings"]
+        self.scene.lodestone.off_screen = "SHADOWS"
+        self.render()
+        third = png_text(self.folder / "picture.png")["Lodestone Settings"]
+        self.assertEqual(len({first, second, third}), 3)
 
 
 if __name__ == "__main__":

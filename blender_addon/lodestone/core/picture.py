@@ -2,7 +2,7 @@
 """From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -74,13 +74,27 @@ class Settings:
         """What a picture's file says about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
         shown = (*self.quality, self.budget, self.false_color, self.covered_only)
-        if self.modifiers is not None:
-            shown += (int(self.modifiers.off_screen), int(self.modifiers.ray_classes))
+        shown += bent_by(self.modifiers)
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
             "Lodestone Settings": identity.stable_id(native.version(), *(str(v) for v in shown)),
         }
+
+
+def bent_by(modifiers: Any) -> tuple[str, ...]:
+    """What bends quality in words, the same in every session: but for the camera when the shutter
+    closes, which belongs to a frame as its camera does."""
+    if modifiers is None or modifiers == native.Modifiers(closing=modifiers.closing):
+        return ()
+    named = []
+    for one in fields(modifiers):
+        value = getattr(modifiers, one.name)
+        if one.name == "lenses":
+            value = [replace(lens, objects=tuple(o.index for o in lens.objects)) for lens in value]
+        if one.name != "closing":
+            named.append(f"{one.name} {value}")
+    return tuple(named)
 
 
 @dataclass
