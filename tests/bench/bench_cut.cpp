@@ -3,14 +3,19 @@
 // A plain of 4^10 = 1,048,576 houses in groups of four, each group with a stand-in; the Pixel Error is
 // such that about 20,000 things are chosen. Prints nanoseconds a visit and milliseconds a cut (goals:
 // 100 and 5), least / median / most of 21 cuts, once with every level's groups shared, once without; the
-// same through a lens around the eye; what copying the result costs, making the table (once per change
-// of the model) and finding the Pixel Error for a budget of memory.
+// same through a lens around the eye; what making the table costs (once per change of the model) and finding
+// the Pixel Error for a budget of memory. Then the eye moves: milliseconds of the cut that goes along with
+// it, and of whole ones in turns with it, each the mean of 50 steps, least / median / most of five walks.
 #include "backend/models.h"
 #include "base/clock.h"
 #include "quality/budget.h"
+#include "quality/step.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <vector>
 
 using namespace lodestone;
@@ -20,6 +25,8 @@ namespace {
 constexpr int kDepth = 10;
 constexpr size_t kWanted = 20000;
 constexpr int kCuts = 21;
+constexpr int kWalks = 5;
+constexpr int kSteps = 50;
 
 void add_box(Model& model, ObjectIndex object, double error, double half) {
     Representation box;
@@ -81,6 +88,54 @@ void print_times(int runs, double unit, const Run& run) {
                 unit * seconds.back());
 }
 
+/// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the camera.
+void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, double metres,
+                 const char* what, const char* how) {
+    quality::Stepper stepper(table);
+    quality::Cut cut;
+    stepper.step(view, cut);
+    std::vector<double> steps;
+    std::vector<double> wholes;
+    std::vector<double> ratios;
+    double looked = 0;
+    double angle = 0;
+    for (int walk = 0; walk < kWalks; ++walk) {
+        double step_s = 0;
+        double whole_s = 0;
+        for (int i = 0; i < kSteps; ++i) {
+            // Out into the plain and back, on a way that ends where it began.
+            view.camera.position.y += i < kSteps / 2 ? metres : -metres;
+            if (metres == 0) {
+                angle += 0.01;
+                view.camera.right = {std::cos(angle), std::sin(angle), 0};
+                view.camera.direction = {-std::sin(angle), std::cos(angle), 0};
+            }
+            const double start = cpu_seconds();
+            stepper.step(view, cut);
+            const double middle = cpu_seconds();
+            const size_t chosen = quality::choose(*table, view).chosen.size();
+            whole_s += cpu_seconds() - middle;
+            step_s += middle - start;
+            looked += static_cast<double>(stepper.looked_at());
+            if (chosen != cut.chosen.size()) {
+                std::printf("wrong: %zu chosen, not %zu\n", cut.chosen.size(), chosen);
+                std::exit(1);
+            }
+        }
+        steps.push_back(1e3 / kSteps * step_s);
+        wholes.push_back(1e3 / kSteps * whole_s);
+        ratios.push_back(step_s / whole_s);
+    }
+    std::printf("| %s, %s, steps of %g m | %.0f looked at |", what, how, metres,
+                looked / (kWalks * kSteps));
+    for (std::vector<double>* values : {&steps, &wholes, &ratios}) {
+        std::sort(values->begin(), values->end());
+        std::printf(" %.3g / %.3g / %.3g |", values->front(), (*values)[values->size() / 2],
+                    values->back());
+    }
+    std::printf("\n");
+}
+
 void bench(const char* what, int own) {
     Model model;
     const ObjectIndex house = models::add_leaf(model, "house", shapes::sphere(5, 2));
@@ -88,7 +143,9 @@ void bench(const char* what, int own) {
     std::vector<ObjectIndex> shared(kDepth + 1, kNoObject);
     model.root = plain(model, house, kDepth, own, shared);
     summarize_assemblies(model, bottom_up(model));
-    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
+    const auto kept =
+        std::make_shared<const quality::Table>(quality::Table::whole(model, model.root, kAllKinds));
+    const quality::Table& table = *kept;
     double fine = 0;
     double coarse = 1000;
     for (int i = 0; i < 40; ++i) {
@@ -115,14 +172,17 @@ void bench(const char* what, int own) {
     row("one lens");
     view.modifiers.lenses.clear();
     const quality::Cut cut = quality::choose(table, view);
-    std::printf("| %s, copying a cut's nodes | | %zu | | |", what, cut.nodes.size());
-    print_times(kCuts, 1e3, [&] { return std::vector<quality::Node>(cut.nodes).size(); });
-    std::printf("\n| %s, table | %zu | | | |", what, model.objects.size());
+    std::printf("| %s, table | %zu | | | |", what, model.objects.size());
     print_times(5, 1e3, [&] { quality::Table::whole(model, model.root, kAllKinds); });
     std::printf("\n| %s, budget | %zu | | %zu | |", what, model.objects.size(), cut.chosen.size());
-    view.pixel_error = 0;
-    print_times(5, 1e3, [&] { quality::choose_within(table, view, {0, cut.bytes}); });
+    View fine_view = view;
+    fine_view.pixel_error = 0;
+    print_times(5, 1e3, [&] { quality::choose_within(table, fine_view, {0, cut.bytes}); });
     std::printf("\n");
+    for (const double metres : {0.0, 0.1, 1.0, 10.0, 100.0})
+        bench_steps(kept, view, metres, what, "plain");
+    view.modifiers.lenses = {lens};
+    bench_steps(kept, view, 1, what, "one lens");
 }
 
 }  // namespace

@@ -213,11 +213,49 @@ static void test_classes_of_rays_are_counted_and_named(void) {
     lds_model_destroy(model);
 }
 
+static void test_a_cut_goes_along_with_the_camera(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_view view = view_before(30, 640, 360);
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    const double color[6] = {1, 0, 0, 0, 1, 0};
+    EXPECT(lds_cut_set_colors(cut, color, 2) == LDS_OK);
+    for (int step = 0; step < 3; ++step) {
+        view = view_before(30 + 20 * step, 640, 360);
+        EXPECT(lds_cut_step(model, cut, &view, NULL) == LDS_OK);
+        lds_cut* anew = NULL;
+        EXPECT(lds_cut_create(model, &view, NULL, &anew) == LDS_OK);
+        lds_choice choices[2][2];
+        memset(choices, 0, sizeof choices);
+        EXPECT(lds_cut_choice_count(cut) == 2 && lds_cut_choice_count(anew) == 2);
+        EXPECT(lds_cut_choice_copy(cut, choices[0], 2) == LDS_OK);
+        EXPECT(lds_cut_choice_copy(anew, choices[1], 2) == LDS_OK);
+        EXPECT(memcmp(choices[0], choices[1], sizeof choices[0]) == 0);
+        lds_cut_destroy(anew);
+    }
+    view.width = 0;
+    EXPECT(lds_cut_step(model, cut, &view, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_choice_count(cut) == 2);
+    EXPECT(lds_cut_step(model, cut, NULL, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_step(model, NULL, &view, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    lds_object other;
+    lds_model* foreign = two_cubes(&other);
+    view = view_before(30, 640, 360);
+    EXPECT(lds_cut_step(foreign, cut, &view, NULL) == LDS_ERROR_STALE_ID);
+    lds_model_destroy(foreign);
+    lds_model_destroy(model);
+    EXPECT(strcmp(lds_cut_choice_path(cut, 1), "right") == 0);
+    EXPECT(strcmp(lds_cut_choice_path(cut, 2), "") == 0);
+    lds_cut_destroy(cut);
+}
+
 int main(void) {
     test_a_view_without_modifiers_is_one_of_version_1();
     test_nonsense_is_refused_by_name();
     test_a_budget_says_what_fits();
     test_a_reason_names_every_factor();
+    test_a_cut_goes_along_with_the_camera();
     test_what_moves_is_coarser_only_where_that_counts();
     test_classes_of_rays_are_counted_and_named();
     return finish();

@@ -74,6 +74,13 @@ class Cut(Handle):
         self.pixel_error = report.pixel_error
         self.fits = report.fits != 0
 
+    def step(self, view: View, job: Job | None = None) -> None:
+        """Becomes the cut of another view of the model, as a new one would be, but soon where only
+        the camera has moved. Its colors and its surface are gone. Raises LodestoneError; then it
+        is as it was."""
+        check(library().lds_cut_step(self.model.handle, self.handle, view.struct(), job))
+        self.view, self.pixel_error, self.fits = view, view.pixel_error, True
+
     def summary(self) -> Any:
         out = structs.CutSummary()
         check(library().lds_cut_get_summary(self.handle, ctypes.byref(out)))

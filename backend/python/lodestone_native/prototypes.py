@@ -81,6 +81,7 @@ PROTOTYPES = (
     ("lds_model_build", I, [M, T, P(s.BuildOptions), P(Job), P(s.BuildReport)]),
     ("lds_modifiers_default", s.Modifiers, []),
     ("lds_cut_create", I, [M, P(s.View), P(Job), OUT]),
+    ("lds_cut_step", I, [M, C, P(s.View), P(Job)]),
     ("lds_cut_create_within", I, [M, P(s.View), P(s.Budget), P(Job), P(s.BudgetReport), OUT]),
     ("lds_cut_destroy", None, [C]),
     ("lds_cut_get_summary", I, [C, P(s.CutSummary)]),

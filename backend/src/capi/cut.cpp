@@ -13,22 +13,21 @@ namespace {
 
 constexpr size_t kFirstSummary = offsetof(lds_cut_summary, largest_error_choice);
 
-/// The cut's handle, with what its classes of rays meet.
-std::unique_ptr<lds_cut> finished(lds_model& model, View view, quality::Cut cut, const Job& job) {
-    auto made = std::make_unique<lds_cut>();
-    made->cut = std::move(cut);
-    made->view = std::move(view);
-    made->rays = choose_rays(model, made->view, made->cut, job);
-    made->resident = quality::resident(model.model, made->cut, made->rays);
-    made->generation = model.generation;
-    for (const uint32_t index : made->cut.chosen) {
-        made->paths.push_back(quality::path_of(model.model, made->cut, index));
-        made->originals += made->cut.nodes[index].lod == 0 ? 1 : 0;
-    }
-    if (made->cut.largest_error_node != quality::kNoParent)
-        made->largest_error_name =
-            quality::path_of(model.model, made->cut, made->cut.largest_error_node);
-    return made;
+/// What is known of a cut besides it, with what its classes of rays meet.
+void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
+    made.view = std::move(view);
+    made.paths.clear();
+    made.colors.clear();
+    made.surface = {};
+    made.batches.clear();
+    made.rays.clear();
+    made.resident = {};
+    made.largest_error_name.clear();
+    if (made.cut.largest_error_node != quality::kNoParent)
+        made.largest_error_name =
+            quality::path_of(*made.table, made.cut, made.cut.largest_error_node);
+    made.rays = choose_rays(model, made.view, made.cut, job);
+    made.resident = quality::resident(model.model, made.cut, made.rays);
 }
 
 }  // namespace
@@ -40,8 +39,30 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
         View given = view_of(view, model);
-        quality::Cut cut = quality::choose(model->table_for(given.kinds), given, progress);
-        *out_cut = finished(*model, std::move(given), std::move(cut), progress).release();
+        auto made = std::make_unique<lds_cut>();
+        made->generation = model->generation;
+        made->table = model->table_for(given.kinds);
+        made->cut = quality::choose(*made->table, given, progress);
+        finish(*model, *made, std::move(given), progress);
+        *out_cut = made.release();
+    });
+}
+
+lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, lds_job* job) {
+    return guard([&] {
+        require(model, "model");
+        require(cut, "cut");
+        if (cut->generation != model->generation)
+            fail(Status::StaleId, "the cut belongs to another model");
+        const Job progress = job_of(job);
+        progress.stage(Stage::Choose);
+        View given = view_of(view, model);
+        auto table = model->table_for(given.kinds);
+        if (cut->stepper == nullptr || cut->stepper->table() != table)
+            cut->stepper = std::make_unique<quality::Stepper>(table);
+        cut->stepper->step(given, cut->cut, progress);
+        cut->table = std::move(table);
+        finish(*model, *cut, std::move(given), progress);
     });
 }
 
@@ -55,19 +76,23 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
         View made_for = view_of(view, model);
-        quality::Budgeted found = quality::choose_within(model->model, made_for,
+        auto made = std::make_unique<lds_cut>();
+        made->generation = model->generation;
+        made->table = model->table_for(made_for.kinds);
+        quality::Budgeted found = quality::choose_within(*made->table, made_for,
                                                          {given.triangles, given.bytes}, progress);
         lds_budget_report report{};
         report.fits = found.fits ? 1 : 0;
         report.pixel_error = found.pixel_error;
         report.cuts = found.cuts;
         made_for.pixel_error = found.pixel_error;
-        auto made = finished(*model, std::move(made_for), std::move(found.cut), progress);
+        made->cut = std::move(found.cut);
+        finish(*model, *made, std::move(made_for), progress);
         // What classes meet besides is small; where it is too much, they meet what the camera sees
         if (found.fits && given.bytes > 0 && made->resident.bytes > given.bytes) {
             View plain = made->view;
             plain.modifiers.ray_classes = 0;
-            made = finished(*model, std::move(plain), std::move(made->cut), progress);
+            finish(*model, *made, std::move(plain), progress);
         }
         hand_out(out_report, report, "out_report");
         *out_cut = made.release();
@@ -91,7 +116,7 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         out.mesh = kind(Kind::Mesh);
         out.box = kind(Kind::Box);
         out.ellipsoid = kind(Kind::Ellipsoid);
-        out.originals = cut->originals;
+        out.originals = cut->cut.originals;
         out.triangles = cut->cut.triangles;
         out.bytes = cut->cut.bytes;
         out.largest_error_px = cut->cut.largest_error_px;
@@ -121,14 +146,24 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
             out.object = {node.object, cut->generation};
             out.lod = node.lod;
             out.kind = static_cast<int32_t>(node.kind);
-            out.error_px = node.error_px;
+            out.error_px = quality::error_on_screen(*cut->table, cut->view, node);
             node.world.to_rows(out.world);
         }
     });
 }
 
 const char* lds_cut_choice_path(lds_cut* cut, size_t position) {
-    return cut == nullptr || position >= cut->paths.size() ? "" : cut->paths[position].c_str();
+    if (cut == nullptr || position >= cut->cut.chosen.size())
+        return "";
+    const char* path = "";
+    guard([&] {
+        cut->paths.resize(cut->cut.chosen.size());
+        std::string& known = cut->paths[position];
+        if (known.empty())
+            known = quality::path_of(*cut->table, cut->cut, cut->cut.chosen[position]);
+        path = known.c_str();
+    });
+    return path;
 }
 
 lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,

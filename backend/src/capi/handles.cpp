@@ -27,15 +27,16 @@ void lds_model::summarize() {
     table.reset();
 }
 
-const quality::Table& lds_model::table_for(KindMask kinds) {
+std::shared_ptr<const quality::Table> lds_model::table_for(KindMask kinds) {
     summarize();
     if (model.root >= model.objects.size())
         fail(Status::InvalidArgument, "the model has no root object");
     if (!table || table->kinds() != kinds) {
         table.reset();
-        table.emplace(quality::Table::whole(model, model.root, kinds));
+        table =
+            std::make_shared<const quality::Table>(quality::Table::whole(model, model.root, kinds));
     }
-    return *table;
+    return table;
 }
 
 void lds_model::load(Representation& representation) {

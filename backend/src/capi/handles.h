@@ -9,6 +9,7 @@
 #include "quality/batches.h"
 #include "quality/budget.h"
 #include "quality/ray_cut.h"
+#include "quality/step.h"
 #include "quality/surface.h"
 #include "segment/store.h"
 
@@ -27,7 +28,8 @@ struct lds_model {
     /// Finest meshes by content, for those that are added next.
     std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
-    std::optional<lodestone::quality::Table> table;  // for choosing; reset when the model changes
+    /// For choosing; reset when the model changes. Cuts keep it.
+    std::shared_ptr<const lodestone::quality::Table> table;
     /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
     std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::quality::Shape> shapes;
 
@@ -38,7 +40,7 @@ struct lds_model {
     /// Brings assemblies' summaries up to date.
     void summarize();
     /// What choosing reads, up to date.
-    const lodestone::quality::Table& table_for(lodestone::KindMask kinds);
+    std::shared_ptr<const lodestone::quality::Table> table_for(lodestone::KindMask kinds);
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
     /// Makes every finest mesh and every picture resident (a model read from a store).
@@ -53,9 +55,10 @@ struct lds_cut {
     lodestone::quality::Resident resident;         // for the camera and these
     lodestone::View view;                          // that it was made for, with the threshold found
     uint32_t generation = 0;                       // of the model it was made from
-    std::vector<std::string> paths;                // by choice
+    std::shared_ptr<const lodestone::quality::Table> table;  // that it was chosen from
+    std::unique_ptr<lodestone::quality::Stepper> stepper;    // of the table; null: not stepped yet
+    std::vector<std::string> paths;                          // by choice; those asked for
     std::string largest_error_name;
-    uint64_t originals = 0;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
     lodestone::quality::Surface surface;
     std::vector<lodestone::quality::Batch> batches;

@@ -2,8 +2,7 @@
 #include "quality/batches.h"
 
 #include "image/image.h"
-#include "model/composite.h"
-#include "model/primitive.h"
+#include "quality/shown.h"
 
 #include <glm/matrix.hpp>
 
@@ -22,29 +21,7 @@ constexpr uint64_t kFewChoices = 256;
 // Children of a larger group go by their position, so that a change shifts no others.
 constexpr uint32_t kSiblings = 64;
 
-constexpr uint64_t kBoxTriangles = 12;
-constexpr int kEllipsoidSubdivisions = 1;  // with exact normals
-constexpr uint64_t kEllipsoidTriangles = 80;
-constexpr int kCompositeSubdivisions = 0;
-constexpr uint64_t kCompositeTriangles = 640;  // a guess: its summary does not count the parts
-
 constexpr double kUnit = 32767;
-
-uint64_t triangles_of(const Summary& summary) {
-    switch (summary.kind) {
-        case Kind::Mesh:
-            return summary.cost.triangles;
-        case Kind::Box:
-            return kBoxTriangles;
-        case Kind::Ellipsoid:
-            return kEllipsoidTriangles;
-        case Kind::Composite:
-            return kCompositeTriangles;
-        case Kind::Assembly:
-            break;
-    }
-    return 0;
-}
 
 const Representation& shown(const Model& model, const Node& node) {
     return model.objects.at(node.object).representations.at(node.lod);
@@ -63,7 +40,7 @@ std::vector<Below> count_below(const Model& model, const Cut& cut) {
     for (size_t i = cut.nodes.size(); i-- > 0;) {  // children follow their parents
         const Node& node = cut.nodes[i];
         if (!node.opened && (node.hidden & kCameraRays) == 0)
-            below[i] = {triangles_of(shown(model, node).summary), 1};
+            below[i] = {shown_triangles(shown(model, node).summary), 1};
         if (node.parent != kNoParent) {
             below[node.parent].triangles += below[i].triangles;
             below[node.parent].choices += below[i].choices;
@@ -215,7 +192,7 @@ public:
             const Node& node = cut_.nodes[index];
             if ((node.hidden & kCameraRays) != 0)
                 continue;
-            const uint64_t all = triangles_of(shown(model_, node).summary);
+            const uint64_t all = shown_triangles(shown(model_, node).summary);
             Open& open = open_[bucket(index)];
             for (uint64_t first = 0; first < all;) {
                 const uint64_t room = kMostInBatch - open.batch.triangles;
@@ -299,9 +276,7 @@ BatchMesh mesh_of(const Model& model, const Cut& cut, const Batch& batch,
             painter.add(representation.mesh(), piece, node.world, paints);
             continue;
         }
-        const bool composite = representation.summary.kind == Kind::Composite;
-        const Mesh mesh = tessellated(representation,
-                                      composite ? kCompositeSubdivisions : kEllipsoidSubdivisions);
+        const Mesh mesh = shown_mesh(representation);
         painter.add(mesh, {piece.choice, 0, mesh.triangles.size()}, node.world, paints);
     }
     return out;

@@ -33,7 +33,7 @@ public:
         }
         if (!found && !try_at(std::numeric_limits<double>::infinity())) {
             best_.cut = cut_at(std::numeric_limits<double>::infinity(), {}).value();
-            best_.pixel_error = need(best_.cut);
+            best_.pixel_error = least_;
             return std::move(best_);
         }
         bisect(fails);
@@ -45,7 +45,7 @@ private:
     std::optional<Cut> cut_at(double threshold, const Budget& budget) {
         job_.check();
         view_.pixel_error = threshold;
-        return choose_within_budget(table_, view_, budget, job_);
+        return choose_within_budget(table_, view_, budget, least_, job_);
     }
 
     bool try_at(double threshold) {
@@ -75,7 +75,7 @@ private:
 
     /// The least threshold that gives the cut found, to the last bit.
     void snap(double fails) {
-        double exact = need(best_.cut);
+        double exact = least_;
         for (int step = 0; step < 4 && exact > fails && exact < best_.pixel_error; ++step) {
             if (try_at(exact))
                 return;
@@ -83,19 +83,12 @@ private:
         }
     }
 
-    /// What the least good of the chosen ones asks of the threshold.
-    double need(const Cut& cut) const {
-        double most = 0;
-        for (const Node& node : cut.nodes)
-            most = std::max(most, node.need);
-        return most;
-    }
-
     const Table& table_;
     View view_;
     const Budget& budget_;
     const Job& job_;
     Budgeted best_;
+    double least_ = 0;  // threshold of the cut found last
 };
 
 }  // namespace

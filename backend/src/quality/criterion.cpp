@@ -9,9 +9,13 @@
 
 namespace lodestone::quality {
 
+double pixel_at_1m(const View& view) {
+    return std::max(glm::length(view.camera.right) / std::max(1, view.width),
+                    glm::length(view.camera.up) / std::max(1, view.height));
+}
+
 double pixel_size(const View& view, double z) {
-    const double frame = std::max(glm::length(view.camera.right) / std::max(1, view.width),
-                                  glm::length(view.camera.up) / std::max(1, view.height));
+    const double frame = pixel_at_1m(view);
     return view.camera.orthographic ? frame : frame * std::max(z, view.camera.near_clip);
 }
 
@@ -58,13 +62,11 @@ double threshold_for(const View& view, const Sight& sight, double error, size_t 
         case Criterion::Resolution:
             break;
     }
-    return error_on_screen(view, error, sight.stretch, sight.z) * refine;
+    return error_on_screen(sight, error) * refine;
 }
 
-bool good_enough(const View& view, const Sight& sight, double error, size_t lod, size_t levels) {
+bool good_otherwise(const View& view, const Sight& sight, double error, size_t lod, size_t levels) {
     const double refine = sight.total;
-    if (view.modifiers.criterion == Criterion::Resolution)
-        return good_enough(view, error, sight.stretch, sight.z, refine);
     if (std::isinf(refine))
         return false;
     const double threshold = view.pixel_error;

@@ -4,7 +4,12 @@
 
 #include "model/view.h"
 
+#include <cmath>
+
 namespace lodestone::quality {
+
+/// Size in metres of a pixel of `view` 1 m away; orthographic: anywhere.
+double pixel_at_1m(const View& view);
 
 /// Size in metres of a pixel of `view` at distance z (perspective: proportional to z, never nearer
 /// than the near clip; orthographic: the same everywhere).
@@ -23,14 +28,29 @@ bool good_enough(const View& view, double error, double stretch, double z, doubl
 /// How an occurrence is seen: what its levels are judged by.
 struct Sight {
     double z = 0;        // metres from the eye to its bound
+    double pixel = 0;    // pixel_size() there
     double stretch = 1;  // of its transform
     double total = 1;    // total_refinement of all factors
     double share = 0;    // of the picture, covered by the image of its box; Criterion::Area only
 };
 
+/// error_on_screen() of what is seen so.
+inline double error_on_screen(const Sight& sight, double error) {
+    return sight.pixel > 0 ? error * sight.stretch / sight.pixel : 0;
+}
+
+/// By another criterion than resolution: see below.
+bool good_otherwise(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+
 /// Whether LOD number `lod` of `levels` is good enough by the view's criterion (5.2.2): by resolution as
 /// above; else as Criterion says, the threshold divided by the refinement (of areas: by its square).
-bool good_enough(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+inline bool good_enough(const View& view, const Sight& sight, double error, size_t lod,
+                        size_t levels) {
+    if (view.modifiers.criterion != Criterion::Resolution)
+        return good_otherwise(view, sight, error, lod, levels);
+    return !std::isinf(sight.total) &&
+           error * sight.stretch * sight.total <= view.pixel_error * sight.pixel;
+}
 
 /// The least threshold that this is good enough for (of Criterion::Distance: the greatest).
 double threshold_for(const View& view, const Sight& sight, double error, size_t lod, size_t levels);

@@ -15,20 +15,19 @@ namespace lodestone::quality {
 
 inline constexpr uint32_t kNoParent = ~uint32_t{0};
 
-/// An occurrence the choice visited: either opened (its assembly goes on below) or chosen.
+/// An occurrence the choice visited: either opened (its assembly goes on below) or chosen. Nothing in
+/// it changes with the eye as long as it is drawn alike: see error_on_screen().
 struct Node {
     ObjectIndex object = kNoObject;
     uint32_t parent = kNoParent;  // index of the opened node above it
     uint32_t placement = 0;       // index in that node's assembly
     uint32_t lod = 0;             // the chosen representation's LOD number; 0 of an opened group
-    Kind kind = Kind::Assembly;   // of the choice
-    bool opened = false;
-    double error_px = 0;    // on screen; 0 when opened
-    double need = 0;        // what of the threshold its choice takes: the least that allows it
-    double importance = 1;  // its placements' together
     uint32_t coarsest = kAnyLevel;
     uint32_t finest = 0;
-    RayMask hidden = 0;  // ray classes that do not see it: its placements' together
+    Kind kind = Kind::Assembly;  // of the choice
+    bool opened = false;
+    RayMask hidden = 0;     // ray classes that do not see it: its placements' together
+    double importance = 1;  // its placements' together
     Affine world;
 };
 
@@ -38,6 +37,7 @@ struct Cut {
 
     uint64_t triangles = 0;  // placed
     uint64_t bytes = 0;      // POV-Ray's memory: distinct representations and occurrences
+    uint64_t originals = 0;  // of the chosen: drawn at LOD 0
     double largest_error_px = 0;
     uint32_t largest_error_node = kNoParent;
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
@@ -63,12 +63,16 @@ Cut choose(const Model& model, const View& view, const Job& job = {});
 /// The same with a whole table of the model for the view's kinds: without making one.
 Cut choose(const Table& table, const View& view, const Job& job = {});
 
-/// The same; nothing, and sooner, when it costs more than the budget.
+/// The same; nothing, and sooner, when it costs more than the budget. `least`: of all thresholds, the
+/// one that gives the same cut (of Criterion::Distance: the greatest).
 std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
-                                        const Job& job = {});
+                                        double& least, const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
+
+/// Of a chosen node of a cut for this view, in pixels; 0 of an opened one.
+double error_on_screen(const Table& table, const View& view, const Node& node);
 
 /// Why a node is drawn as it is.
 struct Reason {
@@ -97,5 +101,7 @@ Reason why(const Model& model, const View& view, const Cut& cut, uint32_t node);
 
 /// Names of the placements from the root to a node, joined by '/'.
 std::string path_of(const Model& model, const Cut& cut, uint32_t node);
+/// The same by the table that it was chosen from, whose model may be gone.
+std::string path_of(const Table& table, const Cut& cut, uint32_t node);
 
 }  // namespace lodestone::quality

@@ -102,9 +102,11 @@ FactorField::FactorField(const Model& model, const View& view)
       frame_(view.camera, view.width, view.height) {
     const Modifiers& modifiers = view.modifiers;
     refuse_nonsense(modifiers);
-    bends_ = !lenses_.empty() || !modifiers.screen_lenses.empty() || modifiers.depth != 1 ||
-             modifiers.when_moving || modifiers.when_dark ||
-             modifiers.off_screen != OffScreen::Full;
+    lenses_alone_ = modifiers.screen_lenses.empty() && modifiers.depth == 1 &&
+                    !modifiers.when_moving && !modifiers.when_dark &&
+                    modifiers.off_screen == OffScreen::Full;
+    bends_ = !lenses_.empty() || !lenses_alone_;
+    pixel_ = pixel_at_1m(view);
     if (modifiers.off_screen != OffScreen::Full)
         off_screen_.emplace(model, view);
     if (modifiers.when_moving) {

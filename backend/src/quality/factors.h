@@ -6,6 +6,8 @@
 #include "quality/lens_field.h"
 #include "quality/off_screen.h"
 
+#include <algorithm>
+
 namespace lodestone::quality {
 
 /// Each is kept, so that "why this level?" can name it. The first four refine, the others coarsen.
@@ -60,7 +62,16 @@ public:
     Effect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
               const Bound& bound, double z, Path& path);
 
+    /// False: neither here nor below, for lenses are all there is, and none is near.
+    bool bends(const Path& path) const {
+        return bends_ && (path.lenses.begin < path.lenses.end || !lenses_alone_);
+    }
+
     const ImageFrame& frame() const { return frame_; }
+    /// pixel_size() of the view.
+    double pixel(double z) const {
+        return view_.camera.orthographic ? pixel_ : pixel_ * std::max(z, view_.camera.near_clip);
+    }
 
 private:
     double screen_lenses(const Bound& bound) const;
@@ -77,7 +88,9 @@ private:
     std::vector<uint8_t> moves_below_;  // by object; when moving counts
     std::vector<uint8_t> glows_;        // by object, or below it; when darkness counts
     double background_ = 0;             // display value of the world
+    double pixel_ = 0;                  // at 1 m
     bool bends_ = false;
+    bool lenses_alone_ = false;  // nothing else bends
 };
 
 }  // namespace lodestone::quality

@@ -12,7 +12,6 @@
 namespace lodestone::quality {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Nearer than this shadows are looked at as contacts
 constexpr double kContactPixels = 4;
 // Hollows less deep, in parts of Pixel Error, hide nothing

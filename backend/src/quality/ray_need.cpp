@@ -11,8 +11,6 @@
 namespace lodestone::quality {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// How wide a lamp's surface is at least, seen from somewhere, metres.
 double least_width(const Light& light, const glm::dvec3& from) {
     if (light.kind != LightKind::Area)

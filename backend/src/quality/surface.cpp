@@ -2,8 +2,8 @@
 #include "quality/surface.h"
 
 #include "base/parallel.h"
-#include "model/composite.h"
 #include "model/primitive.h"
+#include "quality/shown.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,31 +11,11 @@
 namespace lodestone::quality {
 namespace {
 
-constexpr uint64_t kBoxTriangles = 12;
-constexpr int kEllipsoidSubdivisions = 1;  // 80 triangles
-constexpr int kCompositeSubdivisions = 0;  // 20 for each part
-
-/// What showing it takes; a guess from above for composites, whose parts the summary does not count.
-uint64_t triangles_of(const Representation& representation) {
-    switch (representation.summary.kind) {
-        case Kind::Mesh:
-            return representation.summary.cost.triangles;
-        case Kind::Box:
-            return kBoxTriangles;
-        case Kind::Ellipsoid:
-            return 80;
-        case Kind::Composite:
-            return 640;
-        case Kind::Assembly:
-            break;
-    }
-    return ~uint64_t{0};
-}
-
 uint32_t level_within(const Object& object, uint32_t lod, uint64_t limit, uint64_t& triangles) {
     for (size_t i = lod; i < object.representations.size(); ++i) {
-        triangles = triangles_of(object.representations[i]);
-        if (triangles <= limit)
+        const Summary& summary = object.representations[i].summary;
+        triangles = shown_triangles(summary);
+        if (summary.kind != Kind::Assembly && triangles <= limit)
             return static_cast<uint32_t>(i);
     }
     triangles = kBoxTriangles;
@@ -54,9 +34,7 @@ Mesh box_of(const Bound& bound) {
 Mesh shown(const Object& object, uint32_t lod) {
     if (lod == kBoxOnly)
         return box_of(object.bound());
-    const Representation& representation = object.representations.at(lod);
-    const bool composite = representation.summary.kind == Kind::Composite;
-    return tessellated(representation, composite ? kCompositeSubdivisions : kEllipsoidSubdivisions);
+    return shown_mesh(object.representations.at(lod));
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ uint32_t Table::add(ObjectIndex index) {
     }
     made.level_count = static_cast<uint32_t>(levels_.size()) - made.first_level;
     rows_.push_back(made);
+    assemblies_.emplace_back();
     return row;
 }
 
@@ -88,8 +89,9 @@ void Table::expand(uint32_t row) {
     if (rows_[row].expanded)
         return;
     rows_[row].expanded = true;
-    const std::vector<Placement>& placements =
-        model_.objects[rows_[row].object].representations[0].assembly().placements;
+    const Representation& group = model_.objects[rows_[row].object].representations[0];
+    const std::vector<Placement>& placements = group.assembly().placements;
+    assemblies_[row] = std::get<std::shared_ptr<const Assembly>>(group.payload);
     const auto first = static_cast<uint32_t>(children_.size());
     const auto first_row = static_cast<uint32_t>(rows_.size());
     rows_[row].first_child = first;

@@ -66,6 +66,8 @@ public:
     const TableLevel& level(uint32_t index) const { return levels_[index]; }
     const TableChild& child(uint32_t index) const { return children_[index]; }
     const glm::dmat3& linear(uint32_t index) const { return linears_[index]; }
+    /// Of a group that is expanded; the table keeps it.
+    const Assembly& assembly(uint32_t row) const { return *assemblies_[row]; }
     size_t size() const { return rows_.size(); }
     size_t distinct() const { return distinct_.size(); }
     /// Brings a row nearer that is visited soon.
@@ -106,6 +108,7 @@ private:
     std::vector<TableLevel> levels_;
     std::vector<TableChild> children_;
     std::vector<glm::dmat3> linears_;
+    std::vector<std::shared_ptr<const Assembly>> assemblies_;  // by row; null of what is no group
     std::unordered_map<ObjectIndex, uint32_t> by_object_;
     std::unordered_map<Hash, uint32_t> distinct_;
 };

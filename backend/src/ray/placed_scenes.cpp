@@ -11,9 +11,9 @@
 namespace lodestone::ray {
 namespace {
 
-constexpr uint32_t kLeaf = 2;  // placements of a cell that is not split
-constexpr size_t kBins = 16;   // slices of an axis that may part them
-constexpr int kDeepest = 30;   // splits above that are by area; 32 halves more end any tree
+constexpr uint32_t kLeaf = 2;   // placements of a cell that is not split
+constexpr size_t kSplits = 16;  // slices of an axis that may part them
+constexpr int kDeepest = 30;    // splits above that are by area; 32 halves more end any tree
 
 /// Where a ray enters a box within [0, far]; infinite where it does not.
 double entry(const Box3& box, const glm::dvec3& origin, const glm::dvec3& inverse, double far) {
@@ -61,14 +61,14 @@ void PlacedScenes::finish() {
         split(0, static_cast<uint32_t>(placed_.size()), 0);
 }
 
-/// Where both sides together are hit least: by the surface area heuristic over kBins slices of each
+/// Where both sides together are hit least: by the surface area heuristic over kSplits slices of each
 /// axis. source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
 uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles) {
     const auto bin_of = [&](const Placed& placed, int axis) {
         const double size = middles.high[axis] - middles.low[axis];
         const double share = (placed.box.center()[axis] - middles.low[axis]) / size;
-        const double at = share * kBins;
-        return at > 0 ? static_cast<size_t>(std::min(at, kBins - 1.0)) : size_t{0};  // NaN: 0
+        const double at = share * kSplits;
+        return at > 0 ? static_cast<size_t>(std::min(at, kSplits - 1.0)) : size_t{0};  // NaN: 0
     };
     const auto area = [](const Box3& box) {
         const glm::dvec3 size = box.size();
@@ -80,24 +80,24 @@ uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles
     for (int axis = 0; axis < 3; ++axis) {
         if (!(middles.high[axis] > middles.low[axis]))
             continue;
-        std::array<Box3, kBins> boxes{};
-        std::array<size_t, kBins> counts{};
+        std::array<Box3, kSplits> boxes{};
+        std::array<size_t, kSplits> counts{};
         for (uint32_t i = first; i < last; ++i) {
             const size_t bin = bin_of(placed_[i], axis);
             boxes[bin].add(placed_[i].box);
             ++counts[bin];
         }
-        std::array<double, kBins> behind{};  // cost of this bin and all behind it
+        std::array<double, kSplits> behind{};  // cost of this bin and all behind it
         Box3 box;
         size_t count = 0;
-        for (size_t bin = kBins; bin-- > 1;) {
+        for (size_t bin = kSplits; bin-- > 1;) {
             box.add(boxes[bin]);
             count += counts[bin];
             behind[bin] = area(box) * static_cast<double>(count);
         }
         box = {};
         count = 0;
-        for (size_t bin = 0; bin + 1 < kBins; ++bin) {
+        for (size_t bin = 0; bin + 1 < kSplits; ++bin) {
             box.add(boxes[bin]);
             count += counts[bin];
             const double cost = area(box) * static_cast<double>(count) + behind[bin + 1];

@@ -132,6 +132,6 @@ def _hashable(settings: Settings) -> Hashable:
 
 
 def forget() -> None:
-    global _chooser, _pinned
-    _chooser = view_statistics.Chooser()
+    global _pinned
+    _chooser.close()
     _pinned = _Pinned()

@@ -32,10 +32,10 @@ class Kept:
 
     def cut(self, view: Any) -> Any:
         """For this view; the last one when it was for the same. Valid until the next call."""
-        if self._cut is None or self._cut.view != view:
-            made = native.Cut(self._model, view)
-            self._drop_cut()
-            self._cut = made
+        if self._cut is None:
+            self._cut = native.Cut(self._model, view)
+        elif self._cut.view != view:
+            self._cut.step(view)
         return self._cut
 
     def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[Any, int]:

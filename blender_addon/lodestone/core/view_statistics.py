@@ -31,12 +31,20 @@ class Statistics:
 
 
 class Chooser:
-    """Remembers the last answer for a model. Close nothing: the model is the caller's."""
+    """Remembers the last answers for a model, and their cuts, which go along with the camera. The
+    model is the caller's."""
 
     def __init__(self) -> None:
         self._model: Any = None
         self._before: tuple[int, int] = (0, 0)
         self._known: dict[str, tuple[Hashable, Statistics]] = {}
+        self._cuts: dict[str, Any] = {}  # by what they are for; none of budgets
+
+    def close(self) -> None:
+        """Frees what is kept."""
+        for cut in self._cuts.values():
+            cut.close()
+        self._model, self._known, self._cuts = None, {}, {}
 
     def statistics(
         self, model: Any, key: Hashable, camera: Any, size: tuple[int, int], settings: Settings,
@@ -45,38 +53,49 @@ class Chooser:
         """Of a view whose every input is in `key`. `triangles`: a budget of them, instead of the
         settings' bytes; 0: none. Raises LodestoneError."""
         if model is not self._model:
-            self._model, self._known = model, {}
+            self.close()
+            self._model = model
             self._before = _originals(model, camera, size)
         if what in self._known and self._known[what][0] == key:
             return self._known[what][1]
-        found = self._chosen(model, camera, size, settings, triangles)
+        found = self._chosen(model, camera, size, settings, triangles, what)
         self._known[what] = (key, found)
         return found
 
     def _chosen(
-        self, model: Any, camera: Any, size: tuple[int, int], settings: Settings, triangles: int
-    ) -> Statistics:
+        self, model: Any, camera: Any, size: tuple[int, int], settings: Settings, triangles: int,
+        what: str,
+    ) -> Statistics:  # fmt: skip
         start = time.perf_counter()
-        budget = native.Budget(triangles, settings.budget)
-        wanted = budget if triangles or settings.budget else None
-        with native.Cut(model, settings.view(camera, size), None, wanted) as cut:
-            summary = cut.summary()
-            part = report.cut_part(summary)
-            met = unseen.met(cut)
-            return Statistics(
-                triangles_before=self._before[0],
-                triangles=summary.triangles,
-                bytes_before=self._before[1],
-                bytes=summary.bytes if met is None else met.bytes,
-                kinds=part["kinds"],
-                occurrences=summary.occurrences,
-                largest_error_px=summary.largest_error_px,
-                largest_error_name=part["largest_error_name"],
-                pixel_error=cut.pixel_error,
-                fits=cut.fits,
-                choose_s=time.perf_counter() - start,
-                met=met,
-            )
+        view = settings.view(camera, size)
+        if triangles or settings.budget:
+            with native.Cut(model, view, None, native.Budget(triangles, settings.budget)) as cut:
+                return self._statistics(cut, start)
+        cut = self._cuts.get(what)
+        if cut is None:
+            cut = self._cuts[what] = native.Cut(model, view)
+        else:
+            cut.step(view)
+        return self._statistics(cut, start)
+
+    def _statistics(self, cut: Any, start: float) -> Statistics:
+        summary = cut.summary()
+        part = report.cut_part(summary)
+        met = unseen.met(cut)
+        return Statistics(
+            triangles_before=self._before[0],
+            triangles=summary.triangles,
+            bytes_before=self._before[1],
+            bytes=summary.bytes if met is None else met.bytes,
+            kinds=part["kinds"],
+            occurrences=summary.occurrences,
+            largest_error_px=summary.largest_error_px,
+            largest_error_name=part["largest_error_name"],
+            pixel_error=cut.pixel_error,
+            fits=cut.fits,
+            choose_s=time.perf_counter() - start,
+            met=met,
+        )
 
 
 def _originals(model: Any, camera: Any, size: tuple[int, int]) -> tuple[int, int]:

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/chooser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::quality {
+namespace {}  // namespace
+
+void refuse_nonsense(const View& view) {
+    if (view.width <= 0 || view.height <= 0)
+        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
+    if (!(view.pixel_error >= 0))
+        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
+             "; it must be 0 or more");
+    const glm::dvec3& eye = view.camera.position;
+    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
+        fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
+}
+
+std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
+    std::map<std::string, uint64_t> out;
+    for (size_t kind = 0; kind < kKinds; ++kind) {
+        if (kinds[kind] != 0)
+            out[name_of(static_cast<Kind>(kind))] = kinds[kind];
+    }
+    return out;
+}
+
+bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
+         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
+    sight.stretch = enlarge;
+    const Bound bound = transformed(local, node.world, enlarge);
+    sight.z = distance(bound, view.camera.position);
+    sight.pixel = field.pixel(sight.z);
+    if (field.bends(path)) {
+        const FactorField::Effect effect =
+            field.at(node.object, group, local, node.world, bound, sight.z, path);
+        if (effect.gone)
+            return false;
+        factors = effect.factors;
+        factors.importance = node.importance;
+        factors.demand = demand;
+        sight.total = effect.open ? kInfinity : factors.total();
+    } else {
+        factors.importance = node.importance;
+        factors.demand = demand;
+        sight.total = total_refinement(node.importance * demand);
+    }
+    if (view.modifiers.criterion == Criterion::Area)
+        sight.share = field.frame().rect_of_box(bound).area() /
+                      (field.frame().width() * field.frame().height());
+    return true;
+}
+
+/// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
+/// costs fall from finest to coarsest.
+Decision decide(const Table& table, const View& view, const TableRow& row, const Node& node,
+                const Sight& sight) {
+    Decision made;
+    for (uint32_t i = row.level_count; i-- > 0;) {
+        const TableLevel& level = table.level(row.first_level + i);
+        if (level.lod > node.coarsest)
+            continue;
+        if (made.level != nullptr && level.lod < node.finest)
+            break;
+        made.level = &level;
+        made.good = good_enough(view, sight, level.error, level.lod, row.all_levels);
+        if (made.good)
+            break;
+    }
+    if (made.level == nullptr) {
+        made.opened = row.group;
+        made.drawn = row.group;
+        return made;
+    }
+    made.drawn = true;
+    made.pinned = node.finest > 0;
+    made.cheaper =
+        made.good && !made.pinned && made.level->opens_from < kInfinity && by_error(view) &&
+        good_enough(view, sight, made.level->opens_from, made.level->lod, row.all_levels);
+    made.opened = row.group && !made.pinned && (!made.good || made.cheaper);
+    return made;
+}
+
+bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
+    job_.check();
+    const size_t expected = table_.expected();
+    cut.nodes.reserve(expected);
+    cut.chosen.reserve(expected);
+    budget_ = &budget;
+    cut_ = &cut;
+    nodes_ = &cut.nodes;
+    Node top;
+    FactorField::Path path = field_.root();
+    visit(root, top, 1, path, 0);
+    visit_all();
+    if (!budget.fits(cut))
+        return false;
+    cut.kinds = named(kinds_);
+    table_.expect(cut.nodes.size());
+    return true;
+}
+
+void Chooser::run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& seen) {
+    job_.check();
+    nodes_ = &nodes;
+    seen_ = &seen;
+    Node top;
+    FactorField::Path path = field_.root();
+    visit(root, top, 1, path, 0);
+    visit_all();
+}
+
+void Chooser::open(const Node& group, const Seen& known, const FactorField::Path& path,
+                   std::vector<Node>& nodes, std::vector<Seen>& seen) {
+    nodes_ = &nodes;
+    seen_ = &seen;
+    const auto index = static_cast<uint32_t>(nodes.size());
+    nodes.push_back(group);
+    nodes.back().opened = true;
+    nodes.back().lod = 0;
+    nodes.back().kind = Kind::Assembly;
+    seen.push_back(known);
+    push_children(known.row, index, known.stretch, path, 0);
+    visit_all();
+}
+
+void Chooser::visit_all() {
+    while (!stack_.empty()) {
+        if (budget_ != nullptr && !budget_->fits(*cut_))
+            return;
+        const Entry entry = stack_.back();
+        stack_.pop_back();
+        visit_child(entry);
+        if ((++visits_ & 1023u) == 0)
+            job_.check();
+    }
+}
+
+void Chooser::visit_child(const Entry& entry) {
+    const TableChild& placed = table_.child(entry.child);
+    const Node& group = (*nodes_)[entry.parent];
+    const Frame& above = frames_[entry.depth - 1];
+    Node node;
+    node.hidden = static_cast<RayMask>(group.hidden | placed.hidden);
+    if (node.hidden == kAllRays)  // nothing would show it
+        return;
+    node.parent = entry.parent;
+    node.placement = entry.position;
+    node.importance = group.importance * placed.importance;
+    node.coarsest = group.coarsest == 0 ? 0 : placed.coarsest;
+    node.finest = group.coarsest == 0 ? 0 : placed.finest;
+    double enlarge = above.stretch;
+    node.world.offset = group.world.linear * placed.offset + group.world.offset;
+    if (placed.linear == kUnturned) {
+        node.world.linear = group.world.linear;
+    } else {
+        node.world.linear = group.world.linear * table_.linear(placed.linear);
+        enlarge = stretch(node.world);
+    }
+    path_.lenses = above.path.lenses;
+    if (view_.modifiers.when_moving)
+        path_ = field_.below(above.path, group.world,
+                             table_.model()
+                                 .objects[group.object]
+                                 .representations[0]
+                                 .assembly()
+                                 .placements[entry.position]);
+    visit(placed.row, node, enlarge, path_, entry.depth);
+}
+
+void Chooser::visit(uint32_t row_index, Node& node, double enlarge, FactorField::Path& path,
+                    uint32_t depth) {
+    const TableRow& row = table_.row(row_index);
+    if (!row.drawable)
+        return;
+    node.object = row.object;
+    Sight sight;
+    Factors factors;
+    if (!see(view_, field_, node, row.group, row.bound, row.demand, enlarge, path, sight, factors))
+        return;
+    const Decision made = decide(table_, view_, row, node, sight);
+    if (!made.drawn)
+        return;
+    const auto index = static_cast<uint32_t>(nodes_->size());
+    if (made.opened) {
+        node.opened = true;
+        if (made.cheaper)
+            least_ = std::max(least_, threshold_for(view_, sight, made.level->opens_from,
+                                                    made.level->lod, row.all_levels));
+        nodes_->push_back(node);
+        if (seen_ != nullptr)
+            seen_->push_back({row_index, 0, enlarge, sight.total});
+        push_children(row_index, index, enlarge, path, depth);
+        return;
+    }
+    const TableLevel& level = *made.level;
+    node.lod = level.lod;
+    node.kind = level.kind;
+    nodes_->push_back(node);
+    if (seen_ != nullptr)
+        seen_->push_back(
+            {row_index, static_cast<uint32_t>(&level - &table_.level(0)), enlarge, sight.total});
+    if (cut_ == nullptr)
+        return;
+    const double error_px = error_on_screen(sight, level.error);
+    if (made.good)
+        least_ = std::max(
+            least_, view_.modifiers.criterion == Criterion::Resolution
+                        ? error_px * sight.total
+                        : threshold_for(view_, sight, level.error, level.lod, row.all_levels));
+    take(index, level, error_px / factors.off_screen);
+}
+
+void Chooser::push_children(uint32_t row_index, uint32_t index, double enlarge,
+                            const FactorField::Path& path, uint32_t depth) {
+    if (growing_ != nullptr)
+        growing_->expand(row_index);
+    const TableRow& row = table_.row(row_index);
+    if (frames_.size() <= depth)
+        frames_.resize(depth + size_t{1});
+    frames_[depth].stretch = enlarge;
+    frames_[depth].path.lenses = path.lenses;
+    if (view_.modifiers.when_moving)
+        frames_[depth].path = path;
+    for (uint32_t i = row.child_count; i-- > 0;) {
+        stack_.push_back({index, row.first_child + i, i, depth + 1});
+        table_.fetch(table_.child(row.first_child + i).row);
+    }
+}
+
+/// Counts what is drawn. `shown_px`: what of its error the picture shows.
+void Chooser::take(uint32_t index, const TableLevel& level, double shown_px) {
+    cut_->chosen.push_back(index);
+    cut_->triangles += level.triangles;
+    cut_->bytes += kBytesPerOccurrence;
+    cut_->originals += level.lod == 0 ? 1 : 0;
+    if (drawn_.size() <= level.distinct)
+        drawn_.resize(std::max<size_t>(table_.distinct(), level.distinct + size_t{1}));
+    // A composite is copied for each occurrence.
+    if (!drawn_[level.distinct] || level.kind == Kind::Composite) {
+        drawn_[level.distinct] = true;
+        cut_->bytes += level.bytes;
+    }
+    ++kinds_[static_cast<size_t>(level.kind)];
+    if (shown_px > cut_->largest_error_px) {
+        cut_->largest_error_px = shown_px;
+        cut_->largest_error_node = index;
+    }
+}
+
+}  // namespace lodestone::quality

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut and
+// step.
+#pragma once
+
+#include "quality/criterion.h"
+#include "quality/cut.h"
+
+#include <array>
+#include <span>
+
+namespace lodestone::quality {
+
+inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
+
+/// Throws Error(InvalidArgument) for a view that makes no sense.
+void refuse_nonsense(const View& view);
+
+/// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
+bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
+         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors);
+
+/// Whether levels are judged by their errors.
+inline bool by_error(const View& view) {
+    return view.modifiers.criterion == Criterion::Resolution ||
+           view.modifiers.criterion == Criterion::Feature;
+}
+
+/// By which level something is drawn.
+struct Decision {
+    const TableLevel* level = nullptr;  // null: there is none that is allowed
+    bool good = false;                  // good enough
+    bool pinned = false;                // no other one is allowed
+    bool cheaper = false;               // opened for that, though good enough
+    bool opened = false;
+    bool drawn = false;  // neither: it has nothing to be drawn by
+};
+Decision decide(const Table& table, const View& view, const TableRow& row, const Node& node,
+                const Sight& sight);
+
+/// What stepping a cut keeps of a node.
+struct Seen {
+    uint32_t row = 0;
+    uint32_t level = 0;  // of the table; of a chosen one
+    double stretch = 1;
+    double total = 1;  // as Sight's
+};
+
+/// Visits what is drawn and the groups above it, depth first, each once.
+class Chooser {
+public:
+    /// `growing`: the same table, where rows are made on the way. All must outlive it.
+    Chooser(const Table& table, Table* growing, const View& view, FactorField& field,
+            const Job& job)
+        : table_(table), growing_(growing), view_(view), field_(field), job_(job) {}
+
+    /// All of a cut, but its kinds and sums where `budget` was exceeded: false.
+    bool run(uint32_t root, const Budget& budget, Cut& cut);
+    /// The least threshold that gives the same (of Criterion::Distance: the greatest).
+    double least() const { return least_; }
+
+    /// Appends the nodes alone, and what is kept of each.
+    void run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& seen);
+    /// The same for what is below a group: itself, opened, and the nodes below. `path`: of what it
+    /// places. Their parents are indices in `nodes`, its own is left as it is.
+    void open(const Node& group, const Seen& known, const FactorField::Path& path,
+              std::vector<Node>& nodes, std::vector<Seen>& seen);
+
+private:
+    struct Entry {
+        uint32_t parent;    // node
+        uint32_t child;     // of the table
+        uint32_t position;  // among the placements
+        uint32_t depth;
+    };
+    /// The group at some depth that is being visited.
+    struct Frame {
+        double stretch = 1;
+        FactorField::Path path;  // of what it places
+    };
+
+    void visit_child(const Entry& entry);
+    void visit(uint32_t row, Node& node, double enlarge, FactorField::Path& path, uint32_t depth);
+    void push_children(uint32_t row, uint32_t index, double enlarge, const FactorField::Path& path,
+                       uint32_t depth);
+    void take(uint32_t index, const TableLevel& level, double shown_px);
+    void visit_all();
+
+    const Table& table_;
+    Table* growing_;
+    const View& view_;
+    FactorField& field_;
+    const Job& job_;
+    const Budget* budget_ = nullptr;
+    Cut* cut_ = nullptr;                  // whose sums are made; null: none are
+    std::vector<Node>* nodes_ = nullptr;  // what is appended to
+    std::vector<Seen>* seen_ = nullptr;
+    FactorField::Path path_;  // of what is visited; of motion only where that counts
+    std::vector<Entry> stack_;
+    std::vector<Frame> frames_;  // by depth
+    std::vector<bool> drawn_;    // by TableLevel::distinct
+    std::array<uint64_t, kKinds> kinds_{};
+    double least_ = 0;
+    size_t visits_ = 0;
+};
+
+/// The words of kinds, and how many are drawn by each.
+std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds);
+
+}  // namespace lodestone::quality
