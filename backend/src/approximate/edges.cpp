@@ -20,12 +20,31 @@ namespace {
 /// leaves, a car body and terrain.)
 constexpr double kOpen = 0.15;
 
+/// Edges that are held count as at least this share of the square of a typical one: the tip of an
+/// outline is as far away however short it is. Up to so many times what they are.
+constexpr double kLeastSquare = 0.3;
+constexpr double kMostRaised = 1e4;
+/// Triangles between those that tell how long edges are.
+constexpr size_t kMeasured = 16;
+
+/// Of the length of edges, were all triangles equilateral.
+double typical_square(const CollapseMesh& mesh) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < mesh.facets.size(); i += kMeasured, ++count)
+        sum += glm::length(glm::dvec3(mesh.facets[i]));
+    return count > 0 ? 4 / std::sqrt(3.0) * sum / static_cast<double>(count) : 0;
+}
+
 /// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
-void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet, double weight) {
+/// `least` is added to the edge's square.
+void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet, double weight,
+               double least) {
     const double square = glm::dot(edge, edge);
     const double area = glm::length(facet);
     if (!(square > 0))
         return;
+    weight *= std::min(1 + least / square, kMostRaised);
     if (area > 1e-12 * square) {
         const glm::dvec3 normal = glm::cross(edge, facet);
         // |edge x facet|^2 = square area^2: the weight is that of a square on the edge.
@@ -133,6 +152,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
         others_[i][vertex] = around_of(mesh.others[i].points[vertex], mesh.others[i].facets, ring);
     const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, vertex);
     const bool closed = fan == Neighbors::Fan::Closed;
+    const double least = kLeastSquare * typical_square_;
     const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
     if (closed && plain) {
         kinds_[vertex] = neighbors.order(ring) ? VertexKind::FreeFan : VertexKind::Free;
@@ -144,7 +164,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
             if (neighbor > vertex && borders != nullptr)
                 borders->borders.emplace_back(vertex, neighbor);
             hold_edge(quadric, mesh.points[neighbor] - mesh.points[vertex],
-                      glm::dvec3(mesh.facets[triangle]), kOpen * options.boundary_weight);
+                      glm::dvec3(mesh.facets[triangle]), kOpen * options.boundary_weight, least);
         };
         border(neighbors.first_corner(), ring.front());
         border(neighbors.last_corner(), ring.back());
@@ -189,9 +209,9 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
             const auto hold = [&](const std::vector<glm::dvec3>& points,
                                   const std::vector<glm::vec3>& facets, Quadric& held) {
                 const glm::dvec3 edge = points[n.vertex] - points[vertex];
-                hold_edge(held, edge, glm::dvec3(facets[n.t0]), weight);
+                hold_edge(held, edge, glm::dvec3(facets[n.t0]), weight, least);
                 if (n.t1 != kNone)
-                    hold_edge(held, edge, glm::dvec3(facets[n.t1]), weight);
+                    hold_edge(held, edge, glm::dvec3(facets[n.t1]), weight, least);
             };
             hold(mesh.points, mesh.facets, quadric);
             for (size_t i = 0; i < others_.size(); ++i)
@@ -218,6 +238,7 @@ void Edges::build(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
     for (std::vector<VertexAround>& other : others_)
         other.resize(vertices);
     kinds_.resize(vertices);
+    typical_square_ = typical_square(mesh);
     chunks_.resize((vertices + kChunk - 1) / kChunk);
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();

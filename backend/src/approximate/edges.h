@@ -101,6 +101,7 @@ private:
     std::vector<VertexAround> own_;                  // by vertex; points as the ranking sees them
     std::vector<std::vector<VertexAround>> others_;  // by pose
     std::vector<VertexKind> kinds_;
+    double typical_square_ = 0;  // of an edge's length
 };
 
 }  // namespace lodestone::approximate

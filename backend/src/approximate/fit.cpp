@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kFewSamples = 1000;
 /// On a triangle, for flips to be worth their time.
-constexpr size_t kSamplesToFlip = 6;
+constexpr size_t kSamplesToFlip = 3;
 
 /// As far as no triangle turns over.
 void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::vec3>& moves) {

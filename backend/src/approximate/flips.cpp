@@ -14,7 +14,7 @@ constexpr float kTurn = 0.02f;
 /// A flip must save this share of what the two triangles' samples cost.
 constexpr float kLeastGain = 0.1f;
 /// Fewer samples than that on both triangles do not tell.
-constexpr size_t kFewest = 8;
+constexpr size_t kFewest = 5;
 /// As in collapses: twice the area over the longest edge squared.
 constexpr float kThin = 4e-3f;
 constexpr size_t kMostAround = 64;

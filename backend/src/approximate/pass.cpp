@@ -21,8 +21,18 @@ constexpr size_t kWork = 40;
 
 /// Small passes choose with fresher costs, large ones take less time. (More than .35 ruins plates
 /// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
-constexpr Pace kFast{0.35, 2.0, 1.0 / 3};
-constexpr Pace kBest{0.12, 1.0, 0.5};
+constexpr Pace kFast{0.35, 2.0, 1.0 / 3, 6};
+constexpr Pace kBest{0.12, 1.0, 0.5, 1};
+/// Far from the target, that is with so many times more triangles, a pass may cost more: triangles
+/// twice as large cost eight times as much, so all of it is little beside what is to come.
+constexpr double kFar = 4;
+double slack_far(double times, double most) {
+    return std::clamp(std::pow(times / kFar, 1.5), 1.0, most);
+}
+/// A last pass for less than this share of the triangles is given so many times more candidates:
+/// the few it wants could all be impossible, and another pass asks every edge again.
+constexpr double kRest = 0.05;
+constexpr double kRestReach = 4;
 /// Chunks go through their candidates at the same time, in so many rounds of steps of costs: that
 /// the dearest do not go in one chunk before cheaper ones in another. In one round, which spares
 /// memory going through all chunks again, where a pass is going to run out of candidates anyway:
@@ -44,13 +54,19 @@ uint32_t step_of(const Candidate& candidate) {
 }
 
 /// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
-/// Parts count too: a round begins with the removal of those that are cheaper than all it has.
+/// Parts up to the limit count too: a round begins with the removal of those that are cheaper than
+/// all it has.
 std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
-                                const std::vector<Part>& removable, size_t want) {
+                                const std::vector<Part>& removable, uint32_t limit, size_t want) {
     std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
-    size_t all = removable.size();
-    for (const Part& part : removable)
-        ++counts[key_of_cost(static_cast<float>(part.cost)) >> kKeyShift];
+    size_t all = 0;
+    for (const Part& part : removable) {
+        const uint32_t key = key_of_cost(static_cast<float>(part.cost));
+        if (key > limit)
+            break;
+        ++counts[key >> kKeyShift];
+        ++all;
+    }
     for (const Chunk& chunk : chunks) {
         for (const Candidate& candidate : chunk.candidates)
             ++counts[step_of(candidate)];
@@ -76,9 +92,10 @@ Reducer::Reducer(CollapseMesh& mesh, const SimplifyOptions& options)
 /// One batch of collapses.
 class Reducer::Batch {
 public:
-    Batch(Reducer& reducer, Effort effort, size_t start, size_t want)
+    Batch(Reducer& reducer, Effort effort, size_t start, size_t want, uint32_t limit)
         : r_(reducer),
           effort_(effort),
+          limit_(limit),
           want_(want),
           work_(kWork * start + 100000),
           removable_(reducer.parts_.removable()),
@@ -96,7 +113,7 @@ public:
         std::vector<std::vector<uint32_t>> left(chunks.size());
         std::vector<size_t> gone(chunks.size(), 0);
         uint32_t begin = 0;
-        const std::vector<uint32_t> rounds = rounds_of(chunks, removable_, want_);
+        const std::vector<uint32_t> rounds = rounds_of(chunks, removable_, limit_, want_);
         for (const uint32_t end : rounds) {
             if (gone_ >= want_)
                 break;
@@ -134,6 +151,13 @@ public:
             across(chunks, left, job);
             next = last;
         }
+        if (effort_ == Effort::Careful && gone_ == 0) {
+            // No edge within the limit can be collapsed: parts go before dearer ones do.
+            limit_ = kImpossible - 1;
+            const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
+            if (all.size() > 1)
+                remove_parts_below(all[all.size() - 2] << kKeyShift);
+        }
         if (effort_ >= Effort::Topology && is_slow(gone_, want_)) {
             while (gone_ < want_ && next_part_ < removable_.size())
                 remove_next_part();
@@ -150,7 +174,7 @@ private:
         gone_ += part.triangles - taken_[part.part];
     }
     void remove_parts_below(uint32_t key) {
-        const auto cost = static_cast<double>(std::bit_cast<float>(key));
+        const auto cost = static_cast<double>(std::bit_cast<float>(std::min(key, limit_)));
         while (next_part_ < removable_.size() && removable_[next_part_].cost < cost &&
                gone_ < want_)
             remove_next_part();
@@ -230,6 +254,7 @@ private:
 
     Reducer& r_;
     Effort effort_;
+    uint32_t limit_;  // of parts: keys that none exceeds
     size_t want_;
     size_t work_;  // triangles it may look at
     const std::vector<Part>& removable_;
@@ -264,14 +289,19 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t want = std::min(start - target, std::max<size_t>(share, 64));
     uint32_t limit = kImpossible - 1;
     if (effort == Effort::Careful) {
-        const double quantile = reach_ * pace_.quantile;
-        const auto enough = static_cast<size_t>(quantile * static_cast<double>(want));
-        const uint32_t key = edges_.key_of(mesh_, adjacency_, effort, enough);
-        limit = std::min(limit, std::bit_cast<uint32_t>(static_cast<float>(pace_.slack) *
-                                                        std::bit_cast<float>(key)));
+        const auto live = static_cast<double>(start);
+        const auto wanted = static_cast<double>(want);
+        const bool rest = want == start - target && wanted < kRest * live;
+        const double quantile = (rest ? kRestReach : 1) * reach_ * pace_.quantile;
+        const uint32_t key =
+            edges_.key_of(mesh_, adjacency_, effort, static_cast<size_t>(quantile * wanted));
+        const double slack =
+            pace_.slack * slack_far(live / static_cast<double>(target), pace_.most_slack);
+        limit = std::min(
+            limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
     }
     edges_.take(mesh_, adjacency_, effort, limit, job);
-    Batch(*this, effort, start, want).run(job);
+    Batch(*this, effort, start, want, limit).run(job);
     // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
     reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);

@@ -13,9 +13,10 @@ namespace lodestone::approximate {
 
 /// How far one pass goes.
 struct Pace {
-    double share;     // of the live triangles it may take
-    double slack;     // a careful pass stops at this many times the cost
-    double quantile;  // that this many edges for each triangle wanted do not exceed
+    double share;       // of the live triangles it may take
+    double slack;       // a careful pass stops at this many times the cost
+    double quantile;    // that this many edges for each triangle wanted do not exceed
+    double most_slack;  // times that, far from the target
 };
 
 class Reducer {
