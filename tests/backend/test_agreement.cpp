@@ -37,6 +37,39 @@ Mesh grid(int side, double moved, double radius = 0.1) {
     return mesh;
 }
 
+/// A dark back of 2 m x 2 m, and two rows of eight red books before it, 0.4 m deep; only every
+/// `nth` of them, and each smaller by that much on all sides.
+Mesh bookcase(int nth, double smaller) {
+    Mesh mesh;
+    const auto add = [&](const glm::dvec3& low, const glm::dvec3& high, uint16_t slot) {
+        Mesh box = shapes::cube();
+        glm::vec3 least(1e9f);
+        glm::vec3 most(-1e9f);
+        for (const glm::vec3& position : box.positions) {
+            least = glm::min(least, position);
+            most = glm::max(most, position);
+        }
+        for (glm::vec3& position : box.positions)
+            position = glm::vec3(low) + (position - least) / (most - least) * glm::vec3(high - low);
+        box.normals.clear();
+        box.slots.assign(box.triangles.size(), slot);
+        append(mesh, box, {});
+    };
+    add({0, 0, 0}, {2, 0.05, 2}, 0);
+    for (int i = 0; i < 16; i += nth) {
+        const glm::dvec3 low(0.25 * (i / 2), 0.05, i % 2);
+        add(low + smaller, low + glm::dvec3(0.25, 0.4, 1) - smaller, 1);
+    }
+    return mesh;
+}
+
+ray::SkinPtr bookcase_skin() {
+    std::vector<Material> materials(2);
+    materials[0].base_color = glm::dvec3(0.03);
+    materials[1].base_color = {0.6, 0.2, 0.1};
+    return skin(materials);
+}
+
 }  // namespace
 
 TEST_F(Agreements, NothingAgreesWithNothingAndWithNothingElse) {
@@ -114,4 +147,33 @@ TEST_F(Agreements, SameOnOneAndOnManyThreadsAndWhereverItLies) {
     EXPECT_EQ(AgreementReference(a, nullptr, 1).of(b, nullptr).error, many);
     EXPECT_NEAR(AgreementReference(grid(3, 0), nullptr, 1).of(grid(3, 0.1), nullptr).error, many,
                 0.15 * many);
+}
+
+TEST_F(Agreements, BooksThatAreGoneAreSeenThroughTheirGapsAndBooksThatShrinkAreNot) {
+    const ray::SkinPtr skin = bookcase_skin();
+    for (const int side : {AgreementReference::kSide, AgreementReference::kBrightSide}) {
+        const Mesh full = bookcase(1, 0);
+        const AgreementReference reference(full, skin, 1, side);
+        const auto gaps = [&](const Mesh& level, double off) {
+            return reference.gaps_of(reference.trace(level, skin), skin, off);
+        };
+        EXPECT_EQ(gaps(full, 0.001), 0);
+        EXPECT_EQ(gaps(bookcase(1, 0.02), 0.02), 0) << "as near as distances say";
+        EXPECT_GT(gaps(bookcase(2, 0), 0.02), 0.5) << "half of them, though the back is near";
+        EXPECT_GT(gaps(Mesh{}, 0.02), 2) << "nothing is left";
+    }
+}
+
+TEST_F(Agreements, WhatIsFartherBehindIsNoGapWhereItLooksTheSame) {
+    const Mesh full = bookcase(1, 0);
+    const Mesh half = bookcase(2, 0);
+    std::vector<Material> alike(2);
+    const ray::SkinPtr same = skin(alike);
+    const AgreementReference reference(full, same, 1);
+    const double apart =
+        AgreementReference(full, bookcase_skin(), 1)
+            .gaps_of(reference.trace(half, bookcase_skin()), bookcase_skin(), 0.02);
+    EXPECT_LT(reference.gaps_of(reference.trace(half, same), same, 0.02), 0.7 * apart);
+    EXPECT_EQ(AgreementReference(Mesh{}, same, 1).gaps_of(reference.trace(half, same), same, 0.1),
+              0);
 }

@@ -334,3 +334,31 @@ TEST(Deviation, CancelledJobsStop) {
     const DeviationReference reference(shapes::cube(), {});
     EXPECT_THROW((void)reference.of(shapes::cube(), {}, job), Error);
 }
+
+TEST(DeviationLooks, WhatMixesToAColorIsTheSameForTheFirstStandInAndForLaterOnes) {
+    const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.6, 0.1, 0.1)};
+    Mesh finest = shapes::terrain(40);
+    for (size_t i = 0; i < finest.triangles.size(); ++i)
+        finest.slots.push_back(static_cast<uint16_t>(i / 97 % 2));
+    const Mesh coarse = shapes::terrain(5);
+    const std::vector<Material> brown{colored(0.35, 0.3, 0.1)};
+    const std::vector<Material> dull{colored(0.3, 0.25, 0.1)};
+    measure::Looks palette;
+    const std::vector<uint16_t> looks = palette.of(finest, materials);
+    const auto reference = [&] {
+        return std::make_unique<DeviationReference>(finest, measure::DeviationOptions{},
+                                                    measure::Surface{looks, &palette, nullptr});
+    };
+    const auto error = [&](const DeviationReference& of, const std::vector<Material>& own) {
+        const std::vector<uint16_t> theirs = palette.of(coarse, own);
+        return of.of(coarse, {theirs, &palette, nullptr}).error;
+    };
+    const auto one = reference();
+    const double first = error(*one, brown);
+    EXPECT_GT(first, deviation(finest, coarse).error) << "colors decide";
+    EXPECT_EQ(error(*one, brown), first);
+    const double other = error(*one, dull);
+    EXPECT_EQ(error(*one, brown), first) << "after another color";
+    EXPECT_EQ(error(*reference(), brown), first);
+    EXPECT_EQ(error(*reference(), dull), other);
+}

@@ -419,3 +419,17 @@ TEST(Visible, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
     for (size_t i = 12 + sphere + 2; i < seen.size(); ++i)
         EXPECT_EQ(seen[i], 1) << i;
 }
+
+TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {
+    const Mesh mesh = clutter();
+    const ray::Scene scene(mesh);
+    VisibleOptions options;
+    options.seed = 9;
+    const measure::VisibleSampler sampler(mesh, scene, options.seed);
+    const Attributes once = measure::measure_visible(mesh, sampler, nullptr, options).attributes;
+    const Attributes again = measure::measure_visible(mesh, scene, nullptr, options).attributes;
+    EXPECT_EQ(once.visible_area, again.visible_area);
+    EXPECT_EQ(once.moments, again.moments);
+    EXPECT_EQ(measure::seen_from_outside(mesh, scene, sampler.sides(), 4, 9),
+              measure::seen_from_outside(mesh, scene, 4, 9));
+}

@@ -300,6 +300,8 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
     }
     const VisibleSolids visible(options.rays, options.seed);
     for (const size_t count : kCounts) {
+        if (count > options.most)
+            break;
         clusters.split_to(count, job);
         const size_t parts = clusters.all().size();
         if (parts < 2 || (!out.empty() && out.back().clusters.size() == parts))
@@ -346,6 +348,8 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
     Alone alone(mesh, skin, options.seed);
     const double floor = lowest(mesh);
     for (const size_t count : kCounts) {
+        if (count > options.most)
+            break;
         clusters.split_to(count, job);
         const size_t solids = clusters.all().size();
         if (solids < 2 || (!out.empty() && out.back().clusters.size() == solids))

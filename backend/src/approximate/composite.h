@@ -26,6 +26,7 @@ struct CompositeOptions {
     bool shape = true;          // match centroid and variances of the whole, not its area alone
     int rounds = 12;            // of matching on the way, at most
     uint32_t measured = 32768;  // rays that measure the mesh once more for this; 0: as `wanted` is
+    size_t most = 32;           // parts
 };
 
 /// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:

@@ -78,7 +78,7 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     options.rays = rays_;
     options.seed = seed_;
     attributes_ =
-        measure::measure_visible(finest, finest_scene(), skin_, options, {}, job).attributes;
+        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, job).attributes;
 }
 
 bool is_flat(double across, double through) {
@@ -135,7 +135,10 @@ void Judge::measure_primitive(Candidate& candidate, const Job& job) {
 
 void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
     using Pictures = measure::AgreementReference;
-    const int side = coarse ? Pictures::kCoarseSide : Pictures::kSide;
+    take_pictures_of(finest, coarse ? Pictures::kCoarseSide : Pictures::kSide, job);
+}
+
+void Judge::take_pictures_of(const Mesh& finest, int side, const Job& job) {
     if (finest.triangles.size() == finest_scene().triangles())
         pictures_.emplace(finest, finest_scene(), skin_, seed_, side, job);
     else
@@ -219,8 +222,9 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     if (candidate.pictured || candidate.matched || environment_ ||
         (!glows && used_to < kNear * size_))
         return;
+    using Pictures = measure::AgreementReference;
     if (!pictures_)
-        take_pictures(finest, !glows, job);
+        take_pictures_of(finest, glows ? Pictures::kSide : Pictures::kBrightSide, job);
     ray::SkinPtr current = skin_of(candidate.materials);
     Mesh solid;
     const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
@@ -244,8 +248,12 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     candidate.matched = true;
     if (candidate.kind != Kind::Mesh || layer_)
         return;
-    const double seen = pictures_->of(traced, current).error;
-    candidate.error = std::max(candidate.error, kPictures * seen + child_error_);
+    // Near something else that is left a point may have been all that closed a gap. Where the error is
+    // as large as the pictures' pixels all that they show counts, half.
+    const double own = candidate.error - child_error_;
+    const double seen = own < kNear * size_ ? pictures_->gaps_of(traced, current, own)
+                                            : kPictures * pictures_->of(traced, current).error;
+    candidate.error = std::max(candidate.error, seen + child_error_);
     candidate.max_error = std::max(candidate.max_error, seen + child_error_);
 }
 

@@ -22,8 +22,8 @@ double counted_error(double error, bool environment, double size);
 bool is_flat(double across, double through);
 bool is_flat(const Attributes& attributes);
 
-/// Of one finest mesh. It keeps no reference to the mesh, the materials or the settings, but one to
-/// the texels.
+/// Of one finest mesh, which must last until it is measured. It keeps no reference to the materials
+/// or the settings, but one to the texels.
 class Judge {
 public:
     /// `child_error`: by how much the mesh itself is off, metres.
@@ -47,6 +47,7 @@ public:
     const ray::SkinPtr& skin() const { return skin_; }
     /// Of the finest, in its skin.
     const ray::Scene& finest_scene() const { return reference_.scene(); }
+    const measure::Sides& finest_sides() const { return reference_.sampler().sides(); }
 
     void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
 
@@ -67,9 +68,9 @@ public:
     void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
     /// Makes any other candidate that is used from far enough (up to an error of `used_to`, where
     /// the next one takes over) as bright as the finest, by the colors of all its slots, and lets it
-    /// glow as much. Shades that much alike are one look to errors; but where pictures, as bright as
-    /// they can be made, agree only from more than twice a mesh's error on, half of that is its error:
-    /// what is near something else may have been all that closed a gap.
+    /// glow as much. Shades that much alike are one look to errors; but of a mesh counts what is seen
+    /// through gaps, and where it is off by a twelfth of the radius half of the pixel size from which
+    /// on pictures agree: what is near something else may have been all that closed a gap.
     void match_brightness(Candidate& candidate, const Mesh& finest, double used_to, const Job& job);
 
     /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
@@ -78,6 +79,7 @@ public:
 
 private:
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
+    void take_pictures_of(const Mesh& finest, int side, const Job& job);
     /// What a distance may be where an error is at most that.
     double distance_for(double error) const;
     ray::SkinPtr skin_of(std::span<const Material> materials) const;

@@ -8,6 +8,8 @@
 #include "build/prune.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lodestone::build {
 namespace {
@@ -59,13 +61,35 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
             ellipsoid->opacity);
 }
 
-/// `airy`: clear ones too, of these parts.
+/// How many solids may be of use beside the parts of the whole.
+size_t most_solids(const std::vector<Candidate>& candidates, const Whole& whole) {
+    constexpr size_t kMost = 32;
+    // It is used up to the error of the next one, and what its parts cost is asked for half way.
+    double next = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.kind != Kind::Mesh)
+            next = std::min(next, candidate.error);
+    }
+    const double least = kOff * whole.bound.radius;
+    const double used = std::isfinite(next) ? std::sqrt(least * std::max(next, least)) : least;
+    size_t out = kMost;
+    const auto useless = [&](size_t solids) {
+        const auto bytes = static_cast<double>(solids * kBytesPerPrimitive);
+        return bytes > whole.most || (whole.cheaper_from && whole.cheaper_from(bytes) <= used);
+    };
+    while (out > 0 && useless(out))
+        out /= 2;
+    return out;
+}
+
+/// `airy`: clear ones too, of these parts, of at most so many solids.
 void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
-                    const approximate::Crowd& crowd, double most, uint64_t seed, Judge& judge,
+                    const approximate::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
                     const Job& job) {
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
     options.shape = !airy;
+    options.most = most;
     std::vector<approximate::Clustered> levels =
         approximate::composites(mesh, judge.skin(), judge.attributes(), options, job);
     if (airy) {
@@ -74,8 +98,6 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
             levels.push_back(std::move(level));
     }
     for (const approximate::Clustered& level : levels) {
-        if (static_cast<double>(level.composite.solids.size() * kBytesPerPrimitive) > most)
-            continue;  // no use, and comparing takes long
         Candidate candidate;
         candidate.kind = Kind::Composite;
         candidate.composite = std::make_shared<const Composite>(level.composite);
@@ -119,13 +141,13 @@ void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
     const double solids = by_pictures ? 16 : 64;
     const double dearer =
         solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
-    // The cheapest has four.
-    const bool too_dear = whole.most < static_cast<double>(4 * kBytesPerPrimitive);
-    if (!too_dear && !judge.refracts() && whole.bytes > 2 * dearer &&
+    constexpr size_t kFewest = 4;  // solids of the cheapest
+    const size_t most = most_solids(candidates, whole);
+    if (most >= kFewest && !judge.refracts() && whole.bytes > 2 * dearer &&
         bytes_within(candidates, kOff * whole.bound.radius, whole.uses) > dearer) {
         if (!by_pictures)
             judge.take_pictures(mesh, true, job);
-        add_composites(candidates, mesh, by_pictures, crowd, whole.most, seed, judge, job);
+        add_composites(candidates, mesh, by_pictures, crowd, most, seed, judge, job);
     }
 }
 

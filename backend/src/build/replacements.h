@@ -27,6 +27,8 @@ struct Whole {
     double bytes = 0;   // as one mesh
     double most = 0;    // bytes of an occurrence that are no use any more
     bool many = false;  // its parts are objects
+    /// The error from which on its parts cost less than so many bytes; empty: never.
+    std::function<double(double bytes)> cheaper_from = {};
 };
 
 /// Pruned levels, primitives and composites of what is no environment, where they promise more than

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -25,24 +26,40 @@ constexpr int kRaysPerTriangle = 24;
 /// From which error on a mesh of so many triangles is no use.
 using Useless = std::function<double(size_t triangles)>;
 
+/// From the coarsest on: what will not be near enough, by the one before it, is not measured at all.
+/// Errors up to `told` are told in any case where they are measured.
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Useless& useless, Judge& judge, const Job& job) {
+                const Useless& useless, double told, Judge& judge, const Job& job) {
+    // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
+    // in groups: a tenth; of 275 that would have to be, one).
+    constexpr double kMostNearer = 4;
     if (targets.empty())
         return;
     Mesh plain;
     const Mesh& source = without_unseen_colors(mesh, materials, plain);
-    for (Mesh& level : simplify_with_lamps(source, materials, targets, job)) {
-        if (level.empty())
+    std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
+    std::vector<Candidate> measured;
+    double coarser = 0;
+    for (size_t i = levels.size(); i-- > 0;) {
+        Mesh& level = levels[i];
+        const double most = useless(level.triangles.size());
+        if (level.empty() || coarser > kMostNearer * most) {
+            coarser /= kMostNearer;
             continue;
+        }
         judge.repaint(level, job);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
-        judge.measure_mesh(candidate, job, useless(candidate.mesh->triangles.size()));
-        if (std::isfinite(candidate.error) && judge.shows_as_much(*candidate.mesh, job))
-            candidates.push_back(std::move(candidate));
+        candidate.unproven = true;
+        judge.measure_mesh(candidate, job, std::max(most, told));
+        coarser = std::min(candidate.error, std::max(most, told));
+        if (std::isfinite(candidate.error))
+            measured.push_back(std::move(candidate));
     }
+    candidates.insert(candidates.end(), std::make_move_iterator(measured.rbegin()),
+                      std::make_move_iterator(measured.rend()));
 }
 
 /// What a group's children cost within rising errors.
@@ -88,8 +105,8 @@ Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const J
                     uint64_t seed, const Job& job) {
     if (judge.refracts())
         return mesh;
-    const std::vector<uint8_t> seen =
-        measure::seen_from_outside(mesh, judge.finest_scene(), kRaysPerTriangle, seed, job);
+    const std::vector<uint8_t> seen = measure::seen_from_outside(
+        mesh, judge.finest_scene(), judge.finest_sides(), kRaysPerTriangle, seed, job);
     Mesh shell = subset(mesh, seen);
     if (shell.empty())
         return mesh;
@@ -133,14 +150,40 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
     });
 }
 
+/// Looks at those of `some` that nobody has looked at; what shows too little is in neither list any
+/// more. Whether it is so.
+bool drop_bald(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
+               const Job& job) {
+    bool dropped = false;
+    for (size_t i = some.size(); i-- > 0;) {
+        if (!some[i].unproven)
+            continue;
+        const bool good = judge.shows_as_much(*some[i].mesh, job);
+        some[i].unproven = false;
+        for (size_t k = all.size(); k-- > 0;) {
+            if (all[k].mesh != some[i].mesh)
+                continue;
+            all[k].unproven = false;
+            if (!good)
+                all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+        if (!good)
+            some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
+        dropped = dropped || !good;
+    }
+    return dropped;
+}
+
 /// Those that `keep` leaves of all (finest first), as bright as the finest. What turns out to be
-/// farther off than it was thought is one among all again.
-std::vector<Candidate> kept_of(std::vector<Candidate> all,
+/// farther off than it was thought is one among all again, what shows too little is gone.
+std::vector<Candidate> kept_of(std::vector<Candidate>& all,
                                const std::function<void(std::vector<Candidate>&)>& keep,
                                Judge& judge, const Mesh& finest, const Job& job) {
     for (;;) {
         std::vector<Candidate> kept = all;
         keep(kept);
+        if (drop_bald(kept, all, judge, job))
+            continue;
         bool farther = false;
         for (size_t i = 0; i < kept.size(); ++i) {
             const bool last = i + 1 == kept.size();
@@ -199,7 +242,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     if (out.attributes.empty())
         return out;
     const auto never = [](size_t) { return std::numeric_limits<double>::infinity(); };
-    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), never, judge, job);
+    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), never, 0, judge, job);
     Whole whole{finest.summary.bound, uses};
     whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
     whole.most = bytes_each(Kind::Mesh, finest.summary.cost.bytes, uses);
@@ -210,7 +253,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     const auto keep = [&](std::vector<Candidate>& candidates) {
         keep_useful(candidates, finest.summary.cost.bytes, uses);
     };
-    out.candidates = kept_of(std::move(out.candidates), keep, judge, *mesh, job);
+    out.candidates = kept_of(out.candidates, keep, judge, *mesh, job);
     return out;
 }
 
@@ -249,6 +292,9 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     whole.bytes = static_cast<double>(shell.triangles.size() * kBytesPerTriangle);
     whole.most = children.bytes() - static_cast<double>(kBytesPerOccurrence);
     whole.many = reference.occurrences >= kManyChildren;
+    whole.cheaper_from = [&](double bytes) {
+        return children.cheaper_from(bytes + static_cast<double>(kBytesPerOccurrence));
+    };
     const size_t count = shell.triangles.size();
     const size_t first = std::min(count, triangles_for(whole.most, uses[group]));
     std::vector<size_t> targets = targets_of(count + 1, first, settings.level_ratio);
@@ -262,9 +308,10 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
             return std::numeric_limits<double>::infinity();
         const double own = bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
-        return std::max(children.cheaper_from(own), kOff * finest.bound.radius);
+        return children.cheaper_from(own);
     };
-    add_levels(out.candidates, shell, reference.materials, targets, useless, judge, job);
+    add_levels(out.candidates, shell, reference.materials, targets, useless,
+               kOff * finest.bound.radius, judge, job);
     if (!environment)
         add_replacements(
             out.candidates, shell, [&] { return crowd_in(shell, occurrence); }, whole,
@@ -291,15 +338,19 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     std::vector<Candidate> useful = kept_of(out.candidates, keep, judge, reference.mesh, job);
     if (useful.empty()) {
         // Every group has a stand-in, even one that saves nothing but the occurrences: the cheapest.
-        if (out.candidates.empty()) {
+        while (useful.empty() && !out.candidates.empty()) {
+            useful = out.candidates;
+            keep_useful(useful, ~uint64_t{0});
+            useful = {useful.back()};
+            drop_bald(useful, out.candidates, judge, job);
+        }
+        if (useful.empty()) {
             Candidate all;
             all.mesh = std::make_shared<Mesh>(std::move(shell));
             all.materials = reference.materials;
             judge.measure_mesh(all, job);
-            out.candidates.push_back(std::move(all));
+            useful.push_back(std::move(all));
         }
-        keep_useful(out.candidates, ~uint64_t{0});
-        useful = {out.candidates.back()};
         judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
                                job);
     }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace lodestone::measure {
@@ -216,11 +217,22 @@ Misses compare(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
     return out;
 }
 
-glm::dvec4 total(const std::vector<glm::vec4>& samples) {
-    glm::dvec4 out(0.0);
-    for (const glm::vec4& sample : samples)
-        out += glm::dvec4(sample);
-    return out;
+/// What a slot shows where nothing is looked up, and whether something is.
+struct Shows {
+    ray::Shown mean;
+    bool varies = false;
+
+    Shows(const Mesh& mesh, const ray::Skin* skin, size_t slot) {
+        if (skin == nullptr)
+            return;
+        const auto number = static_cast<uint16_t>(slot);
+        mean = skin->mean(number);
+        varies = skin->varies(mesh, number);
+    }
+};
+
+glm::dvec4 light_of(const ray::Shown& shown, double light) {
+    return {light * shown.color + shown.emission, 1};
 }
 
 }  // namespace
@@ -253,7 +265,10 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::Scene& sce
         const auto line = static_cast<double>(number / row % row);
         places_[number] = {2 * (column + u[0]) / side_ - 1, 2 * (line + u[1]) / side_ - 1};
     }
-    finest_ = shown(trace(finest, scene, skin, job), skin.get());
+    const Traced traced = trace(finest, scene, skin, job);
+    finest_ = shown(traced, skin.get());
+    finest_points_ = points_of(traced);
+    finest_total_ = total(traced, skin.get());
 }
 
 AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::SkinPtr& skin,
@@ -301,6 +316,15 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
                                     static_cast<float>(hit.v), static_cast<float>(light)};
         }
     });
+    for (const Traced::Sample& sample : out.samples_) {
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const uint16_t slot = mesh.slot(sample.triangle);
+        if (out.by_slot_.size() <= slot)
+            out.by_slot_.resize(slot + size_t{1});
+        out.by_slot_[slot].light += sample.light;
+        ++out.by_slot_[slot].count;
+    }
     return out;
 }
 
@@ -308,40 +332,50 @@ AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
                                                        const ray::Skin* skin) const {
     Pictures out(traced.samples_.size(), glm::vec4(0.0f));
     const Mesh& mesh = *traced.mesh_;
-    std::vector<ray::Shown> means;  // by slot
-    std::vector<uint8_t> varies;
+    std::vector<Shows> slots;
+    for (size_t slot = 0; slot < traced.by_slot_.size(); ++slot)
+        slots.emplace_back(mesh, skin, slot);
     for (size_t i = 0; i < out.size(); ++i) {
         const Traced::Sample& sample = traced.samples_[i];
         if (sample.triangle == ray::kNoTriangle)
             continue;
-        const uint16_t slot = mesh.slot(sample.triangle);
-        for (size_t next = means.size(); next <= slot; ++next) {
-            const auto number = static_cast<uint16_t>(next);
-            means.push_back(skin != nullptr ? skin->mean(number) : ray::Shown{});
-            varies.push_back(skin != nullptr && skin->varies(mesh, number) ? 1 : 0);
-        }
-        const ray::Shown shown = skin != nullptr && varies[slot] != 0
-                                     ? skin->at(mesh, sample.triangle, sample.u, sample.v)
-                                     : means[slot];
-        const double light = sample.light;
-        out[i] = glm::vec4(glm::dvec4(light * shown.color + shown.emission, 1));
+        const Shows& slot = slots[mesh.slot(sample.triangle)];
+        out[i] = glm::vec4(
+            light_of(slot.varies ? skin->at(mesh, sample.triangle, sample.u, sample.v) : slot.mean,
+                     sample.light));
     }
     return out;
 }
 
-Agreement AgreementReference::brightness_of(const Pictures& other) const {
-    Agreement out;
-    const glm::dvec4 ours = total(finest_);
-    const glm::dvec4 theirs = total(other);
-    out.coverage = ours.w > 0 ? theirs.w / ours.w : 1;
-    for (int i = 0; i < 3; ++i)
-        out.light[i] = theirs[i] > 0 ? ours[i] / theirs[i] : 1;
+glm::dvec4 AgreementReference::total(const Traced& traced, const ray::Skin* skin) {
+    const Mesh& mesh = *traced.mesh_;
+    glm::dvec4 out(0.0);
+    std::vector<uint8_t> varies;
+    for (size_t number = 0; number < traced.by_slot_.size(); ++number) {
+        const Shows slot(mesh, skin, number);
+        const Traced::Sum& sum = traced.by_slot_[number];
+        varies.push_back(slot.varies ? 1 : 0);
+        if (!slot.varies)
+            out +=
+                glm::dvec4(sum.light * slot.mean.color + sum.count * slot.mean.emission, sum.count);
+    }
+    if (std::find(varies.begin(), varies.end(), 1) == varies.end())
+        return out;
+    for (const Traced::Sample& sample : traced.samples_) {
+        if (sample.triangle != ray::kNoTriangle && varies[mesh.slot(sample.triangle)] != 0)
+            out += light_of(skin->at(mesh, sample.triangle, sample.u, sample.v), sample.light);
+    }
     return out;
 }
 
 Agreement AgreementReference::brightness_of(const Traced& stand_in,
                                             const ray::SkinPtr& skin) const {
-    return brightness_of(shown(stand_in, skin.get()));
+    Agreement out;
+    const glm::dvec4 theirs = total(stand_in, skin.get());
+    out.coverage = finest_total_.w > 0 ? theirs.w / finest_total_.w : 1;
+    for (int i = 0; i < 3; ++i)
+        out.light[i] = theirs[i] > 0 ? finest_total_[i] / theirs[i] : 1;
+    return out;
 }
 
 Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
@@ -350,14 +384,18 @@ Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
 }
 
 Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& skin) const {
-    const Pictures other = shown(stand_in, skin.get());
-    Agreement out = brightness_of(other);
+    Agreement out = brightness_of(stand_in, skin);
+    out.error = agree_from(shown(stand_in, skin.get())).error;
+    return out;
+}
+
+AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) const {
     const double sample = 2 * radius_ / side_;
     // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
     // power of the size, nearly. Pictures of a pixel each are few: by chance they may differ alone.
     double last_misses = 0;
     int last = 0;
-    out.error = 2 * radius_;
+    Sizes out{2 * radius_, false};
     for (size_t i = kPixelSides.size(); i-- > 0;) {
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
@@ -380,7 +418,74 @@ Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& ski
         last = pixel;
         out.error = pixel * sample;
     }
+    out.smallest = true;
     return out;
+}
+
+std::vector<glm::vec3> AgreementReference::points_of(const Traced& traced) const {
+    std::vector<glm::vec3> out(traced.samples_.size(),
+                               glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+    const Mesh& mesh = *traced.mesh_;
+    for (size_t i = 0; i < out.size(); ++i) {
+        const Traced::Sample& sample = traced.samples_[i];
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const Triangle& t = mesh.triangles[sample.triangle];
+        const glm::dvec3 a(mesh.positions[t.x]);
+        out[i] = glm::vec3(a + double(sample.u) * (glm::dvec3(mesh.positions[t.y]) - a) +
+                           double(sample.v) * (glm::dvec3(mesh.positions[t.z]) - a) - center_);
+    }
+    return out;
+}
+
+double AgreementReference::gaps_of(const Traced& stand_in, const ray::SkinPtr& skin,
+                                   double off) const {
+    constexpr double kTimes = 2;
+    constexpr int kMostAround = 6;  // samples
+    if (!(radius_ > 0))
+        return 0;
+    const double spacing = 2 * radius_ / side_;
+    const auto reach = static_cast<float>(kTimes * off + 1.5 * spacing);
+    const auto around = static_cast<int>(
+        std::clamp(std::ceil(kTimes * off / spacing), 1.0, static_cast<double>(kMostAround)));
+    const std::vector<glm::vec3> theirs = points_of(stand_in);
+    const auto is_near = [&](size_t at, const glm::vec3& point) {
+        const glm::vec3 arm = theirs[at] - point;
+        return glm::dot(arm, arm) <= reach * reach;  // not where there is nothing
+    };
+    const auto seen = [&](size_t number) {
+        const glm::vec3& point = finest_points_[number];
+        if (is_near(number, point))
+            return true;
+        const auto row = static_cast<size_t>(side_);
+        const size_t first = number - number % (row * row);  // of its picture
+        const auto column = static_cast<int>(number % row);
+        const auto line = static_cast<int>(number / row % row);
+        for (int y = std::max(line - around, 0); y <= std::min(line + around, side_ - 1); ++y) {
+            for (int x = std::max(column - around, 0); x <= std::min(column + around, side_ - 1);
+                 ++x) {
+                if (is_near(first + static_cast<size_t>(y) * row + static_cast<size_t>(x), point))
+                    return true;
+            }
+        }
+        return false;
+    };
+    std::vector<size_t> gaps;
+    for (size_t i = 0; i < finest_points_.size(); ++i) {
+        if (std::isfinite(finest_points_[i].x) && !seen(i))
+            gaps.push_back(i);
+    }
+    const Pictures all = shown(stand_in, skin.get());
+    // Where much less is covered in all, what is gone was nowhere near.
+    if (brightness_of(stand_in, skin).coverage < 1 - kMostCoverageOff)
+        return agree_from(all).error;
+    if (gaps.empty())
+        return 0;
+    Pictures other = finest_;
+    for (const size_t i : gaps)
+        other[i] = all[i];
+    const Sizes sizes = agree_from(other);
+    return sizes.smallest ? 0 : sizes.error;
 }
 
 }  // namespace lodestone::measure

@@ -35,6 +35,8 @@ public:
     static constexpr int kSide = 90;
     /// Enough for what is coarse anyway, four times faster.
     static constexpr int kCoarseSide = 45;
+    /// Enough for how bright something is, and for pixels of a sixth of its size.
+    static constexpr int kBrightSide = 30;
 
     /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
@@ -55,7 +57,12 @@ public:
     Traced trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
     /// `skin` is the one it was traced in, or differs from that in colors and scales of textures alone.
     Agreement of(const Traced& stand_in, const ray::SkinPtr& skin) const;
-    /// The same without the error.
+    /// What is seen through gaps: the smallest pixel size at which pictures agree that differ only
+    /// where a point of the finest is seen, but no visible point of the stand-in is within twice `off`
+    /// (and the samples' distance); or of() where the stand-in covers much less in all. 0 where they
+    /// agree at all sizes.
+    double gaps_of(const Traced& stand_in, const ray::SkinPtr& skin, double off) const;
+    /// As of(), without the error.
     Agreement brightness_of(const Traced& stand_in, const ray::SkinPtr& skin) const;
 
 private:
@@ -67,7 +74,15 @@ private:
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
     Pictures shown(const Traced& traced, const ray::Skin* skin) const;
-    Agreement brightness_of(const Pictures& other) const;
+    /// All of it.
+    static glm::dvec4 total(const Traced& traced, const ray::Skin* skin);
+    /// Of each sample, from the middle; not finite where there is nothing.
+    std::vector<glm::vec3> points_of(const Traced& traced) const;
+    struct Sizes {
+        double error = 0;      // as Agreement::error
+        bool smallest = true;  // they agree at the smallest size
+    };
+    Sizes agree_from(const Pictures& other) const;
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
@@ -75,6 +90,8 @@ private:
     std::vector<glm::dvec2>
         places_;  // of each sample in its picture, in half sides from the middle
     Pictures finest_;
+    std::vector<glm::vec3> finest_points_;
+    glm::dvec4 finest_total_{0.0};
 };
 
 class AgreementReference::Traced {
@@ -86,10 +103,16 @@ class AgreementReference::Traced {
         float v = 0;
         float light = 0;
     };
+    /// What the samples of a slot have together.
+    struct Sum {
+        double light = 0;
+        double count = 0;
+    };
     explicit Traced(const Mesh& mesh) : mesh_(&mesh) {}
 
     const Mesh* mesh_;
     std::vector<Sample> samples_;
+    std::vector<Sum> by_slot_;
 };
 
 }  // namespace lodestone::measure

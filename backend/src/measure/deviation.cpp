@@ -5,8 +5,10 @@
 #include "measure/point_tree.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <set>
 #include <tuple>
 
@@ -85,6 +87,17 @@ Deviation summary(const std::vector<Sample>& samples, const std::vector<double>&
     return out;
 }
 
+/// Whether the quantile of all samples is above that.
+bool is_above(const std::vector<Sample>& samples, const std::vector<double>& places, double least) {
+    double above = 0;
+    double all = 0;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        all += samples[i].weight;
+        above += places[i] > least ? samples[i].weight : 0;
+    }
+    return above > (1 - kQuantile) * all;
+}
+
 /// Whether the error of all samples is larger than `useless` without any doubt, by some of them.
 bool surely_above(double useless, const std::vector<Sample>& samples,
                   const std::vector<size_t>& some, const std::vector<double>& places,
@@ -119,6 +132,45 @@ bool surely_above(double useless, const std::vector<Sample>& samples,
         return moved.count >= kFewest && moved.above > kMoves * moved.all &&
                moved.all > kLeastShare * place.all;
     });
+}
+
+constexpr size_t kEvery = 8;  // divides a block
+// At so many samples of each look, if it has them, what became of it is asked; what solids of a mean
+// color miss changes little from one sample to the next, and takes long.
+constexpr size_t kAsked = 512;
+constexpr size_t kAskedOfMixed = 256;
+
+/// 1 for the samples that are asked for looks: at least `wanted` of each look, evenly, or all.
+std::vector<uint8_t> asked_for_looks(const std::vector<Sample>& samples, size_t wanted) {
+    std::map<uint16_t, size_t> counts;
+    for (const Sample& sample : samples)
+        ++counts[sample.look];
+    counts.erase(kAnyLook);
+    std::map<uint16_t, size_t> ranks;
+    std::vector<uint8_t> out(samples.size(), 0);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const auto at = counts.find(samples[i].look);
+        if (at == counts.end())
+            continue;
+        const size_t stride = std::clamp<size_t>(at->second / wanted, 1, kEvery);
+        const size_t rank = ranks[samples[i].look]++;
+        out[i] = i % kEvery == 0 || rank == 0 || (stride < kEvery && rank % stride == 0) ? 1 : 0;
+    }
+    return out;
+}
+
+/// Gives samples that were not asked what the one of their look before them has.
+void spread(const std::vector<Sample>& samples, const std::vector<uint8_t>& asked,
+            std::vector<double>& moves) {
+    std::map<uint16_t, double> last;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        if (samples[i].look == kAnyLook)
+            continue;
+        if (asked[i] != 0)
+            last[samples[i].look] = moves[i];
+        else
+            moves[i] = last[samples[i].look];
+    }
 }
 
 /// Whether two places can be seen at once: not the grass from above and the road from below.
@@ -224,7 +276,43 @@ public:
         return most;
     }
 
+    /// Whether these are the samples that numbers are of.
+    bool holds(const std::vector<Sample>& samples) const { return &samples == &visible_; }
+
+    /// The same of visible point `number`, however far; infinite where they never mix to it. Kept
+    /// for the next stand-in of that color.
+    double mixing_radius_at(size_t number, const glm::dvec3& color) const {
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        const std::shared_ptr<const Radii> radii = radii_of(color);
+        std::atomic<double>& known = radii->by_number[number];
+        double radius = known.load(std::memory_order_relaxed);
+        if (radius < 0) {
+            radius = mixing_radius(visible_[number], color, kNever);
+            known.store(radius, std::memory_order_relaxed);
+        }
+        return radius;
+    }
+
 private:
+    /// Mixing radii for one color, by visible point; negative where not asked for yet.
+    struct Radii {
+        glm::dvec3 color;
+        std::unique_ptr<std::atomic<double>[]> by_number;
+    };
+
+    std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const {
+        const std::lock_guard lock(mutex_);
+        if (!radii_ || radii_->color != color) {
+            auto fresh = std::make_shared<Radii>();
+            fresh->color = color;
+            fresh->by_number = std::make_unique<std::atomic<double>[]>(visible_.size());
+            for (size_t i = 0; i < visible_.size(); ++i)
+                fresh->by_number[i].store(-1, std::memory_order_relaxed);
+            radii_ = std::move(fresh);
+        }
+        return radii_;
+    }
+
     struct Mixed {
         glm::dvec3 point;
         glm::dvec3 side;
@@ -263,6 +351,8 @@ private:
     std::vector<uint8_t> glowing_;  // by look
     std::map<uint16_t, PointTree> by_look_;
     std::vector<Mixed> mixed_;
+    mutable std::mutex mutex_;
+    mutable std::shared_ptr<const Radii> radii_;
 };
 
 /// What the samples of one mesh are compared with.
@@ -300,7 +390,9 @@ struct DeviationReference::Against {
         return palette != nullptr && other.whole().triangles() > 0 && !finest.has(other.look_of(0));
     }
     /// How far a look was moved at a sample where the other mesh shows the look `theirs`.
-    double moved_by(const Sample& sample, uint16_t theirs, const glm::dvec3& color) const {
+    double moved_by(const std::vector<Sample>& samples, size_t number, uint16_t theirs,
+                    const glm::dvec3& color) const {
+        const Sample& sample = samples[number];
         const bool mixed = !finest.has(theirs);
         double least = none;
         // A lamp that is gone is missed from as far as anything is seen, though what is there
@@ -311,7 +403,12 @@ struct DeviationReference::Against {
         least = std::min(least, other.nearest(sample.look, sample.point, least).distance);
         if (glows && !(glm::length(palette->emission(theirs)) > 0))
             return least;
-        return mixed ? seen.mixing_radius(sample, color, least) : least;
+        if (!mixed)
+            return least;
+        // Whatever shows it, the same color mixes in the same place: solids share their color.
+        if (least < none || !seen.holds(samples))
+            return seen.mixing_radius(sample, color, least);
+        return std::min(least, seen.mixing_radius_at(number, color));
     }
     /// How far the same texture slid along the surface at a sample where the other shows another
     /// color.
@@ -324,7 +421,9 @@ struct DeviationReference::Against {
         return seen.mixing_radius(sample, color, seen.nearest_of_color(sample, color, least));
     }
     /// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
-    double move_of(const Sample& sample, const ray::Closest& at) const {
+    double move_of(const std::vector<Sample>& samples, size_t number,
+                   const ray::Closest& at) const {
+        const Sample& sample = samples[number];
         const uint16_t theirs = other.look_of(at.triangle);
         if (palette == nullptr)
             return 0;
@@ -335,71 +434,81 @@ struct DeviationReference::Against {
         const bool lamp = theirs != sample.look && seen.glows(sample.look);
         if ((varies || sample.varies) && !lamp && Looks::alike(color, sample.color))
             return 0;
-        return theirs == sample.look ? slid_by(sample, at, color) : moved_by(sample, theirs, color);
+        return theirs == sample.look ? slid_by(sample, at, color)
+                                     : moved_by(samples, number, theirs, color);
     }
 };
 
 /// From the samples to the nearest points of the other mesh. What is not near the quantile is found
-/// out no further than that it is below.
+/// out no further than that it is below, and looks are asked for at some samples for all.
 Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
                                       double useless, const Job& job) {
-    constexpr size_t kEvery = 8;
-    constexpr size_t kThinned = 4;  // divides that, and a block
     constexpr size_t kFewSamples = 512;
     constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
     std::vector<double> moves(samples.size(), 0);
     const ray::Scene& scene = against.other.whole();
-    // Where only the distance counts, any point that is near enough will do.
-    const bool bare = against.shows_one_thing() ||
-                      std::all_of(samples.begin(), samples.end(),
-                                  [](const Sample& sample) { return sample.look == kAnyLook; });
-    // What solids of a mean color miss changes little from one sample to the next, and takes long.
-    const size_t thinned = against.shows_one_thing() && against.is_mixed() ? kThinned : 1;
-    const auto visit = [&](size_t step, double enough) {
+    const bool one_thing = against.shows_one_thing();
+    const std::vector<uint8_t> asked =
+        asked_for_looks(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
+    // `before`: what was near enough the last time, and has to be found out better.
+    const auto visit = [&](size_t step, double enough, double before) {
+        const bool again = before < std::numeric_limits<double>::infinity();
         const size_t count = (samples.size() + step - 1) / step;
         parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
             uint32_t last = ray::kNoTriangle;
+            size_t known = samples.size();  // whose place was found before
             for (size_t k = block * kBlock; k < std::min(count, (block + 1) * kBlock); ++k) {
                 const size_t i = k * step;
-                if (step == 1 && i % kEvery == 0)
+                const Sample& sample = samples[i];
+                bool looks = asked[i] != 0;
+                if ((step == 1 && i % kEvery == 0) ||
+                    (again && ((looks && !one_thing) || places[i] > before)))
                     continue;
-                // Neighbors in the list are mostly neighbors in space.
-                const ray::Closest closest = scene.closest_point(
-                    samples[i].point, std::numeric_limits<double>::infinity(), last, enough);
+                looks = looks && !again;
+                if (!looks && known < samples.size()) {
+                    // What is beside something that is near is near.
+                    const double most =
+                        places[known] + glm::length(sample.point - samples[known].point);
+                    if (most <= enough) {
+                        places[i] = most;
+                        continue;
+                    }
+                }
+                // Neighbors in the list are mostly neighbors in space. Where only the distance
+                // counts, any point that is near enough will do.
+                const ray::Closest closest =
+                    scene.closest_point(sample.point, std::numeric_limits<double>::infinity(), last,
+                                        looks && !one_thing ? 0 : enough);
                 // Nothing in reach at all: a scene of triangles that have no finite corners.
-                places[i] = std::isfinite(closest.distance) ? closest.distance : against.none;
+                const bool found = std::isfinite(closest.distance);
+                places[i] = found ? closest.distance : against.none;
                 last = closest.triangle;
-                if (samples[i].look == kAnyLook || !std::isfinite(closest.distance))
-                    continue;
-                const size_t before = i - i % thinned;
-                moves[i] =
-                    before < i && !samples[i].varies && samples[before].look == samples[i].look
-                        ? moves[before]
-                        : against.move_of(samples[i], closest);
+                known = i;
+                if (looks && found)
+                    moves[i] = against.move_of(samples, i, closest);
             }
         });
     };
-    visit(kEvery, 0);
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    visit(kEvery, 0, kNever);
     std::vector<size_t> some;
     for (size_t i = 0; i < samples.size(); i += kEvery)
         some.push_back(i);
     if (surely_above(useless, samples, some, places, moves))
         return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     const bool many = samples.size() >= kFewSamples;
-    const double enough = bare && many ? quantile(samples, places, std::move(some), kBelow) : 0;
-    visit(1, enough);
-    if (enough > 0) {
-        double above = 0;
-        double all = 0;
-        for (size_t i = 0; i < samples.size(); ++i) {
-            all += samples[i].weight;
-            above += places[i] > enough ? samples[i].weight : 0;
-        }
-        if (!(above > (1 - kQuantile) * all))
-            visit(1, 0);
+    double enough = many ? quantile(samples, places, std::move(some), kBelow) : 0;
+    visit(1, enough, kNever);
+    for (const double less : {0.8, 0.5, 0.0}) {
+        if (!(enough > 0) || is_above(samples, places, enough))
+            break;
+        const double before = enough;
+        enough *= less;
+        visit(1, enough, before);
     }
+    spread(samples, asked, moves);
     return summary(samples, places, moves);
 }
 
@@ -407,17 +516,17 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
                                        const Surface& surface, const Job& job)
     : options_(options),
       scenes_(finest, surface.looks, surface.skin, ray::Uses::Everything),
+      sampler_(finest, scenes_.whole(), options.seed),
       palette_(surface.palette),
       diameter_(2 * radius_of(finest)) {
-    const VisibleSampler sampler(finest, scenes_.whole(), options.seed);
-    if (!sampler.empty()) {
-        add_visible_points(finest, sampler, surface, options.samples, job, visible_);
+    if (!sampler_.empty()) {
+        add_visible_points(finest, sampler_, surface, options.samples, job, visible_);
         const std::vector<WeightedVertex> vertices =
             weighted_vertices(finest, options.most_vertices, options.seed);
         if (surface.skin && surface.skin->transmits())
             add_vertex_samples(finest, scenes_.whole(), vertices, visible_);
         else
-            add_visible_vertices(finest, scenes_.whole(), sampler.sides(), vertices,
+            add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), vertices,
                                  ray_lift(diameter_ / 2), options.seed, job, visible_);
     }
     seen_ = std::make_unique<const Seen>(visible_, palette_);

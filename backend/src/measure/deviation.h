@@ -55,6 +55,8 @@ public:
 
     /// Of the finest, as it was made for this.
     const ray::Scene& scene() const { return scenes_.whole(); }
+    /// Likewise; of the mesh it was made from, which must still be there.
+    const VisibleSampler& sampler() const { return sampler_; }
 
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return visible_.size(); }
@@ -67,6 +69,7 @@ private:
 
     DeviationOptions options_;
     LookScenes scenes_;
+    VisibleSampler sampler_;
     const Looks* palette_;
     std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
     std::unique_ptr<const Seen> seen_;    // the same, to be searched

@@ -5,27 +5,31 @@ namespace lodestone::measure {
 
 LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
                        ray::Uses uses)
-    : whole_(mesh, skin, uses), looks_(looks.begin(), looks.end()) {
+    : mesh_(&mesh), skin_(skin), whole_(mesh, skin, uses), looks_(looks.begin(), looks.end()) {
     if (!looks_.empty() && looks_.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, looks_.size(), " looks for ", mesh.triangles.size(),
              " triangles");
-    std::map<uint16_t, std::vector<uint8_t>> keep;
-    for (size_t i = 0; i < looks_.size(); ++i)
-        keep.try_emplace(looks_[i], looks_.size(), uint8_t{0}).first->second[i] = 1;
-    for (const auto& [look, triangles] : keep) {
-        if (keep.size() > 1)
-            by_look_.emplace(look,
-                             ray::Scene(subset(mesh, triangles), skin, ray::Uses::ClosestPoints));
-        else
-            by_look_.emplace(
-                look, ray::Scene(Mesh{}, nullptr, ray::Uses::ClosestPoints));  // the whole serves
+    for (size_t i = 0; i < looks_.size(); ++i) {
+        if (i == 0 || looks_[i] != looks_[i - 1])
+            by_look_.try_emplace(looks_[i], nullptr);
     }
+    for (auto& [look, scene] : by_look_)
+        scene = std::make_unique<OfLook>();
 }
 
 ray::Closest LookScenes::nearest(uint16_t look, const glm::dvec3& point, double radius) const {
     if (!has(look))
         return {};
-    return (several() ? by_look_.at(look) : whole_).closest_point(point, radius);
+    if (!several())
+        return whole_.closest_point(point, radius);
+    OfLook& own = *by_look_.at(look);
+    std::call_once(own.once, [&] {
+        std::vector<uint8_t> keep(looks_.size(), 0);
+        for (size_t i = 0; i < keep.size(); ++i)
+            keep[i] = looks_[i] == look ? 1 : 0;
+        own.scene.emplace(subset(*mesh_, keep), skin_, ray::Uses::ClosestPoints);
+    });
+    return own.scene->closest_point(point, radius);
 }
 
 }  // namespace lodestone::measure

@@ -5,6 +5,9 @@
 #include "ray/scene.h"
 
 #include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +16,8 @@ namespace lodestone::measure {
 class LookScenes {
 public:
     /// `looks` is empty (all alike) or one a triangle; the skin may be null; `uses` is what the
-    /// whole is asked for. Throws as ray::Scene does.
+    /// whole is asked for. The mesh must last as long as nearest() is called. Throws as ray::Scene
+    /// does.
     LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
                ray::Uses uses);
 
@@ -24,14 +28,22 @@ public:
     }
     bool several() const { return by_look_.size() > 1; }
     bool has(uint16_t look) const { return looks_.empty() ? look == 0 : by_look_.count(look) != 0; }
-    /// The nearest point of a look; at infinity when there is none within `radius`.
+    /// The nearest point of a look; at infinity when there is none within `radius`. From any thread.
     ray::Closest nearest(uint16_t look, const glm::dvec3& point,
                          double radius = std::numeric_limits<double>::infinity()) const;
 
 private:
+    /// Made when it is first asked for: most never are.
+    struct OfLook {
+        std::once_flag once;
+        std::optional<ray::Scene> scene;
+    };
+
+    const Mesh* mesh_;
+    ray::SkinPtr skin_;
     ray::Scene whole_;
     std::vector<uint16_t> looks_;
-    std::map<uint16_t, ray::Scene> by_look_;
+    std::map<uint16_t, std::unique_ptr<OfLook>> by_look_;
 };
 
 }  // namespace lodestone::measure

@@ -100,18 +100,37 @@ bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const U
     return static_cast<double>(right) >= kLeastRight * static_cast<double>(voters.size());
 }
 
+/// Whether a level has the one slot that all points show, so that there is nothing to vote on.
+bool shows_one_slot(const Mesh& level, const std::vector<SurfaceSample>& points) {
+    const uint16_t slot = level.slots.front();
+    return std::all_of(points.begin(), points.end(),
+                       [&](const SurfaceSample& point) {
+                           return point.look == kAnyLook || point.slot == slot;
+                       }) &&
+           std::all_of(level.slots.begin(), level.slots.end(),
+                       [&](uint16_t other) { return other == slot; });
+}
+
+/// Every so many points vote: some dozens a triangle are enough.
+size_t step_for(size_t triangles, size_t points) {
+    constexpr size_t kVotes = 24;
+    constexpr size_t kMostStep = 8;  // points of one place lie in a row
+    return std::clamp<size_t>(points / (kVotes * std::max<size_t>(triangles, 1)), 1, kMostStep);
+}
+
 }  // namespace
 
 void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& job) const {
-    if (level.slots.empty())
+    if (level.slots.empty() || shows_one_slot(level, visible_))
         return;
+    const size_t step = step_for(level.triangles.size(), visible_.size());
     const ray::Scene scene(level, nullptr, ray::Uses::ClosestPoints);
     std::vector<uint32_t> nearest(visible_.size(), ray::kNoTriangle);
     parallel_for((visible_.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         uint32_t last = ray::kNoTriangle;
         for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
-            if (visible_[i].look == kAnyLook)
+            if (visible_[i].look == kAnyLook || i % step != 0)
                 continue;
             nearest[i] =
                 scene

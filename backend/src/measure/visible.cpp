@@ -231,6 +231,14 @@ Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
 Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
                         const VisibleOptions& options, std::span<const uint32_t> tags,
                         const Job& job) {
+    return measure_visible(
+        mesh, VisibleSampler(mesh, scene, options.seed, options.casting, options.relative_error),
+        skin, options, tags, job);
+}
+
+Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
+                        const VisibleOptions& options, std::span<const uint32_t> tags,
+                        const Job& job) {
     if (!tags.empty() && tags.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, tags.size(), " tags for ", mesh.triangles.size(),
              " triangles");
@@ -241,8 +249,6 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
         if (tag >= out.hits_by_tag.size())
             out.hits_by_tag.resize(tag + 1, 0);
     }
-    const VisibleSampler sampler(mesh, scene, options.seed, options.casting,
-                                 options.relative_error);
     Attributes& attributes = out.attributes;
     attributes.surface_area = sampler.possible_area();
     if (sampler.empty())
@@ -295,13 +301,18 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
 
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job) {
+    return seen_from_outside(mesh, scene, sides_of(mesh, scene), rays_per_triangle, seed, job);
+}
+
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
+                                       const Sides& sides, int rays_per_triangle, uint64_t seed,
+                                       const Job& job) {
     if (scene.triangles() != mesh.triangles.size())
         fail(Status::InvalidArgument, "a scene of ", scene.triangles(),
              " triangles does not hold a mesh of ", mesh.triangles.size());
     std::vector<uint8_t> seen(mesh.triangles.size(), 0);
     if (mesh.empty())
         return seen;
-    const Sides sides = sides_of(mesh, scene);
     const double lift = ray_lift(radius_of(mesh));
     double mean = 0;
     for (size_t i = 0; i < seen.size(); ++i)

@@ -43,6 +43,11 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         const Job& job = {});
 
+/// The same with a sampler of it made before, of this seed, casting and relative error.
+Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
+                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
+                        const Job& job = {});
+
 /// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
 /// dropped before simplifying. One larger than the mean has as many times more rays, to 64 times:
 /// whatever tears open above it would otherwise show what is behind. Rays leave random points in random directions (cosine), on both
@@ -50,5 +55,9 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
 /// Same bits on any number of threads.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});
+/// The same where the sides are known.
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
+                                       const Sides& sides, int rays_per_triangle, uint64_t seed,
+                                       const Job& job = {});
 
 }  // namespace lodestone::measure
