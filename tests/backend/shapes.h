@@ -25,6 +25,26 @@ inline Mesh quad(float width, float height) {
     return mesh;
 }
 
+/// Closed and smooth: a tube of radius .3 around the unit circle.
+inline Mesh torus(uint32_t around, uint32_t across) {
+    Mesh mesh;
+    for (uint32_t i = 0; i < around; ++i) {
+        for (uint32_t j = 0; j < across; ++j) {
+            const float u = 6.2831853f * static_cast<float>(i) / static_cast<float>(around);
+            const float v = 6.2831853f * static_cast<float>(j) / static_cast<float>(across);
+            const float r = 1 + 0.3f * std::cos(v);
+            mesh.positions.emplace_back(r * std::cos(u), r * std::sin(u), 0.3f * std::sin(v));
+            const uint32_t a = i * across + j;
+            const uint32_t b = (i + 1) % around * across + j;
+            const uint32_t c = (i + 1) % around * across + (j + 1) % across;
+            const uint32_t d = i * across + (j + 1) % across;
+            mesh.triangles.emplace_back(a, b, c);
+            mesh.triangles.emplace_back(a, c, d);
+        }
+    }
+    return mesh;
+}
+
 inline Mesh sphere(double radius, int subdivisions = 4) {
     return tessellate_ellipsoid({glm::dvec3(0.0), glm::dmat3(1.0), glm::dvec3(radius)},
                                 subdivisions);

@@ -97,6 +97,20 @@ TEST_F(Hierarchy, CubeBecomesABoxThatIsTheCube) {
     EXPECT_LT(box.summary.error, 0.02);
 }
 
+TEST_F(Hierarchy, SmoothClosedMeshKeepsItsFineLevels) {
+    // Errors that grew on the way down to a floor of coarse pictures let no level but the last one stay.
+    Model model;
+    model.root = models::add_leaf(model, "ring", shapes::torus(80, 32),
+                                  models::colored("red", {0.8, 0.1, 0.1}, 0.3));
+    build_in(model, scratch("ring"));
+    const auto& levels = model.objects[model.root].representations;
+    ASSERT_GE(levels.size(), 6u);
+    for (size_t i = 1; i < 5; ++i) {
+        ASSERT_EQ(levels[i].summary.kind, Kind::Mesh) << i;
+        EXPECT_GT(3 * levels[i].summary.cost.triangles, levels[i - 1].summary.cost.triangles) << i;
+    }
+}
+
 TEST_F(Hierarchy, RoomHasListsInOrderAndAStandInEverywhere) {
     Model model = room();
     const build::Report report = build_in(model, scratch("room"));

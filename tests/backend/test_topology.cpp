@@ -43,25 +43,6 @@ Topology topology_of(const Mesh& mesh) {
     return out;
 }
 
-Mesh torus(uint32_t around, uint32_t across) {
-    Mesh mesh;
-    for (uint32_t i = 0; i < around; ++i) {
-        for (uint32_t j = 0; j < across; ++j) {
-            const float u = 6.2831853f * static_cast<float>(i) / static_cast<float>(around);
-            const float v = 6.2831853f * static_cast<float>(j) / static_cast<float>(across);
-            const float r = 1 + 0.3f * std::cos(v);
-            mesh.positions.emplace_back(r * std::cos(u), r * std::sin(u), 0.3f * std::sin(v));
-            const uint32_t a = i * across + j;
-            const uint32_t b = (i + 1) % around * across + j;
-            const uint32_t c = (i + 1) % around * across + (j + 1) % across;
-            const uint32_t d = i * across + (j + 1) % across;
-            mesh.triangles.emplace_back(a, b, c);
-            mesh.triangles.emplace_back(a, c, d);
-        }
-    }
-    return mesh;
-}
-
 /// A plate of cells x cells boxes, of which every other one both ways is left out: so many tunnels.
 Mesh drilled_plate(uint32_t cells) {
     Mesh mesh;
@@ -114,7 +95,7 @@ SimplifyOptions keeping(SimplifyMode mode) {
 }  // namespace
 
 TEST(Topology, TorusKeepsItsHandleHoweverFewTrianglesAreWanted) {
-    const Mesh ring = torus(48, 24);
+    const Mesh ring = shapes::torus(48, 24);
     for (const SimplifyMode mode : {SimplifyMode::Fast, SimplifyMode::Best}) {
         for (const size_t target : {200u, 1u}) {
             const Mesh out = simplify(ring, target, keeping(mode));
@@ -158,9 +139,9 @@ TEST(Topology, HoleInASheetStaysAHole) {
 }
 
 TEST(Topology, PartsStayWithTheOptionAndGoWithoutIt) {
-    Mesh two = torus(24, 12);
+    Mesh two = shapes::torus(24, 12);
     const auto count = static_cast<uint32_t>(two.positions.size());
-    const Mesh small = torus(24, 12);
+    const Mesh small = shapes::torus(24, 12);
     for (const glm::vec3& p : small.positions)
         two.positions.push_back(0.01f * p + glm::vec3(5, 0, 0));
     for (const Triangle& t : small.triangles)
