@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/crowd.h"
 
+#include "base/disjoint_sets.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -19,14 +21,6 @@ constexpr size_t kFewestOfKind = 8;      // given parts
 constexpr double kLargestPart = 8;       // over the median of its kind
 constexpr double kSlender = 3;           // length over width
 constexpr double kDifferentSizes = 0.3;  // squared standard deviation over mean of areas
-
-uint32_t root_of(std::vector<uint32_t>& parents, uint32_t i) {
-    while (parents[i] != i) {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
-    }
-    return i;
-}
 
 bool finite_triangle(const Mesh& mesh, const Triangle& t) {
     for (int corner = 0; corner < 3; ++corner) {
@@ -53,10 +47,7 @@ std::vector<uint32_t> connected(const Mesh& mesh) {
             const auto [at, fresh] = edges.try_emplace(a << 32u | b, i);
             if (fresh)
                 continue;
-            const uint32_t first = root_of(parents, at->second);
-            const uint32_t second = root_of(parents, i);
-            if (first != second)
-                parents[std::max(first, second)] = std::min(first, second);
+            join(parents, at->second, i);
         }
     }
     for (uint32_t i = 0; i < parents.size(); ++i)

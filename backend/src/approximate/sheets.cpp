@@ -3,6 +3,7 @@
 
 #include "approximate/adjacency.h"
 #include "approximate/neighbors.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -22,22 +23,6 @@ Triangle sorted(Triangle t) {
     if (t.x > t.y)
         std::swap(t.x, t.y);
     return t;
-}
-
-uint32_t root_of(std::vector<uint32_t>& parents, uint32_t i) {
-    while (parents[i] != i) {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
-    }
-    return i;
-}
-
-/// The lower index becomes the root, so roots do not depend on the order of joins.
-void join(std::vector<uint32_t>& parents, uint32_t a, uint32_t b) {
-    a = root_of(parents, a);
-    b = root_of(parents, b);
-    if (a != b)
-        parents[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 constexpr double kErrorShare = 0.999;  // as in measure/deviation
 constexpr double kGrowthShare = 0.99;
 // Of a walk: farther than so many triangles, surfaces that slide along each other seem to be apart.
-constexpr int kSteps = 24;
+constexpr int kSearchSteps = 24;
 
 struct Weighted {
     double value;
@@ -71,7 +71,7 @@ Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
         Nearest nearest(positions, what.level.triangles,
                         source.at(witness.source_u, witness.source_v));
         nearest.visit(witness.level);
-        nearest.walk(what.level_rings, place_of, kSteps);
+        nearest.walk(what.level_rings, place_of, kSearchSteps);
         add(witness, source, std::sqrt(nearest.square()));
         if (witness.longest > 0) {
             const double growth = source.longest() / witness.longest;
@@ -85,7 +85,7 @@ Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
         const Corners level(positions, what.level.triangles[witness.level]);
         Nearest nearest(points, what.pose.triangles, level.at(witness.level_u, witness.level_v));
         nearest.start(what.pose_rings, point_of, witness.source);
-        nearest.walk(what.pose_rings, point_of, kSteps);
+        nearest.walk(what.pose_rings, point_of, kSearchSteps);
         add(witness, source, std::sqrt(nearest.square()));
     }
     out.error = std::max(out.error, quantile(distances, kErrorShare));

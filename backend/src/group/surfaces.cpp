@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "group/surfaces.h"
 
+#include "base/disjoint_sets.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,17 +85,8 @@ std::vector<uint32_t> loose_parts(const Mesh& mesh) {
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
     });
-    const auto root_of = [&](uint32_t i) {
-        while (parents[i] != i) {
-            parents[i] = parents[parents[i]];
-            i = parents[i];
-        }
-        return i;
-    };
-    const auto join = [&](const Side& x, const Side& y) {
-        const uint32_t a = root_of(x.triangle);
-        const uint32_t b = root_of(y.triangle);
-        parents[std::max(a, b)] = std::min(a, b);
+    const auto join_sides = [&](const Side& x, const Side& y) {
+        join(parents, x.triangle, y.triangle);
     };
     for (size_t begin = 0; begin < sides.size();) {
         size_t end = begin + 1;
@@ -102,16 +95,16 @@ std::vector<uint32_t> loose_parts(const Mesh& mesh) {
         const std::span<Side> around(&sides[begin], end - begin);
         if (around.size() <= 3) {
             for (const Side& side : around.subspan(1))
-                join(around[0], side);
+                join_sides(around[0], side);
         } else if (around.size() <= kMostAround) {
-            join_surfaces(mesh, around, join);
+            join_surfaces(mesh, around, join_sides);
         }
         begin = end;
     }
     uint32_t next = 0;
     std::vector<uint32_t> numbers(parents.size());
     for (uint32_t i = 0; i < parents.size(); ++i) {
-        const uint32_t root = root_of(i);  // never after i
+        const uint32_t root = root_of(parents, i);  // never after i
         numbers[i] = root == i ? next++ : numbers[root];
     }
     return numbers;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/sides.h"
 
+#include "base/disjoint_sets.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -8,15 +10,6 @@
 
 namespace lodestone::measure {
 namespace {
-
-/// The lowest element of the set that `i` is in.
-uint32_t root(std::vector<uint32_t>& parent, uint32_t i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
 
 /// What lies within this share of the mesh's size is one place: holes that small, as at the tips of
 /// turned things, are none.
@@ -66,7 +59,7 @@ public:
         for (size_t i = 0; i < counted_.size(); ++i)
             counted_[i] = join(i) ? 1 : 0;
         for (uint32_t& i : parent_)
-            i = root(parent_, i);
+            i = root_of(parent_, i);
         open_.resize(parent_.size(), 0);
         volume_.resize(parent_.size(), 0);
         for (size_t i = 0; i < counted_.size(); ++i)
@@ -134,11 +127,8 @@ private:
         if (a == b || b == c || c == a ||
             !std::isfinite(glm::dot(at(a) + at(b) + at(c), {1, 1, 1})))
             return false;
-        for (const uint32_t other : {b, c}) {
-            const uint32_t x = root(parent_, a);
-            const uint32_t y = root(parent_, other);
-            parent_[std::max(x, y)] = std::min(x, y);
-        }
+        lodestone::join(parent_, a, b);
+        lodestone::join(parent_, a, c);
         return true;
     }
 
