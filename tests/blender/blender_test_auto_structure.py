@@ -120,7 +120,7 @@ class AutoStructure(unittest.TestCase):
         made, preview = auto_structure.auto_structure(bpy.context, self.yard)
         self.assertEqual(len(made), preview.groups)
         self.assertLess(preview.cost_after, 0.2 * preview.cost_before)
-        self.assertIsNone(preview.triangles_before)
+        self.assertIsNone(preview.bytes_before)
         self.assertEqual(len(preview.lines()), 2)
 
     def test_says_why_it_cannot(self):

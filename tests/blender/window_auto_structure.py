@@ -71,7 +71,7 @@ def ok_makes_collections_and_the_store_stays():
     start()
     yield from steps.wait_until(asks)
     preview = running().preview
-    assert 0 < preview.triangles_after < preview.triangles_before, preview
+    assert 0 < preview.bytes_after < preview.bytes_before, preview
     assert len(preview.lines()) == 3, preview.lines()
     assert not made(), made()
     for _ in range(20):  # until the dialog is drawn

@@ -22,7 +22,6 @@ from . import session as sessions
 from .polled import Polled
 
 FEWEST = 8  # a collection of at most so many is not structured
-TRIANGLES_OF = {"box": 12, "ellipsoid": 80, "composite": 640}  # as they count beside meshes
 GROUP_COST = 20.0  # fewer and larger groups than those nobody sees
 
 
@@ -39,14 +38,14 @@ FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing, NothingToGroup, Go
 
 @dataclass
 class Preview:
-    """What grouping is worth: expected costs, and triangles of the scene camera's cut (None: not
-    measured)."""
+    """What grouping is worth: expected costs, and what POV-Ray would keep of the scene camera's cut
+    (None: not measured)."""
 
     groups: int
     cost_before: float
     cost_after: float
-    triangles_before: int | None = None
-    triangles_after: int | None = None
+    bytes_before: int | None = None
+    bytes_after: int | None = None
 
     def lines(self):
         less = progress.percent(self.cost_after, self.cost_before)
@@ -55,10 +54,10 @@ class Preview:
             f"Expected Cost {self.cost_before:,.1f} \N{RIGHTWARDS ARROW} {self.cost_after:,.1f}"
             f"   {less}",
         ]
-        if self.triangles_before is not None:
-            before, after = map(progress.count, (self.triangles_before, self.triangles_after))
-            share = progress.percent(self.triangles_after, self.triangles_before)
-            lines.append(f"Triangles in View {before} \N{RIGHTWARDS ARROW} {after}   {share}")
+        if self.bytes_before is not None:
+            before, after = map(progress.memory, (self.bytes_before, self.bytes_after))
+            share = progress.percent(self.bytes_after, self.bytes_before)
+            lines.append(f"POV-Ray Memory {before} \N{RIGHTWARDS ARROW} {after}   {share}")
         return lines
 
 
@@ -90,7 +89,7 @@ def groups_in(extraction, group, collection, known):
 
 def auto_structure(context, collection):
     """Reads the scene and groups what is directly in a collection, synchronously; returns (the new
-    collections, a Preview without triangles). Raises what failed, then nothing has changed."""
+    collections, a Preview without bytes). Raises what failed, then nothing has changed."""
     still = motion_file.read(store_path.store_folder(bpy.data.filepath))
     request = extract_engine.Request(still=still, structured=False)
     extraction = extract_engine.extract_now(context.scene, request)
@@ -135,19 +134,18 @@ class _Session(sessions.Session):
         """On the thread: the number of objects before grouping, and the Preview."""
         model, frames = self.extraction.model, self.request.frames
 
-        def triangles(store):
+        def kept(store):
             if not frames:
                 return None
             model.build(store, None, self.work.new_job("Levels"))
             camera, (width, height) = frames[0]
             with native.Cut(model, native.View(camera, width, height, self._pixel_error)) as cut:
-                drawn = cut.summary()
-            return drawn.triangles + sum(getattr(drawn, k) * n for k, n in TRIANGLES_OF.items())
+                return cut.summary().bytes
 
         with _scratch_store(self._store) as store:
-            before = triangles(store)
+            before = kept(store)
             known, *costs = structure_model(model, self._group)
-            return known, Preview(0, *costs, before, triangles(store))
+            return known, Preview(0, *costs, before, kept(store))
 
     def measured(self):
         """After the thread has ended: `found` and `preview` are there."""
