@@ -2,7 +2,8 @@
 #include "measure/deviation.h"
 
 #include "base/parallel.h"
-#include "measure/point_tree.h"
+#include "measure/sample_errors.h"
+#include "measure/visible_looks.h"
 
 #include <algorithm>
 #include <atomic>
@@ -17,348 +18,20 @@ namespace {
 
 using Sample = SurfaceSample;
 
-constexpr double kQuantile = 0.999;
-// Of the places of one look; and looks of a smaller share of the area than this are details, which
-// their places alone answer for.
-constexpr double kLookQuantile = 0.99;
-constexpr double kLeastLookShare = 0.002;
 // Of levels as fine as scans a few vertices decide the quantile: those of the stand-in are taken
 // all, up to so many at least.
 constexpr uint32_t kLevelVertices = 16384;
-
-double weight_of(const std::vector<Sample>& samples, const std::vector<size_t>& indices) {
-    double sum = 0;
-    for (const size_t i : indices)
-        sum += samples[i].weight;
-    return sum;
-}
-
-/// The smallest distance that `share` of the weight of the samples in `order` does not exceed.
-double quantile(const std::vector<Sample>& samples, const std::vector<double>& distances,
-                std::vector<size_t> order, double share) {
-    // Mostly the farthest few decide: the rest is not sorted.
-    constexpr size_t kFirst = 32;
-    const double all = weight_of(samples, order);
-    const auto farther = [&](size_t a, size_t b) {
-        return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
-    };
-    const auto at = [&](size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-    double above = 0;
-    double out = 0;
-    size_t end = 0;
-    for (size_t begin = 0; begin < order.size(); begin = end) {
-        end = std::min(order.size(), std::max(kFirst, 4 * begin));
-        if (end < order.size())
-            std::nth_element(at(begin), at(end), order.end(), farther);
-        std::sort(at(begin), at(end), farther);
-        for (size_t i = begin; i < end; ++i) {
-            out = distances[order[i]];
-            above += samples[order[i]].weight;
-            if (above > (1 - share) * all)
-                return out;
-        }
-    }
-    return out;
-}
-
-/// `places`: how far every sample is from the other surface; `moves`: how far its look was moved.
-Deviation summary(const std::vector<Sample>& samples, const std::vector<double>& places,
-                  const std::vector<double>& moves) {
-    Deviation out;
-    std::vector<size_t> all(samples.size());
-    std::map<uint16_t, std::vector<size_t>> moved;  // looks of which anything moved
-    for (size_t i = 0; i < all.size(); ++i) {
-        all[i] = i;
-        out.max = std::max({out.max, places[i], moves[i]});
-        if (moves[i] > 0)
-            moved[samples[i].look];
-    }
-    for (size_t i = 0; i < samples.size(); ++i) {
-        const auto at = moved.find(samples[i].look);
-        if (at != moved.end())
-            at->second.push_back(i);
-    }
-    const double least = kLeastLookShare * weight_of(samples, all);
-    out.error = quantile(samples, places, std::move(all), kQuantile);
-    for (const auto& [look, indices] : moved) {
-        if (weight_of(samples, indices) >= least)
-            out.error = std::max(out.error, quantile(samples, moves, indices, kLookQuantile));
-    }
-    return out;
-}
-
-/// Whether the quantile of all samples is above that.
-bool is_above(const std::vector<Sample>& samples, const std::vector<double>& places, double least) {
-    double above = 0;
-    double all = 0;
-    for (size_t i = 0; i < samples.size(); ++i) {
-        all += samples[i].weight;
-        above += places[i] > least ? samples[i].weight : 0;
-    }
-    return above > (1 - kQuantile) * all;
-}
-
-/// Whether the error of all samples is larger than `useless` without any doubt, by some of them.
-bool surely_above(double useless, const std::vector<Sample>& samples,
-                  const std::vector<size_t>& some, const std::vector<double>& places,
-                  const std::vector<double>& moves) {
-    // Many times as much as the quantiles allow, of samples enough.
-    constexpr double kPlaces = 0.02;
-    constexpr double kMoves = 0.06;
-    constexpr size_t kFewest = 6;
-    constexpr double kLeastShare = 5 * kLeastLookShare;
-    struct Sum {
-        double all = 0;
-        double above = 0;
-        size_t count = 0;
-        void add(double weight, bool is_above) {
-            all += weight;
-            above += is_above ? weight : 0;
-            count += is_above ? 1 : 0;
-        }
-    };
-    if (!std::isfinite(useless))
-        return false;
-    Sum place;
-    std::map<uint16_t, Sum> looks;
-    for (const size_t i : some) {
-        place.add(samples[i].weight, places[i] > useless);
-        looks[samples[i].look].add(samples[i].weight, moves[i] > useless);
-    }
-    if (place.count >= kFewest && place.above > kPlaces * place.all)
-        return true;
-    return std::any_of(looks.begin(), looks.end(), [&](const auto& look) {
-        const Sum& moved = look.second;
-        return moved.count >= kFewest && moved.above > kMoves * moved.all &&
-               moved.all > kLeastShare * place.all;
-    });
-}
-
-constexpr size_t kEvery = 8;  // divides a block
 // At so many samples of each look, if it has them, what became of it is asked; what solids of a mean
 // color miss changes little from one sample to the next, and takes long.
 constexpr size_t kAsked = 512;
 constexpr size_t kAskedOfMixed = 256;
 
-/// 1 for the samples that are asked for looks: at least `wanted` of each look, evenly, or all.
-std::vector<uint8_t> asked_for_looks(const std::vector<Sample>& samples, size_t wanted) {
-    std::map<uint16_t, size_t> counts;
-    for (const Sample& sample : samples)
-        ++counts[sample.look];
-    counts.erase(kAnyLook);
-    std::map<uint16_t, size_t> ranks;
-    std::vector<uint8_t> out(samples.size(), 0);
-    for (size_t i = 0; i < samples.size(); ++i) {
-        const auto at = counts.find(samples[i].look);
-        if (at == counts.end())
-            continue;
-        const size_t stride = std::clamp<size_t>(at->second / wanted, 1, kEvery);
-        const size_t rank = ranks[samples[i].look]++;
-        out[i] = i % kEvery == 0 || rank == 0 || (stride < kEvery && rank % stride == 0) ? 1 : 0;
-    }
-    return out;
-}
-
-/// Gives samples that were not asked what the one of their look before them has.
-void spread(const std::vector<Sample>& samples, const std::vector<uint8_t>& asked,
-            std::vector<double>& moves) {
-    std::map<uint16_t, double> last;
-    for (size_t i = 0; i < samples.size(); ++i) {
-        if (samples[i].look == kAnyLook)
-            continue;
-        if (asked[i] != 0)
-            last[samples[i].look] = moves[i];
-        else
-            moves[i] = last[samples[i].look];
-    }
-}
-
-/// Whether two places can be seen at once: not the grass from above and the road from below.
-bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
-    constexpr double kUnknown = 0.5;  // square of a length; sides are unit vectors
-    return glm::dot(a, a) < kUnknown || glm::dot(b, b) < kUnknown || glm::dot(a, b) > 0;
-}
-
 }  // namespace
-
-/// What can be seen of the finest, in the orders that are asked for.
-class DeviationReference::Seen {
-public:
-    Seen(const std::vector<Sample>& visible, const Looks* palette)
-        : visible_(visible), glowing_(glowing(visible, palette)) {
-        // Every so many of the visible points are enough for a mean.
-        constexpr size_t kMostPoints = 512;
-        std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
-        for (uint32_t i = 0; i < visible.size(); ++i) {
-            if (visible[i].look == kAnyLook)
-                continue;
-            auto& [points, numbers] = looks[visible[i].look];
-            points.push_back(visible[i].point);
-            numbers.push_back(i);
-        }
-        for (auto& [look, list] : looks)
-            by_look_.try_emplace(look, std::move(list.first), std::move(list.second));
-        const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
-        for (size_t run = 0; run < visible.size(); run += step) {
-            // Any one of each run: they were drawn evenly, and every so many of such are in one
-            // place.
-            const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
-            if (visible[i].look != kAnyLook)
-                mixed_.push_back({visible[i].point, visible[i].side,
-                                  Looks::light_of(visible[i].color), visible[i].look});
-        }
-    }
-
-    /// Whether a look is a lamp among the others: much brighter by itself than the whole is in the
-    /// mean.
-    bool glows(uint16_t look) const { return look < glowing_.size() && glowing_[look] != 0; }
-
-    /// The distance to the nearest point of look `look` that can be seen, from the same side; `most`
-    /// where it is not less.
-    double nearest(const Sample& from, uint16_t look, double most) const {
-        const auto tree = by_look_.find(look);
-        if (tree == by_look_.end())
-            return most;
-        return std::sqrt(tree->second.nearest(from.point, most * most, [&](uint32_t i) {
-            return face_alike(visible_[i].side, from.side);
-        }));
-    }
-
-    /// The same for what shows a color.
-    double nearest_of_color(const Sample& from, const glm::dvec3& color, double most) const {
-        double square = most * most;
-        for (const auto& [look, tree] : by_look_) {
-            square = tree.nearest(from.point, square, [&](uint32_t i) {
-                return Looks::alike(visible_[i].color, color) &&
-                       face_alike(visible_[i].side, from.side);
-            });
-        }
-        return std::sqrt(square);
-    }
-
-    /// The radius around a point within which the visible colors mix (as light does, in a pixel that
-    /// shows them all) to `color`; `most` where it is not less, or not even all of them do.
-    double mixing_radius(const Sample& from, const glm::dvec3& color, double most) const {
-        struct Near {
-            double square;
-            uint16_t look;
-            uint32_t index;
-            bool operator<(const Near& other) const {
-                return std::tie(square, look, index) <
-                       std::tie(other.square, other.look, other.index);
-            }
-        };
-        constexpr size_t kFirst = 16;
-        std::vector<Near> near;
-        near.reserve(mixed_.size());
-        for (uint32_t i = 0; i < mixed_.size(); ++i) {
-            const glm::dvec3 arm = mixed_[i].point - from.point;
-            const double square = glm::dot(arm, arm);
-            if (square < most * most && face_alike(mixed_[i].side, from.side))
-                near.push_back({square, mixed_[i].look, i});
-        }
-        const Looks::Lights wanted = Looks::lights_alike(color);
-        glm::dvec3 sum(0.0);
-        // Mostly the nearest few are enough: the rest is not sorted.
-        size_t end = 0;
-        for (size_t begin = 0; begin < near.size(); begin = end) {
-            end = std::min(near.size(), std::max(kFirst, 2 * begin));
-            const auto at = [&](size_t i) { return near.begin() + static_cast<ptrdiff_t>(i); };
-            if (end < near.size())
-                std::nth_element(at(begin), at(end), near.end());
-            std::sort(at(begin), at(end));
-            for (size_t i = begin; i < end; ++i) {
-                sum += mixed_[near[i].index].light;
-                if (wanted.hold(sum / static_cast<double>(i + 1)))
-                    return std::sqrt(near[i].square);
-            }
-        }
-        return most;
-    }
-
-    /// Whether these are the samples that numbers are of.
-    bool holds(const std::vector<Sample>& samples) const { return &samples == &visible_; }
-
-    /// The same of visible point `number`, however far; infinite where they never mix to it. Kept
-    /// for the next stand-in of that color.
-    double mixing_radius_at(size_t number, const glm::dvec3& color) const {
-        constexpr double kNever = std::numeric_limits<double>::infinity();
-        const std::shared_ptr<const Radii> radii = radii_of(color);
-        std::atomic<double>& known = radii->by_number[number];
-        double radius = known.load(std::memory_order_relaxed);
-        if (radius < 0) {
-            radius = mixing_radius(visible_[number], color, kNever);
-            known.store(radius, std::memory_order_relaxed);
-        }
-        return radius;
-    }
-
-private:
-    /// Mixing radii for one color, by visible point; negative where not asked for yet.
-    struct Radii {
-        glm::dvec3 color;
-        std::unique_ptr<std::atomic<double>[]> by_number;
-    };
-
-    std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const {
-        const std::lock_guard lock(mutex_);
-        if (!radii_ || radii_->color != color) {
-            auto fresh = std::make_shared<Radii>();
-            fresh->color = color;
-            fresh->by_number = std::make_unique<std::atomic<double>[]>(visible_.size());
-            for (size_t i = 0; i < visible_.size(); ++i)
-                fresh->by_number[i].store(-1, std::memory_order_relaxed);
-            radii_ = std::move(fresh);
-        }
-        return radii_;
-    }
-
-    struct Mixed {
-        glm::dvec3 point;
-        glm::dvec3 side;
-        glm::dvec3 light;
-        uint16_t look;
-    };
-
-    static std::vector<uint8_t> glowing(const std::vector<Sample>& visible, const Looks* palette) {
-        constexpr double kMuch = 2;
-        std::vector<uint8_t> out;
-        if (palette == nullptr)
-            return out;
-        const auto brightest = [](const glm::dvec3& light) {
-            return std::max({light.x, light.y, light.z});
-        };
-        double light = 0;
-        double weight = 0;
-        std::set<uint16_t> looks;
-        for (const Sample& sample : visible) {
-            if (sample.look == kAnyLook)
-                continue;
-            const double covered = sample.weight * palette->opacity(sample.look);
-            light += covered * brightest(Looks::light_of(sample.color));
-            weight += covered;
-            looks.insert(sample.look);
-        }
-        for (const uint16_t look : looks) {
-            out.resize(std::max<size_t>(out.size(), look + size_t{1}), 0);
-            const double own = brightest(palette->emission(look));
-            out[look] = own > 0 && own * weight > kMuch * light ? 1 : 0;
-        }
-        return out;
-    }
-
-    const std::vector<Sample>& visible_;
-    std::vector<uint8_t> glowing_;  // by look
-    std::map<uint16_t, PointTree> by_look_;
-    std::vector<Mixed> mixed_;
-    mutable std::mutex mutex_;
-    mutable std::shared_ptr<const Radii> radii_;
-};
 
 /// What the samples of one mesh are compared with.
 struct DeviationReference::Against {
     const LookScenes& other;
-    const Seen& seen;  // of the finest
+    const VisibleLooks& seen;  // of the finest
     const LookScenes& finest;
     const Looks* palette;
     double none;            // the answer where there is nothing to find
@@ -509,7 +182,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         visit(1, enough, before);
     }
     spread(samples, asked, moves);
-    return summary(samples, places, moves);
+    return deviation_of(samples, places, moves);
 }
 
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
@@ -529,7 +202,7 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
             add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), vertices,
                                  ray_lift(diameter_ / 2), options.seed, job, visible_);
     }
-    seen_ = std::make_unique<const Seen>(visible_, palette_);
+    seen_ = std::make_unique<const VisibleLooks>(visible_, palette_);
 }
 
 DeviationReference::~DeviationReference() = default;

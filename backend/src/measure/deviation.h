@@ -6,6 +6,8 @@
 
 namespace lodestone::measure {
 
+class VisibleLooks;
+
 /// Distances in metres, of both directions together: from the visible surface of the finest to the
 /// stand-in, and from the stand-in (all of it) to the finest (all of it). Where the nearest surface
 /// of the stand-in has another look than a visible point, it also counts by how much the looks were
@@ -62,7 +64,6 @@ public:
     size_t visible_points() const { return visible_.size(); }
 
 private:
-    class Seen;
     struct Against;
     static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
                              double useless, const Job& job);
@@ -72,7 +73,7 @@ private:
     VisibleSampler sampler_;
     const Looks* palette_;
     std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
-    std::unique_ptr<const Seen> seen_;    // the same, to be searched
+    std::unique_ptr<const VisibleLooks> seen_;  // the same, to be searched
     double diameter_ = 0;
 };
 

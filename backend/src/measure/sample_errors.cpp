@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/sample_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lodestone::measure {
+namespace {
+
+constexpr double kQuantile = 0.999;
+// Of the places of one look; and looks of a smaller share of the area than this are details, which
+// their places alone answer for.
+constexpr double kLookQuantile = 0.99;
+constexpr double kLeastLookShare = 0.002;
+
+double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<size_t>& indices) {
+    double sum = 0;
+    for (const size_t i : indices)
+        sum += samples[i].weight;
+    return sum;
+}
+
+}  // namespace
+
+double quantile(const std::vector<SurfaceSample>& samples, const std::vector<double>& distances,
+                std::vector<size_t> order, double share) {
+    // Mostly the farthest few decide: the rest is not sorted.
+    constexpr size_t kFirst = 32;
+    const double all = weight_of(samples, order);
+    const auto farther = [&](size_t a, size_t b) {
+        return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
+    };
+    const auto at = [&](size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    double above = 0;
+    double out = 0;
+    size_t end = 0;
+    for (size_t begin = 0; begin < order.size(); begin = end) {
+        end = std::min(order.size(), std::max(kFirst, 4 * begin));
+        if (end < order.size())
+            std::nth_element(at(begin), at(end), order.end(), farther);
+        std::sort(at(begin), at(end), farther);
+        for (size_t i = begin; i < end; ++i) {
+            out = distances[order[i]];
+            above += samples[order[i]].weight;
+            if (above > (1 - share) * all)
+                return out;
+        }
+    }
+    return out;
+}
+
+Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
+                       const std::vector<double>& moves) {
+    Deviation out;
+    std::vector<size_t> all(samples.size());
+    std::map<uint16_t, std::vector<size_t>> moved;  // looks of which anything moved
+    for (size_t i = 0; i < all.size(); ++i) {
+        all[i] = i;
+        out.max = std::max({out.max, places[i], moves[i]});
+        if (moves[i] > 0)
+            moved[samples[i].look];
+    }
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const auto at = moved.find(samples[i].look);
+        if (at != moved.end())
+            at->second.push_back(i);
+    }
+    const double least = kLeastLookShare * weight_of(samples, all);
+    out.error = quantile(samples, places, std::move(all), kQuantile);
+    for (const auto& [look, indices] : moved) {
+        if (weight_of(samples, indices) >= least)
+            out.error = std::max(out.error, quantile(samples, moves, indices, kLookQuantile));
+    }
+    return out;
+}
+
+bool is_above(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
+              double least) {
+    double above = 0;
+    double all = 0;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        all += samples[i].weight;
+        above += places[i] > least ? samples[i].weight : 0;
+    }
+    return above > (1 - kQuantile) * all;
+}
+
+bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
+                  const std::vector<size_t>& some, const std::vector<double>& places,
+                  const std::vector<double>& moves) {
+    // Many times as much as the quantiles allow, of samples enough.
+    constexpr double kPlaces = 0.02;
+    constexpr double kMoves = 0.06;
+    constexpr size_t kFewest = 6;
+    constexpr double kLeastShare = 5 * kLeastLookShare;
+    struct Sum {
+        double all = 0;
+        double above = 0;
+        size_t count = 0;
+        void add(double weight, bool is_above) {
+            all += weight;
+            above += is_above ? weight : 0;
+            count += is_above ? 1 : 0;
+        }
+    };
+    if (!std::isfinite(useless))
+        return false;
+    Sum place;
+    std::map<uint16_t, Sum> looks;
+    for (const size_t i : some) {
+        place.add(samples[i].weight, places[i] > useless);
+        looks[samples[i].look].add(samples[i].weight, moves[i] > useless);
+    }
+    if (place.count >= kFewest && place.above > kPlaces * place.all)
+        return true;
+    return std::any_of(looks.begin(), looks.end(), [&](const auto& look) {
+        const Sum& moved = look.second;
+        return moved.count >= kFewest && moved.above > kMoves * moved.all &&
+               moved.all > kLeastShare * place.all;
+    });
+}
+
+std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, size_t wanted) {
+    std::map<uint16_t, size_t> counts;
+    for (const SurfaceSample& sample : samples)
+        ++counts[sample.look];
+    counts.erase(kAnyLook);
+    std::map<uint16_t, size_t> ranks;
+    std::vector<uint8_t> out(samples.size(), 0);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const auto at = counts.find(samples[i].look);
+        if (at == counts.end())
+            continue;
+        const size_t stride = std::clamp<size_t>(at->second / wanted, 1, kEvery);
+        const size_t rank = ranks[samples[i].look]++;
+        out[i] = i % kEvery == 0 || rank == 0 || (stride < kEvery && rank % stride == 0) ? 1 : 0;
+    }
+    return out;
+}
+
+void spread(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
+            std::vector<double>& moves) {
+    std::map<uint16_t, double> last;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        if (samples[i].look == kAnyLook)
+            continue;
+        if (asked[i] != 0)
+            last[samples[i].look] = moves[i];
+        else
+            moves[i] = last[samples[i].look];
+    }
+}
+
+}  // namespace lodestone::measure

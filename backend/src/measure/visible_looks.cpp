@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/visible_looks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+namespace lodestone::measure {
+namespace {
+
+/// Whether two places can be seen at once: not the grass from above and the road from below.
+bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
+    constexpr double kUnknown = 0.5;  // square of a length; sides are unit vectors
+    return glm::dot(a, a) < kUnknown || glm::dot(b, b) < kUnknown || glm::dot(a, b) > 0;
+}
+
+std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Looks* palette) {
+    constexpr double kMuch = 2;
+    std::vector<uint8_t> out;
+    if (palette == nullptr)
+        return out;
+    const auto brightest = [](const glm::dvec3& light) {
+        return std::max({light.x, light.y, light.z});
+    };
+    double light = 0;
+    double weight = 0;
+    std::set<uint16_t> looks;
+    for (const SurfaceSample& sample : visible) {
+        if (sample.look == kAnyLook)
+            continue;
+        const double covered = sample.weight * palette->opacity(sample.look);
+        light += covered * brightest(Looks::light_of(sample.color));
+        weight += covered;
+        looks.insert(sample.look);
+    }
+    for (const uint16_t look : looks) {
+        out.resize(std::max<size_t>(out.size(), look + size_t{1}), 0);
+        const double own = brightest(palette->emission(look));
+        out[look] = own > 0 && own * weight > kMuch * light ? 1 : 0;
+    }
+    return out;
+}
+
+}  // namespace
+
+VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const Looks* palette)
+    : visible_(visible), glowing_(glowing(visible, palette)) {
+    // Every so many of the visible points are enough for a mean.
+    constexpr size_t kMostPoints = 512;
+    std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
+    for (uint32_t i = 0; i < visible.size(); ++i) {
+        if (visible[i].look == kAnyLook)
+            continue;
+        auto& [points, numbers] = looks[visible[i].look];
+        points.push_back(visible[i].point);
+        numbers.push_back(i);
+    }
+    for (auto& [look, list] : looks)
+        by_look_.try_emplace(look, std::move(list.first), std::move(list.second));
+    const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
+    for (size_t run = 0; run < visible.size(); run += step) {
+        // Any one of each run: they were drawn evenly, and every so many of such are in one
+        // place.
+        const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
+        if (visible[i].look != kAnyLook)
+            mixed_.push_back({visible[i].point, visible[i].side, Looks::light_of(visible[i].color),
+                              visible[i].look});
+    }
+}
+
+double VisibleLooks::nearest(const SurfaceSample& from, uint16_t look, double most) const {
+    const auto tree = by_look_.find(look);
+    if (tree == by_look_.end())
+        return most;
+    return std::sqrt(tree->second.nearest(from.point, most * most, [&](uint32_t i) {
+        return face_alike(visible_[i].side, from.side);
+    }));
+}
+
+double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec3& color,
+                                      double most) const {
+    double square = most * most;
+    for (const auto& [look, tree] : by_look_) {
+        square = tree.nearest(from.point, square, [&](uint32_t i) {
+            return Looks::alike(visible_[i].color, color) &&
+                   face_alike(visible_[i].side, from.side);
+        });
+    }
+    return std::sqrt(square);
+}
+
+double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& color,
+                                   double most) const {
+    struct Near {
+        double square;
+        uint16_t look;
+        uint32_t index;
+        bool operator<(const Near& other) const {
+            return std::tie(square, look, index) < std::tie(other.square, other.look, other.index);
+        }
+    };
+    constexpr size_t kFirst = 16;
+    std::vector<Near> near;
+    near.reserve(mixed_.size());
+    for (uint32_t i = 0; i < mixed_.size(); ++i) {
+        const glm::dvec3 arm = mixed_[i].point - from.point;
+        const double square = glm::dot(arm, arm);
+        if (square < most * most && face_alike(mixed_[i].side, from.side))
+            near.push_back({square, mixed_[i].look, i});
+    }
+    const Looks::Lights wanted = Looks::lights_alike(color);
+    glm::dvec3 sum(0.0);
+    // Mostly the nearest few are enough: the rest is not sorted.
+    size_t end = 0;
+    for (size_t begin = 0; begin < near.size(); begin = end) {
+        end = std::min(near.size(), std::max(kFirst, 2 * begin));
+        const auto at = [&](size_t i) { return near.begin() + static_cast<ptrdiff_t>(i); };
+        if (end < near.size())
+            std::nth_element(at(begin), at(end), near.end());
+        std::sort(at(begin), at(end));
+        for (size_t i = begin; i < end; ++i) {
+            sum += mixed_[near[i].index].light;
+            if (wanted.hold(sum / static_cast<double>(i + 1)))
+                return std::sqrt(near[i].square);
+        }
+    }
+    return most;
+}
+
+double VisibleLooks::mixing_radius_at(size_t number, const glm::dvec3& color) const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const std::shared_ptr<const Radii> radii = radii_of(color);
+    std::atomic<double>& known = radii->by_number[number];
+    double radius = known.load(std::memory_order_relaxed);
+    if (radius < 0) {
+        radius = mixing_radius(visible_[number], color, kNever);
+        known.store(radius, std::memory_order_relaxed);
+    }
+    return radius;
+}
+
+std::shared_ptr<const VisibleLooks::Radii> VisibleLooks::radii_of(const glm::dvec3& color) const {
+    const std::lock_guard lock(mutex_);
+    if (!radii_ || radii_->color != color) {
+        auto fresh = std::make_shared<Radii>();
+        fresh->color = color;
+        fresh->by_number = std::make_unique<std::atomic<double>[]>(visible_.size());
+        for (size_t i = 0; i < visible_.size(); ++i)
+            fresh->by_number[i].store(-1, std::memory_order_relaxed);
+        radii_ = std::move(fresh);
+    }
+    return radii_;
+}
+
+}  // namespace lodestone::measure
