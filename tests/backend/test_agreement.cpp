@@ -57,7 +57,8 @@ Mesh bookcase(int nth, double smaller) {
     };
     add({0, 0, 0}, {2, 0.05, 2}, 0);
     for (int i = 0; i < 16; i += nth) {
-        const glm::dvec3 low(0.25 * (i / 2), 0.05, i % 2);
+        const int column = i / 2;
+        const glm::dvec3 low(0.25 * column, 0.05, i % 2);
         add(low + smaller, low + glm::dvec3(0.25, 0.4, 1) - smaller, 1);
     }
     return mesh;
