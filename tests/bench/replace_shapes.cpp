@@ -159,7 +159,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         errors.push_back(reference.of(level).error);
     options.rays = uint64_t{1} << 18u;
     options.seed = 99;
-    const Attributes again = measure::measure_visible(mesh, {}, options).attributes;
+    const Attributes known = measure::measure_visible(mesh, {}, options).attributes;
     for (const approximate::Clustered& level :
          approximate::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
@@ -168,7 +168,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         found[name] = overlap(truth, silhouettes(solid, bound));
         const std::array<double, 3> off =
             misses(measure::measure_visible(tessellate(level.composite, 4), {}, options).attributes,
-                   again);
+                   known);
         found[name + " area off"] = off[0];
         found[name + " centroid off"] = off[1];
         found[name + " tensor off"] = off[2];
