@@ -239,6 +239,22 @@ class Followed(unittest.TestCase):
                 return report, problems, [mesh_of(file.read_bytes()) for file in files]
         self.fail("no flag")
 
+    def test_a_camera_bound_to_a_marker_is_the_one_of_its_frame(self):
+        from lodestone import extract_engine
+
+        second = bpy.data.objects.new("Second", bpy.data.cameras.new("Second"))
+        second.location = (0, 0, 20)
+        scenes.link(second)
+        for frame, item in ((1, self.scene.camera), (10, second)):
+            self.scene.timeline_markers.new(item.name, frame=frame).camera = item
+        for frame, height in ((1, 10.0), (12, 20.0)):
+            self.scene.frame_set(frame)
+            request = extract_engine.Request([("", None)], with_poses=True)
+            extract_engine.extract_now(self.scene, request).model.close()
+            self.assertTrue(request.poses.models, "other frames were not looked at")
+            request.poses.close()
+            self.assertEqual(request.frames[0][0].position[2], height)
+
     def test_every_frame_has_the_triangles_of_one_collapse_where_its_surface_is(self):
         report, problems, first = self.build(3)
         self.assertEqual((report.built, problems), (1, []))

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
-from . import ids, scene
+from . import frames, ids, scene
 from .ids import name_of
 from .leaves import DRAWN, Leaf, Leaves, Look, override_of
 from .motion import Motion, frames_to_sample
@@ -51,7 +51,7 @@ def wanted(depsgraph: Any, still: dict[str, list[str]] | None) -> bool:
 
 def read(
     depsgraph: Any,
-    frame_set: Callable[[int, float], None],
+    frame_set: frames.FrameSet,
     still: dict[str, list[str]] | None,
     tick: Callable[[], None],
 ) -> Poses:
@@ -60,20 +60,20 @@ def read(
     that was read of the depsgraph before may be used after."""
     original = depsgraph.scene
     before = (original.frame_current, original.frame_subframe)
-    frames = frames_to_sample(original.frame_start, original.frame_end)
+    sampled = frames_to_sample(original.frame_start, original.frame_end)
     poses = Poses()
     if not wanted(depsgraph, still):
         return poses
     try:
-        for frame in frames:
-            frame_set(frame, 0.0)
+        for frame in sampled:
+            frames.go(depsgraph, frame_set, frame, 0.0)
             poses.models.append(native.Model())
             _fill(poses.models[-1], depsgraph, still, tick)
     except BaseException:
         poses.close()
         raise
     finally:
-        frame_set(*before)
+        frames.go(depsgraph, frame_set, *before)
     return poses
 
 

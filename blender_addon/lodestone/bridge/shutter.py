@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from mathutils import Matrix
 
+from . import frames
 from .listed import rows
 
 
@@ -21,7 +22,7 @@ class Moving(NamedTuple):
 
 def read(
     depsgraph: Any,
-    frame_set: Callable[[int, float], None],
+    frame_set: frames.FrameSet,
     moving: Iterable[Moving],
     model: Any,
     camera: Callable[[], Any],
@@ -34,12 +35,12 @@ def read(
     moving = list(moving)
     before = [one.item.evaluated_get(depsgraph).matrix_world.copy() for one in moving]
     end = frame + subframe + shutter
-    frame_set(int(end // 1), end % 1.0)
+    frames.go(depsgraph, frame_set, int(end // 1), end % 1.0)
     try:
         after = [one.item.evaluated_get(depsgraph).matrix_world.copy() for one in moving]
         found = camera()
     finally:
-        frame_set(frame, subframe)
+        frames.go(depsgraph, frame_set, frame, subframe)
     for one, start, stop in zip(moving, before, after):
         if start != stop:
             model.move_placement(one.group, one.position, _moved(one.place, start, stop))
