@@ -73,6 +73,8 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
     def render(self, depsgraph):
         try:
             run = _Run(self, depsgraph)
+            if run.failed_before:
+                return
             try:
                 run.render()
             except Refused as error:
@@ -303,10 +305,20 @@ class _Run:
             ),
         )
 
+    @property
+    def _this_frame(self):
+        return (name_of(self.scene), self.scene.frame_current)
+
+    @property
+    def failed_before(self):
+        """Another view layer of the frame did: one reason is told once, and there is no picture."""
+        return getattr(self.engine, "lodestone_failed", None) == self._this_frame
+
     def _remember_check(self):
-        """What was found, with what this frame's other view layers had."""
-        frame = (name_of(self.scene), self.scene.frame_current)
+        """What was found, with what this frame's other view layers had, which is returned."""
+        frame = self._this_frame
         before, problems, users = getattr(self.engine, "lodestone_found", (None, (), {}))
+        problems = problems if before == frame else ()
         every = Problems()
         if before == frame:
             every.extend(problems)
@@ -318,18 +330,22 @@ class _Run:
         found = tuple(every)
         self.engine.lodestone_found = (frame, found, self.users)
         last_check.put(name_of(self.scene), last_check.Check(found, self.users))
+        return problems
 
     def fail(self, code, text):
         """No picture: the reason is reported and stays in the panel."""
         self.problems.add("", ERROR, code, text)
         self._remember_check()
+        self.engine.lodestone_failed = self._this_frame
         self.engine.report({"ERROR"}, valid(text))
 
     def _report(self):
-        self._remember_check()
+        told = {problem.key for problem in self._remember_check()}
         for problem in self.problems:
-            print(f"Lodestone: {problem.severity}: {printable(problem.sentence)}")
-        wrong = [problem for problem in self.problems.wrong if problem.key not in self.ignored]
+            if problem.key not in told:
+                print(f"Lodestone: {problem.severity}: {printable(problem.sentence)}")
+        hidden = told | set(self.ignored)
+        wrong = [problem for problem in self.problems.wrong if problem.key not in hidden]
         if wrong:
             more = f" (and {len(wrong) - 1} more, see the console)" if len(wrong) > 1 else ""
             self.engine.report({"WARNING"}, f"The picture is incomplete: {wrong[0].sentence}{more}")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards F12: the cube is where it should be, and a failure is never a picture."""
 
+import contextlib
+import io
 import os
 import tempfile
 import unittest
@@ -61,6 +63,21 @@ class Engine(unittest.TestCase):
         program.write_text("#!/bin/sh\n" + script)
         program.chmod(0o755)
         self.with_environment(LODESTONE_POVRAY=str(program))
+
+    def test_what_two_view_layers_have_in_common_is_told_once(self):
+        scenes.cube()
+        bpy.context.scene.collection.objects.link(
+            bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke"))
+        )
+        self.scene.view_layers.new("Second")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            bpy.ops.render.render()
+        self.assertEqual(said.getvalue().count("Lodestone: error"), 1, said.getvalue())
+        self.with_environment(LODESTONE_POVRAY=str(self.folder / "none"))
+        with self.assertRaises(RuntimeError) as raised:
+            bpy.ops.render.render()
+        self.assertEqual(str(raised.exception).count("Error:"), 1, raised.exception)
 
     def test_the_cube_is_where_it_should_be(self):
         cube = scenes.cube("Red", (1.0, 0.5, 0.0), 1.0)
