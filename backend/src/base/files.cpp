@@ -5,14 +5,18 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace lodestone {
 namespace {
+
+constexpr std::chrono::milliseconds kLockPoll{20};
 
 std::string reason(int number) {
     char buffer[256];
@@ -101,14 +105,19 @@ bool safe_relative_name(std::string_view name) {
                "0123456789_./-") == std::string_view::npos;
 }
 
-FileLock::FileLock(const std::filesystem::path& path) {
+FileLock::FileLock(const std::filesystem::path& path, const Job& job) {
     file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0)
         fail(Status::Io, "cannot lock '", path.string(), "': ", reason(errno));
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    while (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+        const int number = errno;
+        if ((number == EWOULDBLOCK || number == EINTR) && !job.cancelled()) {
+            std::this_thread::sleep_for(kLockPoll);
+            continue;
+        }
         close(file_);
-        fail(Status::Io, "'", path.parent_path().string(),
-             "' is being written by another Lodestone; try again when it has finished");
+        job.check();
+        fail(Status::Io, "cannot lock '", path.string(), "': ", reason(number));
     }
 }
 

@@ -2,6 +2,8 @@
 // Files: whole reads with a size limit, writes that are never torn, one writer at a time.
 #pragma once
 
+#include "base/job.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -22,8 +24,9 @@ bool safe_relative_name(std::string_view name);
 /// Holds an exclusive advisory lock on a file for one writer; released when destroyed or killed.
 class FileLock {
 public:
-    /// Throws Error(Io) naming the file when somebody else holds it.
-    explicit FileLock(const std::filesystem::path& path);
+    /// Waits while somebody else holds it. Throws Error(Io) naming the file where it cannot be made,
+    /// and what `job` throws when it is cancelled.
+    explicit FileLock(const std::filesystem::path& path, const Job& job = {});
     ~FileLock();
     FileLock(const FileLock&) = delete;
     FileLock& operator=(const FileLock&) = delete;
