@@ -23,8 +23,10 @@ import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
-from lodestone.core import motion_file, progress, report, store_path, unseen  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, compare_plan, comparing  # noqa: E402
+from lodestone.core import file_names  # noqa: E402
+from lodestone.core import motion_file, process_session, progress, report  # noqa: E402
+from lodestone.core import store_path, unseen  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
@@ -42,6 +44,9 @@ from lodestone.core.work import Stopped, Work  # noqa: E402
 
 THUMBNAIL = 192  # pixels
 THUMBNAIL_OF = 64_000_000  # pixels of the largest picture that gets one
+NO_LEVELS = (
+    "Pixel Error 0 renders the originals: there is nothing to compare; give another --pixel-error"
+)
 
 
 class Failed(Exception):
@@ -110,7 +115,7 @@ class FileRun:
                 raise Failed(ExitCode.FAILED, f"cannot make the folder of {picture.out}: {error}")
             if not os.access(folder, os.W_OK | os.X_OK):
                 raise Failed(ExitCode.FAILED, f"cannot write into {folder}")
-            if Path(picture.out).is_dir() and self.job.verb == "render":
+            if Path(picture.out).is_dir() and self.job.verb != "export":
                 raise Failed(ExitCode.FAILED, f"{picture.out} is a folder, not a picture")
 
     def _open(self) -> None:
@@ -166,6 +171,8 @@ class FileRun:
 
     def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
         requests = tuple(_filled_up(scene, picture) for picture in requests)
+        if self.job.verb == "compare" and not all(picture.levels for picture in requests):
+            raise Failed(ExitCode.FAILED, NO_LEVELS)
         builds = self._builds(requests)
         request = extract_engine.Request(
             cameras=[(picture.camera, picture.size) for picture in requests],
@@ -261,20 +268,23 @@ class FileRun:
         kept = store_path.scene_folder(store)
         if self.job.keep == "always" and self.job.many_pictures:
             kept = kept / file_names.folder_name(picture.out)
+        compares = self.job.verb == "compare"
+        make = comparing.compare if compares else make_picture
         with self._scene_folder(kept) as folder:
             try:
                 made = self._long(
-                    lambda: make_picture(
-                        model, view, size, settings, folder.path, self.work.new_job, store
-                    )
+                    lambda: make(model, view, size, settings, folder.path, self.work.new_job, store)
                 )
             except native.LodestoneError as error:
                 if error.status == native.Status.POVRAY_FAILED:
                     where = f" (its files: {folder.path})" if self.job.keep != "never" else ""
                     raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
                 raise
-            with_alpha = picture.covered_only
-            save(scene, made.path, Path(picture.out), with_alpha, settings.stamp())
+            if compares:
+                about.update(_save_compared(scene, made, Path(picture.out), settings))
+            else:
+                with_alpha = picture.covered_only
+                save(scene, made.path, Path(picture.out), with_alpha, settings.stamp())
             if self.job.keep_exr:
                 _replace_by_copy(made.path, Path(picture.out).with_suffix(".exr"))
         if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
@@ -349,6 +359,27 @@ def save(scene, exr: Path, out: Path, with_alpha: bool, stamp: dict[str, str]) -
         format_.file_format, format_.color_mode, format_.color_depth = before
         bpy.data.images.remove(image)
         temporary.unlink(missing_ok=True)
+
+
+def _save_compared(scene, made, out: Path, settings: Settings) -> dict[str, str]:
+    """The difference as `out`, and beside it what it is of; where these lie."""
+    paths = {}
+    both = (settings.of_originals(), settings)
+    for word, path, how in zip(compare_plan.WORDS, made.paths, both):
+        name = file_names.fitting(out.stem, file_names.LONGEST - len(f"_{word}.png"))
+        target = out.with_name(f"{name}_{word}.png")
+        save(scene, path, target, False, how.stamp())
+        paths[f"{word}_picture"] = str(target)
+    temporary = out.with_name(report.temporary_name())
+    try:
+        native.image_write_png(str(temporary), made.image)
+        native.image_add_text(str(temporary), settings.stamp())
+        os.replace(temporary, out)
+    except (OSError, native.LodestoneError) as error:
+        raise Failed(ExitCode.FAILED, f"cannot write {out}: {error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+    return paths
 
 
 def save_thumbnail(picture: str, target: str) -> None:

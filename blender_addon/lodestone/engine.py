@@ -122,7 +122,7 @@ class _Run:
         self.poses = poses.Poses()
         self.plan = compare_plan.current()
         if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
-            self.settings = replace(self.settings, pixel_error=0.0)
+            self.settings = self.settings.of_originals()
             self.ray_classes = 0
         self.work = Work()
         self.frame = self.scene.frame_current
@@ -238,7 +238,7 @@ class _Run:
                     shown = make_identities(
                         model, view, size, self.settings, self.plan.folder, self.work.new_job
                     )
-                    self.plan.take(made.path, *shown)
+                    self.plan.take(made, *shown)
                 return made, picture.read(str(made.path))
         except OSError as error:
             text = f"Cannot write the scene for POV-Ray: {error}"

@@ -186,6 +186,32 @@ class Batch(unittest.TestCase):
         self.assertTrue((scene / "scene.pov").is_file())
         self.assertGreater(self.report()["export"]["bytes"], 0)
 
+    def test_comparing_tells_how_levels_differ_from_originals(self):
+        blend, page = self.blend(), self.folder / "page.html"
+        out = ("--out", str(self.out), "--html", str(page))
+        code = self.run_batch("compare", blend, "--pixel-error", "4", *out)
+        self.assertEqual(code, 0, self.said)
+        for name in ("picture", "picture_originals", "picture_levels"):
+            self.assertEqual(size_of(self.folder / f"{name}.png"), (64, 36))
+        report = self.report()
+        found, before = report["compare"], report["originals"]
+        self.assertEqual(before["cut"]["triangles"], 20480)
+        self.assertLess(report["cut"]["triangles"], 2048)
+        self.assertTrue(0.0 < found["mean"] < found["p999"] <= found["max"] <= 1.0, found)
+        self.assertTrue(0.5 < found["ssim"] < 1.0, found)
+        self.assertGreater(before["povray"]["wall_s"], 0.0)
+        self.assertEqual([one["object"] for one in found["worst"]], ["Ball"])
+        self.assertEqual(report["levels_picture"], str(self.folder / "picture_levels.png"))
+        text = page.read_text()
+        self.assertIn(f"SSIM {found['ssim']:.4f}", text)
+        self.assertIn("most: <bdi>Ball</bdi>", text)
+        left = {p.name for p in (self.folder / "lodestone").iterdir()}
+        self.assertEqual(left, {"plain"}, "scene files are left")
+        for path in self.folder.glob("picture*.png"):
+            path.unlink()
+        arguments = ("compare", blend, "--pixel-error", "0", "--out", str(self.out))
+        self.fails(1, "nothing to compare", *arguments)
+
     def test_the_store_goes_where_it_is_told(self):
         store = self.folder / "store"
         self.assertEqual(self.run_batch("build", self.blend(), "--store", str(store)), 0)

@@ -35,6 +35,15 @@ class Usage(unittest.TestCase):
     def test_a_render_needs_somewhere_to_go(self):
         self.assertIn("--out", self.refused("render", "a.blend"))
 
+    def test_a_comparison_is_a_picture_of_levels(self):
+        (job,) = parse("compare", "a.blend", "--out", "a.png", "--pixel-error", "2", "--keep=never")
+        self.assertEqual((job.verb, job.keep, len(job.pictures)), ("compare", "never", 1))
+        self.assertTrue(job.pictures[0].out.endswith("/a.png"))
+        one, other = parse("compare", "a.blend", "b.blend", "--out", "folder")
+        self.assertTrue(other.pictures[0].out.endswith("/folder/b.png"))
+        self.assertIn(".png", self.refused("compare", "a.blend", "--out", "a.jpg"))
+        self.refused("compare", "a.blend", "--out", "a.png", "--false-color")
+
     def test_a_picture_is_a_png(self):
         self.assertIn(".png", self.refused("render", "a.blend", "--out", "a.jpg"))
 

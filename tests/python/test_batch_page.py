@@ -35,6 +35,15 @@ def cut(triangles, error, name="Tree"):
     return {"triangles": triangles, "largest_error_px": error, "largest_error_name": name}
 
 
+def compared(name, ssim, worst="Scene/Tree"):
+    """What batch.py compare reports."""
+    found = {"mean": 0.01, "p999": 0.5, "max": 1.0, "ssim": ssim, "pixels": 9}
+    found["worst"] = [{"object": worst, "share": 0.7}]
+    before = {"cut": cut(9000, 0.0), "povray": {"wall_s": 12.5}}
+    parts = {"cut": cut(90, 1.5), "povray": {"wall_s": 2.0}}
+    return made(name, compare=found, originals=before, picture=f"/out/{name}.png", **parts)
+
+
 class Reader(HTMLParser):
     """Collects what a browser would see."""
 
@@ -98,6 +107,24 @@ class Page(unittest.TestCase):
             rows_of(reports), "Lodestone: render", "today", self.target, **values
         )
         return Reader(self.text)
+
+    def test_a_comparison_has_its_numbers_and_other_runs_no_columns_for_them(self):
+        reports = (compared("a", 0.987), made("b", ExitCode.FAILED))
+        text = self.read(*reports).text
+        for words in ("Difference", "mean 2.55", "largest 255 of 255", "SSIM 0.9870", "most: Tree"):
+            self.assertIn(words, text)
+        self.assertIn("2.0 sof 12.5 s", text)
+        head, failed, done = table(rows_of(reports)).splitlines()
+        self.assertEqual(head.split()[-3:], ["mean", "SSIM", "file"])
+        self.assertEqual(done.split()[-3:], ["2.55", "0.9870", "a.blend"])
+        self.assertEqual(failed.split()[-1], "b.blend")
+        self.assertNotIn("Difference", self.read(made("b")).text)
+        self.assertNotIn("SSIM", table(rows_of([made("b")])))
+
+    def test_a_hostile_name_in_a_comparison_is_text(self):
+        plain = self.read(compared("a", 0.9)).tags
+        for name in HOSTILE:
+            self.assertEqual(self.read(compared("a", 0.9, name)).tags, plain)
 
     def test_an_empty_run_is_a_page(self):
         self.assertIn("0 files", self.read().text)

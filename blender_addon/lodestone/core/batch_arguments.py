@@ -45,19 +45,25 @@ def parser() -> argparse.ArgumentParser:
 def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
     top = argparse.ArgumentParser(
         prog="batch.py",
-        description="Builds levels, renders and exports .blend files without a window.",
+        description="Builds levels, renders, compares and exports .blend files without a window.",
         epilog=_EPILOG,
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
     build = verbs.add_parser("build", help="build missing and changed levels into the store")
     render = verbs.add_parser("render", help="render pictures with POV-Ray")
     export = verbs.add_parser("export", help="write POV-Ray scenes")
-    for verb in (build, render, export):
+    compare = verbs.add_parser("compare", help="render originals and levels, and tell how they "
+                               "differ")  # fmt: skip
+    for verb in (build, render, export, compare):
         _add_common(verb)
-    for verb in (render, export):
+    for verb in (render, export, compare):
         _add_picture(verb)
+    for verb in (render, export):
+        _add_content(verb)
+    for verb in (render, compare):
+        _add_povray(verb)
     _add_render(render)
-    return top, {"build": build, "render": render, "export": export}
+    return top, {"build": build, "render": render, "export": export, "compare": compare}
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:
@@ -115,6 +121,9 @@ def _add_picture(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--ray-classes", type=batch_values.ray_classes, metavar="LIST", help="which "
                       "rays may meet coarser levels than the camera's: shadow, reflection or both "
                       "with a comma, or none; default: the file's")  # fmt: skip
+
+
+def _add_content(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--false-color", action=BooleanOptionalAction, default=False,
                       help="paint by kind and LOD number")  # fmt: skip
     verb.add_argument("--covered-only", action=BooleanOptionalAction, default=False,
@@ -127,12 +136,15 @@ def _add_render(render: argparse.ArgumentParser) -> None:
                         "a folder of its own in --out")  # fmt: skip
     render.add_argument("--skip-existing", action=BooleanOptionalAction, default=False,
                         help="leave alone every picture that is there and whole")  # fmt: skip
-    render.add_argument("--keep", choices=KEEP, default="failed", help="files of the POV-Ray "
-                        "scenes, beside the levels; default: of failed ones")  # fmt: skip
     render.add_argument("--keep-exr", action=BooleanOptionalAction, default=False,
                         help="also keep the linear NAME.exr")  # fmt: skip
-    render.add_argument("--povray", default="", metavar="PROGRAM", help="default: "
-                        "$LODESTONE_POVRAY, else povray on the PATH")  # fmt: skip
+
+
+def _add_povray(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("--keep", choices=KEEP, default="failed", help="files of the POV-Ray "
+                      "scenes, beside the levels; default: of failed ones")  # fmt: skip
+    verb.add_argument("--povray", default="", metavar="PROGRAM", help="default: "
+                      "$LODESTONE_POVRAY, else povray on the PATH")  # fmt: skip
 
 
 def jobs(options: argparse.Namespace) -> list[FileJob]:
@@ -196,9 +208,9 @@ def _in_folders(
 def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> PictureRequest:
     out = Path(options.out).absolute()
     if in_folder:
-        picture = options.verb == "render"
+        picture = options.verb != "export"
         out = out / (fitting(file.stem, LONGEST - 4) + ".png" if picture else folder_name(file))
-    elif options.verb == "render" and out.suffix.lower() != ".png":
+    elif options.verb != "export" and out.suffix.lower() != ".png":
         raise ValueError(f"--out {options.out}: the picture is a .png")
     return PictureRequest(
         out=str(out),
@@ -208,7 +220,7 @@ def _request(options: argparse.Namespace, file: Path, in_folder: bool) -> Pictur
         overrides=overrides_of(vars(options)),
         budget=options.budget,
         **unseen_of(vars(options)),
-        false_color=options.false_color,
-        covered_only=options.covered_only,
+        false_color=getattr(options, "false_color", False),
+        covered_only=getattr(options, "covered_only", False),
         size=options.size,
     )

@@ -39,6 +39,7 @@ def page(rows: Iterable[Row], title: str, about: str, target: Path, running: int
     """`about` is one line on the run; `target` is where the page will lie, which links are relative
     to; `running`: how many files are still to come."""
     rows = list(rows)
+    compared = any(row.compared for row in rows)
     still = f" Still running: {running} to come." if running else ""
     head = "".join(
         f'<th{" class=n" if number else ""}>{text}</th>'
@@ -50,6 +51,7 @@ def page(rows: Iterable[Row], title: str, about: str, target: Path, running: int
             ("Memory", True),
             ("Triangles", True),
             ("Largest error", True),
+            *((("Difference", True), ("POV-Ray", True)) if compared else ()),
             ("Log", False),
         )
     )
@@ -61,7 +63,7 @@ def page(rows: Iterable[Row], title: str, about: str, target: Path, running: int
         f"<title>{_text(title)}</title>\n<style>{_STYLE}</style></head><body>\n"
         f"<h1>{_text(title)}</h1>\n<p>{_text(tally(rows))}.{still} {_text(about)}</p>\n"
         f"<table><thead><tr>{head}</tr></thead><tbody>\n"
-        + "\n".join(_row(row, target) for row in rows)
+        + "\n".join(_row(row, target, compared) for row in rows)
         + "\n</tbody></table>\n</body></html>\n"
     )
 
@@ -80,13 +82,14 @@ def write(path: str, text: str) -> None:
         raise
 
 
-def _row(row: Row, target: Path) -> str:
+def _row(row: Row, target: Path, compared: bool) -> str:
     path = Path(row.file)
     numbers = (
         "" if row.wall_s is None else progress.clock(row.wall_s),
         "" if row.peak_bytes is None else progress.memory(row.peak_bytes),
         _triangles(row),
         _error(row),
+        *((_difference(row), _seconds(row)) if compared else ()),
     )
     log = f'<a href="{_link(row.log, target)}">log</a>' if row.log else ""
     return (
@@ -154,6 +157,21 @@ def _error(row: Row) -> str:
         return ""
     name = f"<br><small><bdi>{_text(row.error_name)}</bdi></small>" if row.error_name else ""
     return f"{row.error_px:.2f} px{name}"
+
+
+def _difference(row: Row) -> str:
+    found = row.compared
+    if found is None:
+        return ""
+    name = f"<br><small>most: <bdi>{_text(found.worst)}</bdi></small>" if found.worst else ""
+    return "<br>".join(found.difference.split(", ")) + name
+
+
+def _seconds(row: Row) -> str:
+    if row.compared is None:
+        return ""
+    before, after = row.compared.seconds
+    return f"{after:.1f} s<br><small>of {before:.1f} s</small>"
 
 
 def _text(text: str) -> str:

@@ -4,13 +4,48 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from . import progress
 from .exit_codes import ExitCode
 from .text import printable
 
 _ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # any failure: 0
+
+
+class Compared(NamedTuple):
+    """Of the picture that differs most from that of the originals: differences of display values
+    0...1, triangles drawn, wall seconds of POV-Ray; pairs are of originals and levels."""
+
+    mean: float
+    max: float
+    ssim: float
+    worst: str
+    triangles: tuple[int, int]
+    seconds: tuple[float, float]
+
+    @classmethod
+    def of(cls, pictures: Iterable[dict[str, Any]]) -> "Compared | None":
+        found = (picture for picture in pictures if "compare" in picture)
+        most = min(found, key=lambda picture: picture["compare"]["ssim"], default=None)
+        if most is None:
+            return None
+        difference, before = most["compare"], most["originals"]
+        worst = difference["worst"]
+        return cls(
+            difference["mean"],
+            difference["max"],
+            difference["ssim"],
+            worst[0]["object"].rsplit("/", 1)[-1] if worst else "",
+            (before["cut"]["triangles"], most["cut"]["triangles"]),
+            (before["povray"]["wall_s"], most["povray"]["wall_s"]),
+        )
+
+    @property
+    def difference(self) -> str:
+        return (
+            f"mean {255 * self.mean:.2f}, largest {255 * self.max:.0f} of 255, SSIM {self.ssim:.4f}"
+        )
 
 
 @dataclass(frozen=True)
@@ -27,6 +62,7 @@ class Row:
     triangles_placed: int | None = None
     error_px: float | None = None  # the largest of all pictures
     error_name: str = ""
+    compared: Compared | None = None
     pictures: tuple[str, ...] = ()
     problems: tuple[dict[str, str], ...] = ()
     log: str = ""
@@ -50,6 +86,7 @@ class Row:
             triangles_placed=report.get("model", {}).get("triangles_placed"),
             error_px=worst["largest_error_px"] if worst else None,
             error_name=worst["largest_error_name"] if worst else "",
+            compared=Compared.of(made),
             pictures=tuple(picture["picture"] for picture in made if picture.get("picture")),
             problems=tuple(report.get("problems", ())),
             log=report.get("log", ""),
@@ -69,8 +106,13 @@ def rows_of(reports: Iterable[dict[str, Any]]) -> list[Row]:
 
 def table(rows: Iterable[Row]) -> str:
     """For a terminal of any width: the file comes last."""
-    lines = [("status", "time", "memory", "triangles", "of", "error", "file")]
+    rows = list(rows)
+    compared = any(row.compared for row in rows)
+    head = ("status", "time", "memory", "triangles", "of", "error")
+    lines = [(*head, *(("mean", "SSIM") if compared else ()), "file")]
     for row in rows:
+        found = row.compared
+        differs = (f"{255 * found.mean:.2f}", f"{found.ssim:.4f}") if found else ("", "")
         lines.append(
             (
                 printable(row.status),
@@ -79,15 +121,14 @@ def table(rows: Iterable[Row]) -> str:
                 "" if row.triangles is None else progress.count(row.triangles),
                 "" if row.triangles_placed is None else progress.count(row.triangles_placed),
                 "" if row.error_px is None else f"{row.error_px:.2f} px",
+                *(differs if compared else ()),
                 printable(Path(row.file).name),
             )
         )
-    widths = [max(len(line[i]) for line in lines) for i in range(6)]
+    widths = [max(map(len, column)) for column in list(zip(*lines))[:-1]]
     return "\n".join(
-        "  ".join(
-            [line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in range(1, 6)), line[6]]
-        )
-        for line in lines
+        "  ".join([status.ljust(widths[0]), *map(str.rjust, numbers, widths[1:]), name])
+        for status, *numbers, name in lines
     )
 
 

@@ -6,6 +6,7 @@ difference in false colors.
 """
 
 import os
+import shutil
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,18 @@ class Comparison:
     pixels: int
     pixel_error: float
     worst: tuple[tuple[str, float], ...] = ()
+    p999: float = 0.0
+
+    def part(self) -> dict[str, Any]:
+        """The report's."""
+        return {
+            "mean": self.mean,
+            "p999": self.p999,
+            "max": self.max,
+            "ssim": self.ssim,
+            "pixels": self.pixels,
+            "worst": [{"object": path, "share": share} for path, share in self.worst],
+        }
 
     @property
     def sentence(self) -> str:
@@ -63,20 +76,24 @@ class Plan:
     def finished_step(self) -> bool:
         return self.comparison is not None if self.step == DIFFERENCE else self.has_this
 
-    def take(self, picture: Path, shown: Path, paths: list[str]) -> None:
-        """This step's picture, which of its choices each pixel shows, and their paths."""
+    def take(self, made: Any, shown: Path, paths: list[str]) -> None:
+        """This step's core.picture.Picture, which of its choices each pixel shows, and their
+        paths."""
         os.replace(shown, self._shown(self.step))
-        self._picture(self.step).write_bytes(picture.read_bytes())
+        shutil.copyfile(made.path, self.picture(self.step))
         self._paths[self.step] = paths
+        if self.step == LEVELS:  # a budget may have asked for coarser ones
+            self.pixel_error = made.parts["cut"].get("pixel_error", self.pixel_error)
 
-    def compare(self) -> Any:
-        """The difference as an image, lowest row first; fills `comparison`."""
+    def compare(self, bottom_up: bool = True) -> Any:
+        """The difference as an image, lowest row first (Blender's order) or last; fills
+        `comparison`."""
         steps = (ORIGINALS, LEVELS)
         difference, sums, image = native.image_compare_shown(
-            tuple(str(self._picture(step)) for step in steps),
+            tuple(str(self.picture(step)) for step in steps),
             tuple(str(self._shown(step)) for step in steps),
             tuple(len(self._paths[step]) for step in steps),
-            bottom_up=True,
+            bottom_up=bottom_up,
         )
         listed = [(self._paths[step], sums[step]) for step in steps]
         self.comparison = Comparison(
@@ -86,10 +103,12 @@ class Plan:
             difference.pixels,
             self.pixel_error,
             worst_of(listed),
+            difference.p999,
         )
         return image
 
-    def _picture(self, step: int) -> Path:
+    def picture(self, step: int) -> Path:
+        """Where a step's picture lies."""
         return self.root / f"{WORDS[step]}.exr"
 
     def _shown(self, step: int) -> Path:

@@ -42,6 +42,13 @@ class Settings:
         """Whether anything but originals may be drawn."""
         return self.pixel_error > 0.0 or self.budget > 0
 
+    def of_originals(self) -> "Settings":
+        """The same picture by its originals alone."""
+        modifiers = self.modifiers
+        if modifiers is not None and modifiers.ray_classes:
+            modifiers = replace(modifiers, ray_classes=0)
+        return replace(self, pixel_error=0.0, budget=0, modifiers=modifiers)
+
     @property
     def quality(self) -> quality_tree.Quality:
         return quality_tree.quality(self.pixel_error, self.overrides)
