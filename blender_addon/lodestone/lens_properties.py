@@ -11,6 +11,8 @@ from bpy.props import (
     PointerProperty,
 )
 
+from .decided_property import decided
+
 FILTERS = (
     ("ALL", "Everything", "Whatever the lens touches is refined"),
     ("REFINE", "Refine Only", "Only what is in the collection is refined, all else is as outside"),
@@ -44,10 +46,6 @@ _FALLOFF = {
 }
 
 
-def _changed(self, context):
-    self.id_data.update_tag()  # writing to a property group does not tag the depsgraph
-
-
 def _holds_levels(self, collection):
     return collection.library is not None or not collection.name.startswith(".")
 
@@ -55,47 +53,42 @@ def _holds_levels(self, collection):
 class LODESTONE_PG_lens(bpy.types.PropertyGroup):
     """On an Empty: its place, turn, scale and size are the lens's."""
 
-    enabled: BoolProperty(
+    enabled: decided(
+        BoolProperty,
         name="Detail Lens",
         description="Draw what is inside this Empty's sphere or cube finer, or coarser, than Pixel "
         "Error asks for",
         default=False,
-        update=_changed,
-        override={"LIBRARY_OVERRIDABLE"},
     )
-    strength: FloatProperty(
+    strength: decided(
+        FloatProperty,
         **_STRENGTH,
         description="What is in the middle is drawn so many times finer: 4 as from a quarter of "
         "the distance; below 1 coarser",
-        update=_changed,
-        override={"LIBRARY_OVERRIDABLE"},
     )
-    falloff: FloatProperty(**_FALLOFF, update=_changed, override={"LIBRARY_OVERRIDABLE"})
-    filter: EnumProperty(
+    falloff: decided(FloatProperty, **_FALLOFF)
+    filter: decided(
+        EnumProperty,
         name="Works On",
         description="What the lens is about",
         items=FILTERS,
         default="ALL",
-        update=_changed,
-        override={"LIBRARY_OVERRIDABLE"},
     )
-    collection: PointerProperty(
+    collection: decided(
+        PointerProperty,
         name="Collection",
         description="The collection that the lens is about, with all that is in it",
         type=bpy.types.Collection,
         poll=_holds_levels,
-        update=_changed,
-        override={"LIBRARY_OVERRIDABLE"},
     )
 
 
 class LODESTONE_PG_screen_lens(bpy.types.PropertyGroup):
     """A disc on the image, in shares of it: the same at every resolution."""
 
-    enabled: BoolProperty(
-        name="Use", description="Whether this lens counts", default=True, update=_changed
-    )
-    x: FloatProperty(
+    enabled: decided(BoolProperty, name="Use", description="Whether this lens counts", default=True)
+    x: decided(
+        FloatProperty,
         name="X",
         description="Its middle, from the image's left (0) to its right (1)",
         default=0.5,
@@ -103,9 +96,9 @@ class LODESTONE_PG_screen_lens(bpy.types.PropertyGroup):
         soft_max=1.0,
         min=-8.0,
         max=8.0,
-        update=_changed,
     )
-    y: FloatProperty(
+    y: decided(
+        FloatProperty,
         name="Y",
         description="Its middle, from the image's bottom (0) to its top (1)",
         default=0.5,
@@ -113,24 +106,23 @@ class LODESTONE_PG_screen_lens(bpy.types.PropertyGroup):
         soft_max=1.0,
         min=-8.0,
         max=8.0,
-        update=_changed,
     )
-    radius: FloatProperty(
+    radius: decided(
+        FloatProperty,
         name="Radius",
         description="As a share of the image's width",
         default=0.1,
         min=0.0,
         soft_max=1.0,
         max=8.0,
-        update=_changed,
     )
-    strength: FloatProperty(
+    strength: decided(
+        FloatProperty,
         **_STRENGTH,
         description="What is in its middle is drawn so many times finer: 4 as from a quarter of "
         "the distance; below 1 coarser",
-        update=_changed,
     )
-    falloff: FloatProperty(**_FALLOFF, update=_changed)
+    falloff: decided(FloatProperty, **_FALLOFF)
 
 
 class LODESTONE_PG_camera(bpy.types.PropertyGroup):

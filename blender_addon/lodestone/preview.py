@@ -16,6 +16,7 @@ import bpy
 
 from . import preview_draw
 from .bridge import ids, lenses, preview_scene, viewport_view
+from .bridge.decisions import edits_of
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import edits, preview_worker, store_levels, store_path
@@ -337,11 +338,11 @@ def lines(context):
 
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
-    changed = [
-        name_of(update.id)
+    changed = edits.reported(
+        edits_of(update.id)
         for update in depsgraph.updates
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Object)
-    ]
+    )
     if not changed:
         return
     edits.note(changed)

@@ -12,6 +12,8 @@ from bpy.props import (
     StringProperty,
 )
 
+from .bridge import decisions
+from .decided_property import decided
 from .lens_properties import LODESTONE_PG_lens
 from .quality_properties import Overrides, RayClasses
 
@@ -129,10 +131,6 @@ KEEP = (
     ("FAILED", "If Failed", "Keep them when POV-Ray fails, to look at what it was given"),
     ("ALWAYS", "Always", "Keep them in a folder beside the levels; what did not change is reused"),
 )
-
-
-def _decided(self, context):
-    self.id_data.update_tag()  # writing to a property group does not tag the depsgraph
 
 
 class LODESTONE_PG_ignored(bpy.types.PropertyGroup):
@@ -253,6 +251,18 @@ class LODESTONE_PG_scene(Overrides, RayClasses, bpy.types.PropertyGroup):
     linked: CollectionProperty(type=LODESTONE_PG_linked, options={"HIDDEN"})
 
 
+def _is_environment(settings):
+    return settings.role == "ENVIRONMENT"
+
+
+def _make_environment(settings, value):
+    if value or settings.id_data.override_library is not None:
+        settings.role = "ENVIRONMENT" if value else "ORDINARY"
+    else:  # as if it had never been decided
+        settings.property_unset("role")
+        decisions.tag(settings.id_data)
+
+
 class _Identified:
     uid: StringProperty(
         name="ID",
@@ -261,67 +271,38 @@ class _Identified:
         maxlen=16,
         options={"HIDDEN"},
     )
-    role: EnumProperty(
+    role: decided(
+        EnumProperty,
         name="Role",
         description="What kind of thing this is",
         items=ROLES,
         default="ORDINARY",
-        update=_decided,
+    )
+    environment: BoolProperty(
+        name="Environment",
+        description="Wall, ground or sky: simplified, but never replaced by one shape",
+        get=_is_environment,
+        set=_make_environment,
+        options=set(),  # what is computed cannot be animated
         override={"LIBRARY_OVERRIDABLE"},
     )
-    use: EnumProperty(
+    use: decided(
+        EnumProperty,
         name="Use",
         description="Which of its levels pictures may use",
         items=USES,
         default="AUTOMATIC",
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
     )
-    coarsest: IntProperty(
+    coarsest: decided(
+        IntProperty,
         name="Coarsest Level",
         description="The number of the coarsest level (LOD) that it is drawn with",
         default=1,
         min=1,
         max=31,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
     )
-    use_pin_render: BoolProperty(
-        name="Pin in Renders",
-        description="Always draw it with this level in renders, from wherever it is seen",
-        default=False,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
-    )
-    pin_render: IntProperty(
-        name="Pinned Level",
-        description="The number of the level (LOD) that renders always draw it with. Where it has "
-        "no such one, its coarsest",
-        default=0,
-        min=0,
-        max=31,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
-    )
-    use_pin_viewport: BoolProperty(
-        name="Pin in Viewports",
-        description="Always draw it with this level in viewports that show levels, from wherever "
-        "it is seen. Renders are not affected",
-        default=False,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
-    )
-    pin_viewport: IntProperty(
-        name="Pinned Level",
-        description="The number of the level (LOD) that viewports always draw it with. Where it "
-        "has no such one, its coarsest",
-        default=0,
-        min=0,
-        max=31,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
-    )
-    importance: FloatProperty(
+    importance: decided(
+        FloatProperty,
         name="Importance",
         description="It and all that is in it are drawn so many times finer than Pixel Error asks "
         "for: 2 as from half the distance. Importances of collections, instances and objects "
@@ -333,8 +314,28 @@ class _Identified:
         max=64.0,
         precision=2,
         step=10,
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
+    )
+
+
+for _where, _pinned in (
+    ("render", "Always draw it with this level in renders, from wherever it is seen"),
+    (
+        "viewport",
+        "Always draw it with this level in viewports that show levels, from wherever it is seen. "
+        "Renders are not affected",
+    ),
+):
+    _Identified.__annotations__[f"use_pin_{_where}"] = decided(
+        BoolProperty, name=f"Pin in {_where.title()}s", description=_pinned, default=False
+    )
+    _Identified.__annotations__[f"pin_{_where}"] = decided(
+        IntProperty,
+        name="Pinned Level",
+        description=f"The number of the level (LOD) that {_where}s always draw it with. Where it "
+        "has no such one, its coarsest",
+        default=0,
+        min=0,
+        max=31,
     )
 
 
@@ -346,14 +347,13 @@ class LODESTONE_PG_object(_Identified, bpy.types.PropertyGroup):
     lens: PointerProperty(
         type=LODESTONE_PG_lens, options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}
     )
-    loose_parts: EnumProperty(
+    loose_parts: decided(
+        EnumProperty,
         name="Loose Parts",
         description="How the unconnected parts of this object's mesh are drawn. It stays one "
         "object, and at full detail its picture is the same",
         items=LOOSE_PARTS,
         default="AUTOMATIC",
-        update=_decided,
-        override={"LIBRARY_OVERRIDABLE"},
     )
 
 

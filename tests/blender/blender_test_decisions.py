@@ -105,6 +105,44 @@ class Decisions(Case):
         scenes.instance("Right", shared, (5, 0, 0), parent=self.root).lodestone.use = "ORIGINAL"
         self.assertEqual(self.placed(), {"Right": (1.0, 0)})
 
+    def test_environment_is_a_checkbox_that_leaves_nothing_when_it_is_off_again(self):
+        floor = scenes.cube("Floor")
+        self.assertFalse(floor.lodestone.environment)
+        decisions.drop_empty(floor)  # looking at it decides nothing
+        self.assertNotIn("lodestone", floor)
+        floor.lodestone.environment = True
+        self.assertEqual((floor.lodestone.role, decisions.decided(floor)), ("ENVIRONMENT", True))
+        copied = scenes.cube("Copied")
+        decisions.copy(floor, copied)
+        self.assertTrue(copied.lodestone.environment)
+        floor.lodestone.environment = False
+        self.assertFalse(decisions.decided(floor))
+        decisions.drop_empty(floor)
+        self.assertNotIn("lodestone", floor)
+
+    def test_deciding_about_a_thing_is_not_taken_for_another_shape(self):
+        from lodestone.core import edits
+
+        mesh = scenes.cube_mesh()
+        cube, twin = scenes.cube("Cube", data=mesh), scenes.cube("Twin", (3, 0, 0), data=mesh)
+        other = scenes.cube("Other", (0, 3, 0))
+        bpy.context.view_layer.update()
+        for change in (
+            lambda: setattr(cube.lodestone, "use", "ORIGINAL"),
+            lambda: setattr(cube.lodestone, "environment", True),
+            lambda: setattr(cube.lodestone, "environment", False),
+            lambda: setattr(cube.lodestone, "use_pin_viewport", True),
+            lambda: decisions.copy(other, cube),
+        ):
+            edits.clear()
+            change()
+            bpy.context.view_layer.update()
+            self.assertEqual(edits.names(), set())
+        mesh.vertices[0].co.z += 1.0
+        mesh.update()
+        bpy.context.view_layer.update()
+        self.assertEqual(edits.names(), {cube.name, twin.name})
+
     def test_copied_to_the_selected_and_taken_back(self):
         source = scenes.cube("Source")
         targets = [scenes.cube(f"Target {n}", (3 * n, 0, 0)) for n in (1, 2)]

@@ -205,6 +205,7 @@ def a_pin_for_viewports_is_obeyed_and_renders_are_not_affected():
     bpy.data.objects["Ball 3"].lodestone.use_pin_viewport = True
     yield from settled(area, shown)
     assert picture(area).triangles >= 1280
+    assert picture(area).things.count == 0, "deciding about a thing is taken for another shape"
     from lodestone.bridge import ids
 
     assert ids.decision_of(bpy.data.objects["Ball 3"]) == ids.UNDECIDED

@@ -6,11 +6,12 @@ from typing import Any
 
 import bpy
 
-from ..core import identity
+from ..core import edits, identity
 from . import ids, quality
 from .ids import name_of
 
 _INHERITED = {"rna_type", "name"}
+_COMPUTED = {"environment"}  # of `role`: such ones always count as set
 
 Thing = tuple[str, Any]  # "object" or "collection", the datablock
 
@@ -94,8 +95,8 @@ def _store(item: Any, uid: str) -> None:
 
 def _set_names(settings: Any) -> list[str]:
     """Which of our properties the file holds a value of."""
-    own = {p.identifier for p in settings.bl_rna.properties} - _INHERITED
-    computed = {name for name in own if quality.OWN + name in own}  # they always count as set
+    own = {p.identifier for p in settings.bl_rna.properties} - _INHERITED - _COMPUTED
+    computed = {name for name in own if quality.OWN + name in own}  # as well
     found = [name for name in sorted(own - computed) if settings.is_property_set(name)]
     return [name for name in found if name != "lens" or _set_names(settings.lens)]
 
@@ -118,6 +119,21 @@ def forget(item: Any, decisions: bool) -> bool:
     return bool(found)
 
 
+def tag(item: Any) -> None:
+    """Tells the depsgraph that something else is decided: writing to a property group may not. It
+    will say that there is another shape, too, which must not be believed."""
+    if isinstance(item, bpy.types.Object):
+        edits.decided(*filter(None, edits_of(item)))
+    item.update_tag()
+
+
+def edits_of(item: Any) -> tuple[str, str]:
+    """What core.edits knows an object by: its name and that of its data."""
+    data = item.original.data
+    name = "" if data is None else f"{type(data).__name__} {name_of(data, 'name_full')}"
+    return name_of(item), name
+
+
 def copy(source: Any, target: Any) -> None:
     """What is decided about an object or collection; what is not is taken back."""
     settings, before = ids.settings_of(source), ids.settings_of(target)
@@ -130,7 +146,7 @@ def copy(source: Any, target: Any) -> None:
             _copy_group(settings.lens, target.lodestone.lens)
         elif name != "uid":
             setattr(target.lodestone, name, getattr(settings, name))
-    target.update_tag()
+    tag(target)
     drop_empty(target)
 
 

@@ -6,7 +6,23 @@ from collections.abc import Iterable
 
 _steps = itertools.count(1)
 _noted: dict[str, int] = {}
+_decided: set[str] = set()  # objects, and what they show
 _read = 0
+
+
+def decided(*names: str) -> None:
+    """Something was decided about an object, of which Blender will say next that its shape, and
+    that of all with the same data, has changed. An edit that a script makes in the same moment is
+    not told from it."""
+    _decided.update(names)
+
+
+def reported(named: Iterable[tuple[str, str]]) -> list[str]:
+    """Of objects that Blender reports, by their names and those of their data: those that may
+    really have another shape."""
+    found = [name for name, data in named if not _decided & {name, data}]
+    _decided.clear()
+    return found
 
 
 def note(names: Iterable[str]) -> None:
@@ -33,3 +49,4 @@ def names() -> set[str]:
 
 def clear() -> None:
     _noted.clear()
+    _decided.clear()

@@ -10,7 +10,9 @@ from .polled import Polled
 class LODESTONE_OT_copy_decisions(Polled, bpy.types.Operator):
     bl_idname = "lodestone.copy_decisions"
     bl_label = "Copy to Selected"
-    bl_description = "Give the other selected objects this one's Use, Importance and Role"
+    bl_description = (
+        "Give the other selected objects this one's Use, Importance, Environment and pins"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Role of what is linked from a library: kept in this file, by library path and name."""
+"""Environment or not, of what is linked from a library: kept in this file, by library path and
+name."""
 
 import bpy
 from bpy.props import EnumProperty
@@ -10,15 +11,16 @@ from ..properties import ROLES
 
 class LODESTONE_OT_linked_role(bpy.types.Operator):
     bl_idname = "lodestone.linked_role"
-    bl_label = "Role Here"
+    bl_label = "Environment Here"
     bl_description = (
-        "What kind of thing this linked one is in this scene; its library stays as it is"
+        "Whether this linked thing is Environment (wall, ground or sky) in this scene; its library "
+        "stays as it is"
     )
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     role: EnumProperty(
         name="Role",
-        items=(("LIBRARY", "As in Library", "The role it has in its library"), *ROLES),
+        items=(("LIBRARY", "As in Library", "As its library has it"), *ROLES),
         default="LIBRARY",
     )
 

@@ -32,7 +32,7 @@ def _draw_decisions(layout, context, item):
     sub = column.column()
     sub.active = settings.use in {"AUTOMATIC", "LIMIT"} and not settings.use_pin_render
     sub.prop(settings, "importance")
-    column.prop(settings, "role")
+    column.prop(settings, "environment")
     if getattr(item, "type", "") == "MESH":
         column.prop(settings, "loose_parts")
     if len(context.selected_objects) > 1 and item == context.object:
@@ -40,15 +40,17 @@ def _draw_decisions(layout, context, item):
 
 
 def draw_levels(layout, context, item):
-    """The role and the levels of an object or a collection; the same in both places."""
+    """What is decided about, and the levels of, an object or a collection; the same in both
+    places."""
     layout.use_property_split = True
     layout.use_property_decorate = False
     if item.library is not None:
         layout.label(text=f"Linked from {item.library.name}", icon="LINKED")
         kind = "collection" if isinstance(item, bpy.types.Collection) else "object"
         decided = decisions.linked_role(context.scene, kind, item)
-        shown = "As in Library" if decided is None else decided.title()
-        layout.operator_menu_enum("lodestone.linked_role", "role", text=f"Role Here: {shown}")
+        shown = {None: "As in Library", "ENVIRONMENT": "Yes", "ORDINARY": "No"}[decided]
+        text = f"Environment Here: {shown}"
+        layout.operator_menu_enum("lodestone.linked_role", "role", text=text)
     else:
         _draw_decisions(layout, context, item)
     store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
