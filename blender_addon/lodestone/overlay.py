@@ -11,7 +11,7 @@ import traceback
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
-from . import preview
+from . import forced_lod, preview
 from .bridge import kept_view
 from .core import false_colors, kept_model
 from .core.native import lodestone_native as native
@@ -42,7 +42,7 @@ SEEN_FROM = (
 )
 
 
-class LODESTONE_PG_overlay(bpy.types.PropertyGroup):
+class LODESTONE_PG_overlay(forced_lod.ForcedLod, bpy.types.PropertyGroup):
     mode: EnumProperty(
         name="Color By",
         description="Color what the scene camera's picture uses",
@@ -349,6 +349,7 @@ def forget():
     global _shown
     _shown = Shown()
     _offscreens.clear()
+    forced_lod.forget()
 
 
 _CLASSES = (LODESTONE_PG_overlay, LODESTONE_VIEW3D_PT_false_colors)

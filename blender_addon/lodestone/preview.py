@@ -14,7 +14,7 @@ import weakref
 
 import bpy
 
-from . import preview_draw
+from . import forced_lod, preview_draw
 from .bridge import ids, lenses, preview_scene, viewport_view
 from .bridge.decisions import edits_of
 from .bridge.ids import name_of
@@ -195,6 +195,7 @@ def _ask(source, state, context, depsgraph):
         triangles=round(1e6 * settings.budget_viewport) if used else 0,
         lenses=source.lenses(context.scene),
         mode=chosen.mode if chosen.seen_from == "VIEW" else preview_worker.NO_COLORS,
+        force=forced_lod.of_view(space),
         state=shown,
         things=things,
     )

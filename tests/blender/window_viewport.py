@@ -216,6 +216,30 @@ def a_pin_for_viewports_is_obeyed_and_renders_are_not_affected():
     assert set(picture(area).keys).isdisjoint(shown.keys)
 
 
+def a_forced_level_is_one_viewports_and_no_files():
+    area = area_now()
+    chosen = bpy.context.window_manager.lodestone_overlay
+    before = of_user()
+    found = []
+    for lod in (0, 1, 2):
+        shown = picture(area)
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area):
+            chosen.force_lod = lod
+            chosen.use_force_lod = True
+            assert (chosen.use_force_lod, chosen.force_lod) == (True, lod)
+        assert not chosen.use_force_lod, "it is on where there is no viewport"
+        yield from settled(area, shown)
+        found.append(picture(area).triangles)
+        assert f"LOD {lod}" in state(area).view.line()
+    assert of_user() == before
+    assert PLACES * 1280 == found[0] > found[1] > found[2] > 0, found
+    assert all(triangles % PLACES == 0 for triangles in found), found
+    shown = picture(area)
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area):
+        chosen.use_force_lod = False
+    yield from settled(area, shown)
+
+
 def an_exception_is_told_once_and_nothing_breaks():
     from lodestone import preview
 
@@ -257,6 +281,7 @@ STEPS = (
     what_is_edited_is_drawn_as_it_is,
     undo_and_redo_are_followed,
     a_pin_for_viewports_is_obeyed_and_renders_are_not_affected,
+    a_forced_level_is_one_viewports_and_no_files,
     an_exception_is_told_once_and_nothing_breaks,
     disabling_the_add_on_ends_it,
 )

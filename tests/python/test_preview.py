@@ -9,6 +9,7 @@ from array import array
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core import edits, preview_tree, preview_view, preview_worker
@@ -25,12 +26,30 @@ def moved(x, y=0.0, z=0.0):
     return (1.0, 0.0, 0.0, x, 0.0, 1.0, 0.0, y, 0.0, 0.0, 1.0, z)
 
 
-def made():
+def tetra():
+    corners = array("f", [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1])
+    return MeshBuffers(corners, array("i", [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]))
+
+
+def hill(size=24):
+    """2 size^2 triangles of which levels can be made."""
+    corners, faces = array("f"), array("i")
+    for y in range(size + 1):
+        for x in range(size + 1):
+            corners.extend(
+                (x / size, y / size, 0.2 * math.sin(7 * x / size) * math.cos(5 * y / size))
+            )
+    for y in range(size):
+        for x in range(size):
+            at = y * (size + 1) + x
+            faces.extend((at, at + 1, at + size + 1, at + 1, at + size + 2, at + size + 1))
+    return MeshBuffers(corners, faces)
+
+
+def made(buffers=None):
     """A scene: collection "Pair" with objects "Left" at 0 and "Right" at 5, and "Alone" at 9."""
     model = Model()
-    corners = array("f", [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1])
-    faces = array("i", [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3])
-    leaf = model.add_mesh(LEAF, "Tetra", MeshBuffers(corners, faces))
+    leaf = model.add_mesh(LEAF, "Tetra", buffers or tetra())
     pair = model.add_group(GROUP, "Pair")
     model.add_placement(pair, leaf, IDENTITY, "Left")
     model.add_placement(pair, leaf, moved(5), "Right")
@@ -114,8 +133,8 @@ class Workers(unittest.TestCase):
         self.addCleanup(found.close)
         return found
 
-    def store(self):
-        model, _ = made()
+    def store(self, buffers=None):
+        model, _ = made(buffers)
         with model:
             model.build(str(self.folder))
 
@@ -199,6 +218,40 @@ class Workers(unittest.TestCase):
         self.assertEqual(pictures[-1].drawn, 2)
         meshes, pictures = self.answers(worker, 1, replace(WANTED, state=3))
         self.assertEqual((meshes, pictures[-1].drawn), ({}, 3))
+
+    def test_a_forced_level_is_every_objects_and_no_groups(self):
+        self.store(hill())
+        worker = self.worker()
+        coarse = replace(WANTED, pixel_error=200.0)
+        before = self.answers(worker, 1, coarse)[1][-1]
+        self.assertLess(before.triangles, 3 * 1152)
+        slot = worker.tree.objects["Right"][0]
+        pinned = Things({slot.key: Change(coarsest=0, pinned=True)})
+        found = []
+        for number, things in enumerate((Things(), pinned)):
+            for lod in (0, 1, 2, 31):
+                wanted = replace(coarse, force=lod, state=number, things=things)
+                picture = self.answers(worker, 1, wanted)[1][-1]
+                self.assertEqual(picture.drawn, 3)
+                found.append(picture.triangles)
+        self.assertEqual(found[:4], found[4:], "what is decided counts")
+        self.assertEqual(found[0], 3 * 1152)
+        self.assertEqual(sorted(set(found), reverse=True), found[:4])
+        self.assertTrue(all(count % 3 == 0 for count in found))
+        after = self.answers(worker, 1, coarse)[1][-1]
+        self.assertEqual((after.keys, after.triangles), (before.keys, before.triangles))
+
+    def test_a_forced_level_of_too_much_is_a_sentence(self):
+        self.store(hill())
+        worker = self.worker()
+        self.answers(worker)
+        with mock.patch.object(preview_worker, "MOST_TRIANGLES", 1000):
+            worker.ask(1, replace(WANTED, force=0))
+            item, end = None, time.monotonic() + 20
+            while item is None and time.monotonic() < end:
+                item = worker.take()
+        self.assertIn("LOD 0 of everything is 3,456 triangles", item.text)
+        self.assertIn("force a coarser one", item.text)
 
     def test_two_viewports_have_a_picture_each(self):
         self.store()

@@ -18,6 +18,7 @@ Rows = tuple[float, ...]  # row-major 3x4
 IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 INSTANCES, HAIR = " instances", " hair"  # what is appended to an object's name
 ALL_RAYS = 15
+NOT_FORCED = -1
 _MOST_NESTED = 64
 
 
@@ -142,6 +143,23 @@ def _owner(name: str, is_object: Callable[[str], bool]) -> str | None:
     return None
 
 
+def leaves_of(model: Any, root: Any) -> list[tuple[Any, int]]:
+    """Every placement of what is no group: (group, position), each once."""
+    found: list[tuple[Any, int]] = []
+    is_group: dict[int, bool] = {root.index: True}
+    waiting = [root]
+    while waiting:
+        group = waiting.pop()
+        for position, (child, *_) in enumerate(model.children(group)):
+            if child.index not in is_group:
+                is_group[child.index] = model.object_summary(child).group
+                if is_group[child.index]:
+                    waiting.append(child)
+            if not is_group[child.index]:
+                found.append((group, position))
+    return found
+
+
 class Change(NamedTuple):
     """What is different about a placement from how levels were built. `world`: None: where it was.
     `importance`, `coarsest`, `pinned`: as core.decision has them."""
@@ -185,8 +203,9 @@ class Decided:
 
     def __init__(self, model: Any, names: Names) -> None:
         self.model = model
-        root = model.find_object(names.scene_uid)
+        self._root = root = model.find_object(names.scene_uid)
         self.found = root is not None
+        self._leaves: list[tuple[Any, int]] | None = None  # looked for when they are needed
         self.tree = Tree()
         if root is not None:
             is_object = names.objects.__contains__
@@ -199,8 +218,11 @@ class Decided:
             if (slot.importance, slot.coarsest) != (1.0, ANY_LEVEL)
         }
 
-    def apply(self, changes: Changes) -> None:
-        """Makes the model so; what is not among the changes is as levels were built."""
+    def apply(self, changes: Changes, force: int = NOT_FORCED) -> None:
+        """Makes the model so; what is not among the changes is as levels were built. `force`: the
+        LOD number that every object is drawn with, whatever is decided about it."""
+        if force != NOT_FORCED:
+            changes = self._forced(changes, force)
         for key in self._applied.keys() | changes.keys():
             change, before = changes.get(key), self._applied.get(key)
             if change == before:
@@ -210,3 +232,22 @@ class Decided:
                 take_back(self.model, slot, change)
             apply(self.model, slot, change)
         self._applied = dict(changes)
+
+    def _forced(self, changes: Changes, lod: int) -> Changes:
+        """Groups have no say: what is in them is asked for."""
+        made: Changes = {}
+        for key, change in changes.items():
+            change = change._replace(coarsest=ANY_LEVEL, pinned=False)
+            if change != Change():
+                made[key] = change
+        if self._leaves is None:
+            self._leaves = leaves_of(self.model, self._root)
+            for group, position in self._leaves:
+                slot = Slot(group, position, IDENTITY, IDENTITY, False, 1.0, ANY_LEVEL)
+                self._slots.setdefault(slot.key, slot)
+        plain = Change(coarsest=lod, pinned=True)
+        for group, position in self._leaves:
+            key = (group.index, position)
+            before = made.get(key)
+            made[key] = plain if before is None else before._replace(coarsest=lod, pinned=True)
+        return made

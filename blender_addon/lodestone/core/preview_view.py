@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from . import progress
+from .preview_tree import NOT_FORCED
 from .preview_worker import Picture, Wanted
 
 Planes = list[tuple[float, float, float, float]]
@@ -83,6 +84,8 @@ class View:
             f"{picture.drawn:,} drawn of {picture.occurrences:,}",
             f"Pixel Error {picture.pixel_error:.3g}",
         ]
+        if picture.wanted.force != NOT_FORCED:
+            parts[-1] = f"every object at LOD {picture.wanted.force}"
         if not picture.fits:
             parts.append("even the coarsest levels are more than the budget")
         if picture.things.count:

@@ -15,16 +15,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import false_colors, preview_tree
+from . import false_colors, preview_tree, progress
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS
-from .preview_tree import Changes, Names, Tree
+from .preview_tree import NOT_FORCED, Changes, Names, Tree
 from .store_levels import is_store
 
 MOST_TRIANGLES = 8_000_000  # of a picture, whatever its budget: 0.2 GB
 COARSE_FIRST = 8.0  # times Pixel Error
 PATIENCE_S = 0.25  # a picture that takes longer is given up when the view has moved on
 NO_COLORS = "NONE"
+TOO_FINE = (
+    "LOD {} of everything is {} triangles, a viewport draws at most "
+    f"{MOST_TRIANGLES // 1_000_000} M: force a coarser one"
+)
 
 
 class LiveThing:
@@ -38,7 +42,8 @@ class LiveThing:
 @dataclass(frozen=True)
 class Wanted:
     """Everything that a viewport's picture depends on; equal ones draw the same. `lenses`: with the
-    uids of the collections that they list."""
+    uids of the collections that they list. `force`: the LOD number of every object, whatever the
+    Pixel Error and what is decided."""
 
     camera: Any
     size: tuple[int, int]
@@ -46,6 +51,7 @@ class Wanted:
     triangles: int = 0  # budget; 0: none
     lenses: tuple[tuple[Any, str], ...] = ()
     mode: str = NO_COLORS
+    force: int = NOT_FORCED
     state: Hashable = 0
     things: "Things | None" = None  # told apart by `state`
 
@@ -211,7 +217,9 @@ class Worker:
     def _make(self, viewport: Hashable, wanted: Wanted) -> None:
         since = time.monotonic()
         errors = [wanted.pixel_error]
-        if viewport not in self._pictured and wanted.pixel_error > 0.0:
+        if wanted.force != NOT_FORCED:
+            pass  # there is no coarser one
+        elif viewport not in self._pictured and wanted.pixel_error > 0.0:
             errors.insert(0, COARSE_FIRST * wanted.pixel_error)
         elif viewport not in self._pictured and self._model is not None:
             errors.insert(0, COARSE_FIRST)
@@ -233,9 +241,11 @@ class Worker:
         assert things is not None
         if self._model is not None:
             start = time.perf_counter()
-            self._decided.apply(things.changes)
-            cut = self._cut(wanted)
+            self._decided.apply(things.changes, wanted.force)
+            cut = self._cut(viewport, wanted)
             choose_s = time.perf_counter() - start
+            if cut is None:
+                return False
             with cut:
                 error, fits = cut.pixel_error, cut.fits
                 drawn = cut.summary().occurrences
@@ -272,8 +282,19 @@ class Worker:
             wanted.camera, *wanted.size, wanted.pixel_error, POVRAY_KINDS, modifiers=modifiers
         )
 
-    def _cut(self, wanted: Wanted) -> Any:
+    def _cut(self, viewport: Hashable, wanted: Wanted) -> Any:
+        """None: what is forced is too much, which the viewport is told."""
         view, most = self._view(wanted), MOST_TRIANGLES
+        if wanted.force != NOT_FORCED:
+            cut = native.Cut(self._model, view, self._job)
+            triangles = cut.summary().triangles
+            if triangles <= most:
+                return cut
+            cut.close()
+            self._out.append(
+                Failed(viewport, TOO_FINE.format(wanted.force, progress.count(triangles)))
+            )
+            return None
         if wanted.triangles:
             most = min(most, wanted.triangles)
         else:

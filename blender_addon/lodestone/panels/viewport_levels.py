@@ -12,8 +12,16 @@ def draw_levels(layout, context):
     column = layout.column()
     column.active = settings.use_levels
     column.prop(settings, "pixel_error_viewport", text="Pixel Error")
-    column.prop(settings, "budget_viewport", text="Budget (M Triangles)")
+    column.prop(settings, "budget_viewport", text="Budget (M Tris)")
     if not shown:
         return
+    chosen = context.window_manager.lodestone_overlay
+    column.active = settings.use_levels and not chosen.use_force_lod
+    row = layout.row(heading="Force LOD")
+    row.prop(chosen, "use_force_lod", text="")
+    sub = row.row()
+    sub.active = chosen.use_force_lod
+    sub.prop(chosen, "force_lod", text="")
+    told = layout.column(align=True)
     for line in preview.lines(context):
-        layout.label(text=line)
+        told.label(text=line)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Force LOD: a viewport in which every object shows its n-th level, for looking at levels. Each
+viewport has its own; none is ever saved."""
+
+import bpy
+from bpy.props import BoolProperty, IntProperty
+
+from .core.preview_tree import NOT_FORCED
+
+_DEFAULT = 1
+_on = set()  # viewports
+_lods = {}  # by viewport, also of those where it is off
+
+
+def of_view(space):
+    """The LOD number that a 3D viewport forces, or NOT_FORCED."""
+    key = space.as_pointer()
+    return _lods.get(key, _DEFAULT) if key in _on else NOT_FORCED
+
+
+def _key():
+    """Of the viewport whose popover is drawn or used."""
+    space = bpy.context.space_data
+    return space.as_pointer() if space is not None and space.type == "VIEW_3D" else None
+
+
+def _redraw():
+    if bpy.context.area is not None:
+        bpy.context.area.tag_redraw()
+
+
+def _is_on(settings):
+    return _key() in _on
+
+
+def _turn(settings, value):
+    key = _key()
+    if key is not None:
+        (_on.add if value else _on.discard)(key)
+        _redraw()
+
+
+def _lod(settings):
+    return _lods.get(_key(), _DEFAULT)
+
+
+def _set_lod(settings, value):
+    key = _key()
+    if key is not None:
+        _lods[key] = value
+        _redraw()
+
+
+class ForcedLod:
+    """Annotations for a property group."""
+
+    use_force_lod: BoolProperty(
+        name="Force LOD",
+        description="Draw every object with one and the same level in this viewport, whatever is "
+        "near or decided: for looking at levels. What has no such one shows its coarsest. "
+        "Renders are not affected",
+        get=_is_on,
+        set=_turn,
+        options={"SKIP_SAVE"},
+    )
+    force_lod: IntProperty(
+        name="LOD",
+        description="The number of the level that every object shows; 0 is the original",
+        min=0,
+        max=31,
+        get=_lod,
+        set=_set_lod,
+        options={"SKIP_SAVE"},
+    )
+
+
+def forget():
+    """Other viewports may come to lie where these did."""
+    _on.clear()
+    _lods.clear()
