@@ -230,15 +230,11 @@ class Lights(unittest.TestCase):
         self.shape("torus", (0, 0, 3)).data.materials.append(bpy.data.materials["Glow"])
         lamp("SUN", (0, 0, 0), energy=2.0)
         self.render("LODESTONE_POVRAY")
-        self.assertEqual(
-            self.glows(), ['Material "Glow": it glows, but its light falls on nothing else']
-        )
+        told = 'Material "Glow": it glows, but %s falls on nothing else; put a lamp in its place'
+        self.assertEqual(self.glows(), [told % "its light"])
         self.shape("plane", (0, 0, 4)).data.materials.append(bpy.data.materials["Glow"])
         self.render("LODESTONE_POVRAY")
-        self.assertEqual(
-            self.glows(),
-            ['Material "Glow": it glows, but the light of some of it falls on nothing else'],
-        )
+        self.assertEqual(self.glows(), [told % "the light of some of it"])
 
     def test_a_light_of_negative_power_takes_away(self):
         lamp("SUN", (0, 0, 0), energy=3.0, angle=0.0)

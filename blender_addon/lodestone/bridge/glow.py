@@ -180,7 +180,7 @@ class Glows:
             text = "it glows, but its light falls on nothing else"
             if subject in self._lit:
                 text = "it glows, but the light of some of it falls on nothing else"
-            text = f'Material "{name}": {text}'
+            text = f'Material "{name}": {text}; put a lamp in its place'
             problems.add(name, WARNING, "glow", text, "material", library)
         return kept
 
