@@ -58,6 +58,24 @@ TEST(VisibleSolids, CubesThatTouchShowTheSurfaceOfBoth) {
     EXPECT_NEAR(both.center.x, 0, 0.01);
 }
 
+TEST(VisibleSolids, WhatIsSeenOfEachIsWhatIsSeenOfAll) {
+    const Composite composite{{box({0, 0, 1}, {1, 0.5, 0.05}), ball({0.2, 0, 1.4}, {0.3, 0.4, 0.3}),
+                               ball({0, 0, 0.5}, {0.4, 0.4, 0.6}),
+                               ball({0, 0, 0.5}, {0.1, 0.1, 0.1})}};
+    std::vector<measure::SurfaceInertia> each;
+    const auto all = VisibleSolids(kRays, 1).of(composite, 1, {}, &each);
+    ASSERT_EQ(each.size(), 4u);
+    double area = 0;
+    glm::dvec3 center(0.0);
+    for (const measure::SurfaceInertia& one : each) {
+        area += one.area;
+        center += one.area / all.area * one.center;
+    }
+    EXPECT_NEAR(area / all.area, 1, 1e-3);  // what seems less than nothing is nothing
+    EXPECT_NEAR(glm::length(center - all.center), 0, 1e-3);
+    EXPECT_LT(each[3].area, 0.02 * all.area);  // lies inside
+}
+
 TEST_F(VisibleSolidsBesideTriangles, WhatIsPartlyHiddenIsWhatRaysFindOfItsTriangles) {
     Composite composite{{box({0, 0, 1}, {1, 0.5, 0.05}), ball({0.2, 0, 1.4}, {0.3, 0.4, 0.3}),
                          ball({0, 0, 0.5}, {0.4, 0.4, 0.6}), box({0, 0, 0}, {0.6, 0.6, 0.02})}};

@@ -24,6 +24,7 @@ namespace {
 constexpr uint32_t kSamples = 8192;
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
 constexpr int kClearRounds = 4;
+constexpr uint64_t kClearRays = 8192;  // each round
 constexpr int kSubdivisions = 2;
 
 Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::VisiblePoint& at) {
@@ -105,7 +106,7 @@ Attributes measured(const Clustered& level, const CompositeOptions& options, con
     const ray::SkinPtr skin =
         clear ? std::make_shared<const ray::Skin>(materials, texels) : nullptr;
     measure::VisibleOptions visible;
-    visible.rays = options.rays / 2;  // each round
+    visible.rays = kClearRays;
     visible.seed = options.seed;
     return measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, visible, {}, job)
         .attributes;

@@ -22,10 +22,10 @@ struct Clustered {
 
 struct CompositeOptions {
     uint64_t seed = 1;
-    uint32_t rays = 16384;      // that each of the last rounds of matching casts, a quarter before
+    uint32_t rays = 49152;      // that each of the last rounds of matching casts, a twelfth before
     bool shape = true;          // match centroid and variances of the whole, not its area alone
     int rounds = 12;            // of matching on the way, at most
-    uint32_t measured = 32768;  // rays that measure the mesh once more for this; 0: as `wanted` is
+    uint32_t measured = 49152;  // rays that measure the mesh once more for this; 0: as `wanted` is
     size_t most = 32;           // parts
 };
 

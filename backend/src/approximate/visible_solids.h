@@ -6,7 +6,9 @@
 #include "measure/surface_inertia.h"
 #include "model/composite.h"
 
-#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <vector>
 
@@ -20,11 +22,19 @@ class VisibleSolids {
 public:
     VisibleSolids(uint32_t rays, uint64_t seed);
 
-    /// `share` of all rays, the first ones.
-    measure::SurfaceInertia of(const Composite& composite, double share, const Job& job) const;
+    /// `share` of all rays, the first ones. `each`: also of every solid by itself, hidden as it is
+    /// (empty where nothing of it is seen).
+    measure::SurfaceInertia of(const Composite& composite, double share, const Job& job,
+                               std::vector<measure::SurfaceInertia>* each = nullptr) const;
 
 private:
-    std::vector<std::array<float, 4>> numbers_;
+    struct Ray {
+        float at = 0;                       // of all area, 0...1
+        float across = 0;                   // of a face, 0...1
+        glm::vec2 around{1.0f, 0.0f};       // of a ball: cosine and sine
+        glm::vec3 along{0.0f, 0.0f, 1.0f};  // where it leaves to, around the normal (cosine)
+    };
+    std::vector<Ray> rays_;
 };
 
 }  // namespace lodestone::approximate
