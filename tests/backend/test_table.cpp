@@ -44,7 +44,7 @@ TEST(Table, KeepsSiblingsBesideEachOther) {
     const Model model = bent::pairs(8);
     const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
     EXPECT_EQ(table.size(), 3u);  // row, pair, ball: what is shared is there once
-    const quality::TableRow& row = table.row(table.find(model.root));
+    const quality::TableObject& row = table.object(table.find(model.root));
     EXPECT_EQ(row.child_count, 4u);
     EXPECT_EQ(table.child(row.first_child + 1).offset.x, 6);
     EXPECT_EQ(table.child(row.first_child + 1).linear, quality::kUnturned);
@@ -52,6 +52,44 @@ TEST(Table, KeepsSiblingsBesideEachOther) {
     ASSERT_EQ(ball.level_count, 3u);
     EXPECT_EQ(table.level(ball.first_level + 1).error, 0.1);
     EXPECT_EQ(table.level(ball.first_level + 1).triangles, 80u);
+}
+
+TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
+    Forest forest(17);
+    Model& model = forest.model;
+    // A sphere that is not around the middle of its box, and one that is as a signed zero.
+    model.objects[0].representations[0].summary.bound.center += glm::dvec3(0.1, -0.0, 0.3);
+    model.objects[1].demand = 3;
+    model.objects[2].representations[0].summary.bound = {};
+    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
+    size_t wishes = 0;
+    for (uint32_t row = 0; row < table.size(); ++row) {
+        const Object& object = model.objects[table.object(row).object];
+        const Bound bound = table.bound(row);
+        EXPECT_EQ(bound.center, object.bound().center);
+        EXPECT_EQ(bound.radius, object.bound().radius);
+        EXPECT_EQ(bound.box.low, object.bound().box.low);
+        EXPECT_EQ(bound.box.high, object.bound().box.high);
+        EXPECT_EQ(table.object(row).demand, object.demand);
+        for (uint32_t i = 0; i < table.object(row).child_count; ++i) {
+            const Placement& placed = object.representations[0].assembly().placements[i];
+            const quality::TableChild& child = table.child(table.object(row).first_child + i);
+            const quality::TableWish& wish = table.wish(child.wish);
+            const Object& below = model.objects[placed.object];
+            EXPECT_EQ(child.object, placed.object);
+            EXPECT_EQ(child.offset, placed.transform.offset);
+            EXPECT_EQ(wish.importance, placed.importance);
+            EXPECT_EQ(wish.demand, below.demand);
+            EXPECT_EQ(wish.coarsest, placed.coarsest);
+            EXPECT_EQ(wish.finest, placed.finest);
+            EXPECT_EQ(wish.hidden, placed.hidden);
+            EXPECT_EQ(child.first_child, table.object(child.row).first_child);
+            EXPECT_EQ(child.child_count, table.object(child.row).child_count);
+            EXPECT_TRUE(below.group() || child.finest_error == 0);
+            wishes += child.wish != 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(wishes, 2u);
 }
 
 TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {

@@ -6,7 +6,12 @@
 #include <limits>
 
 namespace lodestone::quality {
-namespace {}  // namespace
+namespace {
+
+// Children whose memory is asked for before they are visited.
+constexpr uint32_t kAhead = 4;
+
+}  // namespace
 
 void refuse_nonsense(const View& view) {
     if (view.width <= 0 || view.height <= 0)
@@ -56,8 +61,10 @@ bool see(const View& view, FactorField& field, const Node& node, bool group, con
 
 /// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
 /// costs fall from finest to coarsest.
-Decision decide(const Table& table, const View& view, const TableRow& row, const Node& node,
+Decision decide(const Table& table, const View& view, uint32_t index, const Node& node,
                 const Sight& sight) {
+    const TableRow& row = table.row(index);
+    const size_t levels = by_error(view) ? 0 : table.object(index).all_levels;
     Decision made;
     for (uint32_t i = row.level_count; i-- > 0;) {
         const TableLevel& level = table.level(row.first_level + i);
@@ -66,7 +73,7 @@ Decision decide(const Table& table, const View& view, const TableRow& row, const
         if (made.level != nullptr && level.lod < node.finest)
             break;
         made.level = &level;
-        made.good = good_enough(view, sight, level.error, level.lod, row.all_levels);
+        made.good = good_enough(view, sight, level.error, level.lod, levels);
         if (made.good)
             break;
     }
@@ -79,7 +86,7 @@ Decision decide(const Table& table, const View& view, const TableRow& row, const
     made.pinned = node.finest > 0;
     made.cheaper =
         made.good && !made.pinned && made.level->opens_from < kInfinity && by_error(view) &&
-        good_enough(view, sight, made.level->opens_from, made.level->lod, row.all_levels);
+        good_enough(view, sight, made.level->opens_from, made.level->lod, levels);
     made.opened = row.group && !made.pinned && (!made.good || made.cheaper);
     return made;
 }
@@ -92,9 +99,7 @@ bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
     budget_ = &budget;
     cut_ = &cut;
     nodes_ = &cut.nodes;
-    Node top;
-    FactorField::Path path = field_.root();
-    visit(root, top, 1, path, 0);
+    visit_root(root);
     visit_all();
     if (!budget.fits(cut))
         return false;
@@ -107,9 +112,7 @@ void Chooser::run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& se
     job_.check();
     nodes_ = &nodes;
     seen_ = &seen;
-    Node top;
-    FactorField::Path path = field_.root();
-    visit(root, top, 1, path, 0);
+    visit_root(root);
     visit_all();
 }
 
@@ -123,8 +126,25 @@ void Chooser::open(const Node& group, const Seen& known, const FactorField::Path
     nodes.back().lod = 0;
     nodes.back().kind = Kind::Assembly;
     seen.push_back(known);
-    push_children(known.row, index, known.stretch, path, 0);
+    push_children(this->known(known.row), index, known.stretch, path, 0);
     visit_all();
+}
+
+Chooser::Known Chooser::known(uint32_t row) const {
+    const TableObject& object = table_.object(row);
+    Known out{row, object.demand, 0, object.first_child, object.child_count, 0, 0};
+    if (object.child_count > 0) {
+        out.first_row = table_.child(object.first_child).row;
+        out.first_level = table_.row(out.first_row).first_level;
+    }
+    return out;
+}
+
+void Chooser::visit_root(uint32_t root) {
+    Node top;
+    top.object = table_.object(root).object;
+    FactorField::Path path = field_.root();
+    visit(known(root), top, 1, path, 0);
 }
 
 void Chooser::visit_all() {
@@ -133,6 +153,8 @@ void Chooser::visit_all() {
             return;
         const Entry entry = stack_.back();
         stack_.pop_back();
+        if (stack_.size() >= kAhead)
+            table_.fetch(stack_[stack_.size() - kAhead].child);
         visit_child(entry);
         if ((++visits_ & 1023u) == 0)
             job_.check();
@@ -144,14 +166,26 @@ void Chooser::visit_child(const Entry& entry) {
     const Node& group = (*nodes_)[entry.parent];
     const Frame& above = frames_[entry.depth - 1];
     Node node;
-    node.hidden = static_cast<RayMask>(group.hidden | placed.hidden);
-    if (node.hidden == kAllRays)  // nothing would show it
-        return;
+    node.object = placed.object;
     node.parent = entry.parent;
     node.placement = entry.position;
-    node.importance = group.importance * placed.importance;
-    node.coarsest = group.coarsest == 0 ? 0 : placed.coarsest;
-    node.finest = group.coarsest == 0 ? 0 : placed.finest;
+    node.hidden = group.hidden;
+    node.importance = group.importance;
+    double demand = 1;
+    if (placed.wish != 0) {
+        const TableWish& wish = table_.wish(placed.wish);
+        node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
+        if (node.hidden == kAllRays)  // nothing would show it
+            return;
+        node.importance = group.importance * wish.importance;
+        node.coarsest = wish.coarsest;
+        node.finest = wish.finest;
+        demand = wish.demand;
+    }
+    if (group.coarsest == 0) {
+        node.coarsest = 0;
+        node.finest = 0;
+    }
     double enlarge = above.stretch;
     node.world.offset = group.world.linear * placed.offset + group.world.offset;
     if (placed.linear == kUnturned) {
@@ -168,32 +202,42 @@ void Chooser::visit_child(const Entry& entry) {
                                  .representations[0]
                                  .assembly()
                                  .placements[entry.position]);
-    visit(placed.row, node, enlarge, path_, entry.depth);
+    visit({placed.row, demand, placed.finest_error, placed.first_child, placed.child_count,
+           placed.first_row, placed.first_level},
+          node, enlarge, path_, entry.depth);
 }
 
-void Chooser::visit(uint32_t row_index, Node& node, double enlarge, FactorField::Path& path,
+void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField::Path& path,
                     uint32_t depth) {
-    const TableRow& row = table_.row(row_index);
+    const TableRow& row = table_.row(known.row);
     if (!row.drawable)
         return;
-    node.object = row.object;
     Sight sight;
     Factors factors;
-    if (!see(view_, field_, node, row.group, row.bound, row.demand, enlarge, path, sight, factors))
+    if (!see(view_, field_, node, row.group, table_.bound(known.row), known.demand, enlarge, path,
+             sight, factors))
         return;
-    const Decision made = decide(table_, view_, row, node, sight);
+    Decision made;
+    // Most groups that are opened have no level that is good enough: none is read.
+    if (row.group && node.coarsest == kAnyLevel && node.finest == 0 &&
+        view_.modifiers.criterion == Criterion::Resolution &&
+        !good_enough(view_, sight, known.finest_error, 0, 0))
+        made.opened = made.drawn = true;
+    else
+        made = decide(table_, view_, known.row, node, sight);
     if (!made.drawn)
         return;
     const auto index = static_cast<uint32_t>(nodes_->size());
     if (made.opened) {
         node.opened = true;
         if (made.cheaper)
-            least_ = std::max(least_, threshold_for(view_, sight, made.level->opens_from,
-                                                    made.level->lod, row.all_levels));
+            least_ =
+                std::max(least_, threshold_for(view_, sight, made.level->opens_from,
+                                               made.level->lod, levels_of(known.row)));
         nodes_->push_back(node);
         if (seen_ != nullptr)
-            seen_->push_back({row_index, 0, enlarge, sight.total});
-        push_children(row_index, index, enlarge, path, depth);
+            seen_->push_back({known.row, 0, enlarge, sight.total});
+        push_children(known, index, enlarge, path, depth);
         return;
     }
     const TableLevel& level = *made.level;
@@ -202,7 +246,7 @@ void Chooser::visit(uint32_t row_index, Node& node, double enlarge, FactorField:
     nodes_->push_back(node);
     if (seen_ != nullptr)
         seen_->push_back(
-            {row_index, static_cast<uint32_t>(&level - &table_.level(0)), enlarge, sight.total});
+            {known.row, static_cast<uint32_t>(&level - &table_.level(0)), enlarge, sight.total});
     if (cut_ == nullptr)
         return;
     const double error_px = error_on_screen(sight, level.error);
@@ -210,25 +254,29 @@ void Chooser::visit(uint32_t row_index, Node& node, double enlarge, FactorField:
         least_ = std::max(
             least_, view_.modifiers.criterion == Criterion::Resolution
                         ? error_px * sight.total
-                        : threshold_for(view_, sight, level.error, level.lod, row.all_levels));
+                        : threshold_for(view_, sight, level.error, level.lod, levels_of(known.row)));
     take(index, level, error_px / factors.off_screen);
 }
 
-void Chooser::push_children(uint32_t row_index, uint32_t index, double enlarge,
+void Chooser::push_children(const Known& known, uint32_t index, double enlarge,
                             const FactorField::Path& path, uint32_t depth) {
-    if (growing_ != nullptr)
-        growing_->expand(row_index);
-    const TableRow& row = table_.row(row_index);
+    uint32_t first = known.first_child;
+    uint32_t count = known.child_count;
+    if (growing_ != nullptr) {
+        growing_->expand(known.row);
+        first = table_.object(known.row).first_child;
+        count = table_.object(known.row).child_count;
+    } else {
+        table_.fetch_below(first, known.first_row, known.first_level, std::min(count, kAhead));
+    }
     if (frames_.size() <= depth)
         frames_.resize(depth + size_t{1});
     frames_[depth].stretch = enlarge;
     frames_[depth].path.lenses = path.lenses;
     if (view_.modifiers.when_moving)
         frames_[depth].path = path;
-    for (uint32_t i = row.child_count; i-- > 0;) {
-        stack_.push_back({index, row.first_child + i, i, depth + 1});
-        table_.fetch(table_.child(row.first_child + i).row);
-    }
+    for (uint32_t i = count; i-- > 0;)
+        stack_.push_back({index, first + i, i, depth + 1});
 }
 
 /// Counts what is drawn. `shown_px`: what of its error the picture shows.

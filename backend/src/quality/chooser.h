@@ -35,7 +35,7 @@ struct Decision {
     bool opened = false;
     bool drawn = false;  // neither: it has nothing to be drawn by
 };
-Decision decide(const Table& table, const View& view, const TableRow& row, const Node& node,
+Decision decide(const Table& table, const View& view, uint32_t row, const Node& node,
                 const Sight& sight);
 
 /// What stepping a cut keeps of a node.
@@ -79,10 +79,25 @@ private:
         FactorField::Path path;  // of what it places
     };
 
+    /// What is known of an object before its row is looked at.
+    struct Known {
+        uint32_t row = 0;
+        double demand = 1;
+        double finest_error = 0;
+        uint32_t first_child = 0;
+        uint32_t child_count = 0;
+        uint32_t first_row = 0;
+        uint32_t first_level = 0;
+    };
+
+    void visit_root(uint32_t root);
     void visit_child(const Entry& entry);
-    void visit(uint32_t row, Node& node, double enlarge, FactorField::Path& path, uint32_t depth);
-    void push_children(uint32_t row, uint32_t index, double enlarge, const FactorField::Path& path,
-                       uint32_t depth);
+    void visit(const Known& known, Node& node, double enlarge, FactorField::Path& path,
+               uint32_t depth);
+    void push_children(const Known& known, uint32_t index, double enlarge,
+                       const FactorField::Path& path, uint32_t depth);
+    Known known(uint32_t row) const;
+    size_t levels_of(uint32_t row) const { return table_.object(row).all_levels; }
     void take(uint32_t index, const TableLevel& level, double shown_px);
     void visit_all();
 

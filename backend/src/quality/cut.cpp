@@ -55,14 +55,15 @@ Cut choose(const Table& table, const View& view, const Job& job) {
 double error_on_screen(const Table& table, const View& view, const Node& node) {
     if (node.opened)
         return 0;
-    const TableRow& row = table.row(table.find(node.object));
+    const uint32_t index = table.find(node.object);
+    const TableRow& row = table.row(index);
     const double enlarge = stretch(node.world);
     for (uint32_t i = 0; i < row.level_count; ++i) {
         const TableLevel& level = table.level(row.first_level + i);
         if (level.lod == node.lod)
             return error_on_screen(
                 view, level.error, enlarge,
-                distance(transformed(row.bound, node.world, enlarge), view.camera.position));
+                distance(transformed(table.bound(index), node.world, enlarge), view.camera.position));
     }
     fail(Status::InvalidArgument, "the cut was made from another table");
 }

@@ -150,7 +150,7 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
 
 Sight Stepper::sight_of(const Node& node, const Seen& seen) const {
     Sight sight;
-    sight.z = distance(transformed(table_->row(seen.row).bound, node.world, seen.stretch),
+    sight.z = distance(transformed(table_->bound(seen.row), node.world, seen.stretch),
                        view_.camera.position);
     sight.pixel = pixel_ * std::max(sight.z, view_.camera.near_clip);
     sight.stretch = seen.stretch;
@@ -160,7 +160,7 @@ Sight Stepper::sight_of(const Node& node, const Seen& seen) const {
 
 /// How far rounding may be off in distances of a node, and in sums of them and the travel.
 double Stepper::margin(const Node& node, const Seen& seen, double z) const {
-    const Bound& bound = table_->row(seen.row).bound;
+    const Bound bound = table_->bound(seen.row);
     return kOfPlaces * (glm::length(view_.camera.position) + glm::length(node.world(bound.center)) +
                         bound.radius * seen.stretch + z) +
            kOfTravel * travel_;
@@ -220,7 +220,7 @@ void Stepper::look_at_fresh(size_t begin) {
     for (size_t i = begin; i < fresh_.size(); ++i) {
         const Sight sight = sight_of(fresh_[i], fresh_seen_[i]);
         look(fresh_hot_, i, fresh_[i], fresh_seen_[i], sight,
-             decide(*table_, view_, table_->row(fresh_seen_[i].row), fresh_[i], sight));
+             decide(*table_, view_, fresh_seen_[i].row, fresh_[i], sight));
     }
 }
 
@@ -256,7 +256,8 @@ FactorField::Path Stepper::path_below(const Cut& cut, uint32_t node) {
         const TableRow& row = table_->row(seen.row);
         Sight sight;
         Factors factors;
-        see(view_, *field_, here, row.group, row.bound, row.demand, seen.stretch, path, sight,
+        see(view_, *field_, here, row.group, table_->bound(seen.row),
+            table_->object(seen.row).demand, seen.stretch, path, sight,
             factors);
     }
     return path;
@@ -274,9 +275,8 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
             continue;
         const Node& node = cut.nodes[index];
         const Seen& seen = seen_[index];
-        const TableRow& row = table_->row(seen.row);
         const Sight sight = sight_of(node, seen);
-        const Decision made = decide(*table_, view_, row, node, sight);
+        const Decision made = decide(*table_, view_, seen.row, node, sight);
         if (made.opened == node.opened && (made.opened || made.level->lod == node.lod)) {
             look(hot_, index, node, seen, sight, made);
             continue;

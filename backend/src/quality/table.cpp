@@ -13,6 +13,7 @@ namespace {
 constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
 // So many groups deep an opening is looked for below another one; deeper ones count as closed.
 constexpr int kDeepestOpening = 3;
+constexpr uint32_t kMostLevels = (uint32_t{1} << 28u) - 1;
 
 double own_cost(const TableLevel& level) {
     return static_cast<double>(level.bytes + kBytesPerOccurrence);
@@ -23,6 +24,7 @@ double own_cost(const TableLevel& level) {
 Table Table::whole(const Model& model, ObjectIndex root, KindMask kinds) {
     Table table(model, kinds);
     table.rows_.reserve(model.objects.size());
+    table.objects_.reserve(model.objects.size());
     table.by_object_.reserve(model.objects.size());
     std::vector<uint32_t> stack{table.row_of(root)};
     std::vector<uint8_t> done;
@@ -34,10 +36,11 @@ Table Table::whole(const Model& model, ObjectIndex root, KindMask kinds) {
             continue;
         done[row] = 1;
         table.expand(row);
-        const TableRow& group = table.rows_[row];
+        const TableObject& group = table.objects_[row];
         for (uint32_t i = group.child_count; i-- > 0;)
             stack.push_back(table.children_[group.first_child + i].row);
     }
+    table.link();
     return table;
 }
 
@@ -55,16 +58,22 @@ uint32_t Table::add(ObjectIndex index) {
     by_object_.emplace(index, row);
     const Object& object = model_.objects.at(index);
     TableRow made;
-    made.object = index;
-    made.drawable = !object.representations.empty();
-    if (made.drawable)
-        made.bound = object.bound();
-    made.demand = object.demand;
+    TableObject rest;
+    rest.object = index;
+    rest.demand = object.demand;
+    rest.expanded = !object.group();
+    rest.all_levels = static_cast<uint32_t>(object.representations.size());
     made.group = object.group();
-    made.expanded = !made.group;
+    made.drawable = !object.representations.empty();
+    if (made.drawable) {
+        const Bound& bound = object.bound();
+        made.box = bound.box;
+        made.radius = bound.radius;
+        made.centered = bound.center == bound.box.center();
+        rest.center = bound.center;
+    }
     made.first_level = static_cast<uint32_t>(levels_.size());
-    made.all_levels = static_cast<uint32_t>(object.representations.size());
-    for (uint32_t lod = 0; lod < made.all_levels; ++lod) {
+    for (uint32_t lod = 0; lod < rest.all_levels; ++lod) {
         const Summary& summary = object.representations[lod].summary;
         if (summary.kind == Kind::Assembly || (kinds_ & mask_of(summary.kind)) == 0)
             continue;
@@ -79,38 +88,45 @@ uint32_t Table::add(ObjectIndex index) {
         level.kind = summary.kind;
         levels_.push_back(level);
     }
-    made.level_count = static_cast<uint32_t>(levels_.size()) - made.first_level;
+    made.level_count = (static_cast<uint32_t>(levels_.size()) - made.first_level) & kMostLevels;
     rows_.push_back(made);
+    objects_.push_back(rest);
     assemblies_.emplace_back();
     return row;
 }
 
 void Table::expand(uint32_t row) {
-    if (rows_[row].expanded)
+    if (objects_[row].expanded)
         return;
-    rows_[row].expanded = true;
-    const Representation& group = model_.objects[rows_[row].object].representations[0];
+    objects_[row].expanded = true;
+    const Representation& group = model_.objects[objects_[row].object].representations[0];
     const std::vector<Placement>& placements = group.assembly().placements;
     assemblies_[row] = std::get<std::shared_ptr<const Assembly>>(group.payload);
-    const auto first = static_cast<uint32_t>(children_.size());
     const auto first_row = static_cast<uint32_t>(rows_.size());
-    rows_[row].first_child = first;
-    rows_[row].child_count = static_cast<uint32_t>(placements.size());
+    objects_[row].first_child = static_cast<uint32_t>(children_.size());
+    objects_[row].child_count = static_cast<uint32_t>(placements.size());
     for (const Placement& placement : placements) {
         TableChild child;
         child.offset = placement.transform.offset;
-        child.linear = kUnturned;
         if (placement.transform.linear != glm::dmat3(1.0)) {
             child.linear = static_cast<uint32_t>(linears_.size());
             linears_.push_back(placement.transform.linear);
-            child.stretch = stretch(placement.transform);
+            stretches_.push_back(stretch(placement.transform));
         }
-        child.importance = placement.importance;
-        child.coarsest = placement.coarsest;
-        child.finest = placement.finest;
-        child.hidden = placement.hidden;
+        child.object = placement.object;
         const auto known = by_object_.find(placement.object);
         child.row = known != by_object_.end() ? known->second : add(placement.object);
+        const double demand = objects_[child.row].demand;
+        if (placement.decided() || placement.hidden != 0 || demand != 1) {
+            child.wish = static_cast<uint32_t>(wishes_.size());
+            wishes_.push_back({placement.importance, demand, placement.coarsest, placement.finest,
+                               placement.hidden});
+        }
+        const TableRow& placed = rows_[child.row];
+        child.finest_error = kInfinity;
+        for (uint32_t i = 0; i < placed.level_count; ++i)
+            child.finest_error =
+                std::min(child.finest_error, levels_[placed.first_level + i].error);
         children_.push_back(child);
     }
     // Siblings lie beside each other before anything below them is made.
@@ -119,16 +135,32 @@ void Table::expand(uint32_t row) {
         set_openings(made);
 }
 
+/// Tells all placements where their objects' children are.
+void Table::link() {
+    for (TableChild& child : children_) {
+        child.first_child = objects_[child.row].first_child;
+        child.child_count = objects_[child.row].child_count;
+        if (child.child_count == 0)
+            continue;
+        child.first_row = children_[child.first_child].row;
+        child.first_level = rows_[child.first_row].first_level;
+    }
+}
+
+double Table::stretch_of(const TableChild& child) const {
+    return child.linear == kUnturned ? 1 : stretches_[child.linear];
+}
+
 /// For each stand-in of a group that costs more than its children could, from which error on they do.
 void Table::set_openings(uint32_t row) {
     const TableRow group = rows_[row];
-    if (group.openings)
+    if (objects_[row].openings)
         return;
-    rows_[row].openings = true;
+    objects_[row].openings = true;
     if (!group.group)
         return;
     const std::vector<Placement>& placements =
-        model_.objects[group.object].representations[0].assembly().placements;
+        model_.objects[objects_[row].object].representations[0].assembly().placements;
     std::vector<double> steps;  // errors at which a child changes
     for (uint32_t i = group.level_count; i-- > 0;) {
         const TableLevel level = levels_[group.first_level + i];
@@ -136,15 +168,16 @@ void Table::set_openings(uint32_t row) {
             continue;
         if (steps.empty()) {
             expand(row);
-            for (uint32_t child = 0; child < rows_[row].child_count; ++child) {
-                const TableChild placed = children_[rows_[row].first_child + child];
+            for (uint32_t child = 0; child < objects_[row].child_count; ++child) {
+                const TableChild placed = children_[objects_[row].first_child + child];
+                const double enlarge = stretch_of(placed);
                 set_openings(placed.row);
                 const TableRow& below = rows_[placed.row];
                 for (uint32_t j = 0; j < below.level_count; ++j) {
                     const TableLevel& changes = levels_[below.first_level + j];
-                    steps.push_back(changes.error * placed.stretch);
+                    steps.push_back(changes.error * enlarge);
                     if (changes.opens_from < kInfinity)
-                        steps.push_back(changes.opens_from * placed.stretch);
+                        steps.push_back(changes.opens_from * enlarge);
                 }
             }
             std::sort(steps.begin(), steps.end());
@@ -196,11 +229,11 @@ double Table::cost_at(uint32_t row, double error, int depth) {
 double Table::cost_below(uint32_t row, double error, int depth) {
     expand(row);
     double cost = 0;
-    for (uint32_t i = 0; i < rows_[row].child_count; ++i) {
-        const TableChild child = children_[rows_[row].first_child + i];
-        if (child.hidden != kAllRays && rows_[child.row].drawable)
-            cost +=
-                cost_at(child.row, child.stretch > 0 ? error / child.stretch : kInfinity, depth);
+    for (uint32_t i = 0; i < objects_[row].child_count; ++i) {
+        const TableChild child = children_[objects_[row].first_child + i];
+        const double enlarge = stretch_of(child);
+        if (wishes_[child.wish].hidden != kAllRays && rows_[child.row].drawable)
+            cost += cost_at(child.row, enlarge > 0 ? error / enlarge : kInfinity, depth);
     }
     return cost;
 }
