@@ -7,6 +7,26 @@
 
 namespace lodestone::capi {
 
+void require_made_from(const lds_model& model, const lds_cut& cut) {
+    if (cut.generation != model.generation)
+        fail(Status::StaleId, "the cut belongs to another model");
+}
+
+std::vector<Representation>& levels_with(lds_model& model, const quality::Node& node,
+                                         uint32_t lod) {
+    std::vector<Object>& objects = model.model.objects;
+    if (node.object >= objects.size() || lod >= objects[node.object].representations.size())
+        fail(Status::StaleId, "the cut was made before the model's levels changed");
+    return objects[node.object].representations;
+}
+
+uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position) {
+    require_made_from(model, cut);
+    if (position >= cut.cut.chosen.size())
+        fail(Status::InvalidArgument, "choice ", position, " of ", cut.cut.chosen.size());
+    return cut.cut.chosen[position];
+}
+
 void load_levels(lds_model& model, const quality::Cut& cut, const std::vector<uint32_t>& levels,
                  const Job& job) {
     std::map<Hash, std::vector<Representation*>> wanted;
@@ -14,10 +34,7 @@ void load_levels(lds_model& model, const quality::Cut& cut, const std::vector<ui
         if (levels[i] == quality::kBoxOnly)
             continue;
         const quality::Node& node = cut.nodes.at(cut.chosen.at(i));
-        if (node.object >= model.model.objects.size() ||
-            levels[i] >= model.model.objects[node.object].representations.size())
-            fail(Status::StaleId, "the cut was made before the model's levels changed");
-        Representation& chosen = model.model.objects[node.object].representations[levels[i]];
+        Representation& chosen = levels_with(model, node, levels[i])[levels[i]];
         if (!chosen.resident())
             wanted[chosen.summary.hash].push_back(&chosen);
     }

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chosen: the meshes of what a cut shows, brought into memory.
+// Chosen: that a cut belongs to what it is asked with, and the meshes of what it shows.
 #pragma once
 
 #include "base/job.h"
 #include "capi/handles.h"
 
 namespace lodestone::capi {
+
+/// Throws Error(StaleId) unless the cut was made from this model.
+void require_made_from(const lds_model& model, const lds_cut& cut);
+
+/// The levels of a node's object; throws Error(StaleId) where it has no number `lod` any more.
+std::vector<Representation>& levels_with(lds_model& model, const quality::Node& node, uint32_t lod);
+
+/// Index of the node that a choice is; throws unless the cut was made from this model and has it.
+uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);
 
 /// Reads the meshes of these levels of cut.chosen that are not in memory yet; a level that no object
 /// has (quality::kBoxOnly) needs none.

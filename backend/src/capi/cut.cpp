@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "capi/chosen.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/rays.h"
@@ -52,8 +53,7 @@ lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, ld
     return guard([&] {
         require(model, "model");
         require(cut, "cut");
-        if (cut->generation != model->generation)
-            fail(Status::StaleId, "the cut belongs to another model");
+        require_made_from(*model, *cut);
         const Job progress = job_of(job);
         progress.stage(Stage::Choose);
         View given = view_of(view, model);
@@ -171,15 +171,8 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
     return guard([&] {
         require(model, "model");
         require(cut, "cut");
-        if (cut->generation != model->generation)
-            fail(Status::StaleId, "the cut belongs to another model");
-        if (position >= cut->cut.chosen.size())
-            fail(Status::InvalidArgument, "choice ", position, " of ", cut->cut.chosen.size());
-        const uint32_t node = cut->cut.chosen[position];
-        const quality::Node& chosen = cut->cut.nodes[node];
-        if (chosen.object >= model->model.objects.size() ||
-            chosen.lod >= model->model.objects[chosen.object].representations.size())
-            fail(Status::StaleId, "the cut was made before the model's levels changed");
+        const uint32_t node = node_at(*model, *cut, position);
+        levels_with(*model, cut->cut.nodes[node], cut->cut.nodes[node].lod);
         model->summarize();
         const quality::Reason reason = quality::why(model->model, cut->view, cut->cut, node);
         const quality::Factors& factors = reason.factors;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finding out how a cut draws a thing.
+#include "capi/chosen.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "quality/find_choice.h"
@@ -15,8 +16,7 @@ lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object 
         require(world, "world");
         require(out_drawn, "out_drawn");
         require(out_position, "out_position");
-        if (cut->generation != model->generation)
-            fail(Status::StaleId, "the cut belongs to another model");
+        require_made_from(*model, *cut);
         const ObjectIndex index = model->index_of(object);
         const Affine place = Affine::from_rows(world);
         if (!place.finite())

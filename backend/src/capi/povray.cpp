@@ -74,8 +74,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(folder, "folder");
         require_size(out_report, kFirstPovrayReport, "out_report");
         const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
-        if (cut->generation != model->generation)
-            fail(Status::StaleId, "the cut belongs to another model");
+        require_made_from(*model, *cut);
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
         progress.stage(Stage::Export);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capi/rays.h"
 
+#include "capi/chosen.h"
 #include "capi/guard.h"
 
 #include <algorithm>
@@ -61,11 +62,7 @@ void load_own(lds_model& model, const lds_cut& cut, const Job& job) {
     for (const quality::RayCut& rays : cut.rays) {
         for (const quality::RayChoice& own : rays.own) {
             job.check();
-            std::vector<Representation>& levels =
-                model.model.objects.at(cut.cut.nodes[own.node].object).representations;
-            if (own.lod >= levels.size())
-                fail(Status::StaleId, "the cut was made before the model's levels changed");
-            model.load(levels[own.lod]);
+            model.load(levels_with(model, cut.cut.nodes[own.node], own.lod)[own.lod]);
         }
     }
 }
@@ -103,11 +100,7 @@ lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t posi
     return guard([&] {
         require(model, "model");
         require(cut, "cut");
-        if (cut->generation != model->generation)
-            fail(Status::StaleId, "the cut belongs to another model");
-        if (position >= cut->cut.chosen.size())
-            fail(Status::InvalidArgument, "choice ", position, " of ", cut->cut.chosen.size());
-        const uint32_t node = cut->cut.chosen[position];
+        const uint32_t node = node_at(*model, *cut, position);
         const quality::Node& chosen = cut->cut.nodes[node];
         lds_ray_choice out{};
         out.object = model->id_of(chosen.object);
@@ -118,12 +111,11 @@ lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t posi
         if (own != nullptr) {
             out.met = static_cast<int32_t>(own->states.at(position));
             if (const quality::RayChoice* choice = own_of(cut->cut, *own, node)) {
-                const Object& object = model->model.objects.at(cut->cut.nodes[choice->node].object);
-                if (choice->lod >= object.representations.size())
-                    fail(Status::StaleId, "the cut was made before the model's levels changed");
-                out.object = model->id_of(cut->cut.nodes[choice->node].object);
+                const quality::Node& met = cut->cut.nodes[choice->node];
+                const Representation& level = levels_with(*model, met, choice->lod)[choice->lod];
+                out.object = model->id_of(met.object);
                 out.lod = choice->lod;
-                out.kind = static_cast<int32_t>(object.representations[choice->lod].summary.kind);
+                out.kind = static_cast<int32_t>(level.summary.kind);
                 out.scale = choice->scale;
                 out.error = choice->error;
                 out.error_px = choice->error_px;
