@@ -36,6 +36,14 @@ std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
 bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
          double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
     sight.stretch = enlarge;
+    factors.importance = node.importance;
+    factors.demand = demand;
+    if (!field.bends(path) && view.modifiers.criterion != Criterion::Area) {
+        sight.z = distance_of(local, node.world, enlarge, view.camera.position);
+        sight.pixel = field.pixel(sight.z);
+        sight.total = total_refinement(node.importance * demand);
+        return true;
+    }
     const Bound bound = transformed(local, node.world, enlarge);
     sight.z = distance(bound, view.camera.position);
     sight.pixel = field.pixel(sight.z);
@@ -49,8 +57,6 @@ bool see(const View& view, FactorField& field, const Node& node, bool group, con
         factors.demand = demand;
         sight.total = effect.open ? kInfinity : factors.total();
     } else {
-        factors.importance = node.importance;
-        factors.demand = demand;
         sight.total = total_refinement(node.importance * demand);
     }
     if (view.modifiers.criterion == Criterion::Area)
@@ -84,9 +90,9 @@ Decision decide(const Table& table, const View& view, uint32_t index, const Node
     }
     made.drawn = true;
     made.pinned = node.finest > 0;
-    made.cheaper =
-        made.good && !made.pinned && made.level->opens_from < kInfinity && by_error(view) &&
-        good_enough(view, sight, made.level->opens_from, made.level->lod, levels);
+    made.cheaper = made.good && !made.pinned && made.level->opens_from < kInfinity &&
+                   by_error(view) &&
+                   good_enough(view, sight, made.level->opens_from, made.level->lod, levels);
     made.opened = row.group && !made.pinned && (!made.good || made.cheaper);
     return made;
 }
@@ -231,9 +237,8 @@ void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField:
     if (made.opened) {
         node.opened = true;
         if (made.cheaper)
-            least_ =
-                std::max(least_, threshold_for(view_, sight, made.level->opens_from,
-                                               made.level->lod, levels_of(known.row)));
+            least_ = std::max(least_, threshold_for(view_, sight, made.level->opens_from,
+                                                    made.level->lod, levels_of(known.row)));
         nodes_->push_back(node);
         if (seen_ != nullptr)
             seen_->push_back({known.row, 0, enlarge, sight.total});
@@ -251,10 +256,10 @@ void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField:
         return;
     const double error_px = error_on_screen(sight, level.error);
     if (made.good)
-        least_ = std::max(
-            least_, view_.modifiers.criterion == Criterion::Resolution
-                        ? error_px * sight.total
-                        : threshold_for(view_, sight, level.error, level.lod, levels_of(known.row)));
+        least_ = std::max(least_, view_.modifiers.criterion == Criterion::Resolution
+                                      ? error_px * sight.total
+                                      : threshold_for(view_, sight, level.error, level.lod,
+                                                      levels_of(known.row)));
     take(index, level, error_px / factors.off_screen);
 }
 

@@ -2,8 +2,10 @@
 // Criterion: is a representation good enough from here? (DESIGN 5; dissertation 5.2)
 #pragma once
 
+#include "base/maths.h"
 #include "model/view.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lodestone::quality {
@@ -33,6 +35,20 @@ struct Sight {
     double total = 1;    // total_refinement of all factors
     double share = 0;    // of the picture, covered by the image of its box; Criterion::Area only
 };
+
+/// distance(transformed(bound, world, stretch), eye), to the last bit and sooner, above all where
+/// nothing is turned: of all that choosing computes this is the most.
+inline double distance_of(const Bound& bound, const Affine& world, double stretch,
+                          const glm::dvec3& eye) {
+    if (bound.empty() || world.linear != glm::dmat3(1.0))
+        return distance(transformed(bound, world, stretch), eye);
+    const glm::dvec3 center = bound.center + world.offset;
+    const glm::dvec3 outside = glm::max(
+        glm::max(bound.box.low + world.offset - eye, eye - (bound.box.high + world.offset)),
+        glm::dvec3(0.0));
+    return std::max(
+        {0.0, glm::length(eye - center) - bound.radius * stretch, glm::length(outside)});
+}
 
 /// error_on_screen() of what is seen so.
 inline double error_on_screen(const Sight& sight, double error) {

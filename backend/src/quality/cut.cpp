@@ -63,7 +63,7 @@ double error_on_screen(const Table& table, const View& view, const Node& node) {
         if (level.lod == node.lod)
             return error_on_screen(
                 view, level.error, enlarge,
-                distance(transformed(table.bound(index), node.world, enlarge), view.camera.position));
+                distance_of(table.bound(index), node.world, enlarge, view.camera.position));
     }
     fail(Status::InvalidArgument, "the cut was made from another table");
 }

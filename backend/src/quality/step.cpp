@@ -150,8 +150,7 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
 
 Sight Stepper::sight_of(const Node& node, const Seen& seen) const {
     Sight sight;
-    sight.z = distance(transformed(table_->bound(seen.row), node.world, seen.stretch),
-                       view_.camera.position);
+    sight.z = distance_of(table_->bound(seen.row), node.world, seen.stretch, view_.camera.position);
     sight.pixel = pixel_ * std::max(sight.z, view_.camera.near_clip);
     sight.stretch = seen.stretch;
     sight.total = seen.total;
@@ -257,8 +256,7 @@ FactorField::Path Stepper::path_below(const Cut& cut, uint32_t node) {
         Sight sight;
         Factors factors;
         see(view_, *field_, here, row.group, table_->bound(seen.row),
-            table_->object(seen.row).demand, seen.stretch, path, sight,
-            factors);
+            table_->object(seen.row).demand, seen.stretch, path, sight, factors);
     }
     return path;
 }
