@@ -2,6 +2,7 @@
 // Guards the cut: each path crossed once, the cheapest that is good enough, groups never opened in
 // vain.
 #include "backend/models.h"
+#include "quality/chooser.h"
 #include "quality/criterion.h"
 #include "quality/cut.h"
 
@@ -215,4 +216,31 @@ TEST(Cut, ManyOccurrencesOfDeepSharing) {
         ++seen;
     });
     EXPECT_EQ(seen, 32768u);
+}
+
+TEST(Cut, GroupsThatPlaceAnotherTwiceSixtyTimesOverAreRefused) {
+    // 2^60 occurrences of 61 objects
+    Model model;
+    ObjectIndex below = models::add_leaf(model, "ball", shapes::sphere(1, 0));
+    for (int depth = 0; depth < 60; ++depth) {
+        std::vector<Placement> twice(2);
+        twice[0].object = twice[1].object = below;
+        below = models::add_group(model, "group " + std::to_string(depth), std::move(twice));
+    }
+    model.root = below;
+    summarize_assemblies(model, bottom_up(model));
+    const View view = view_from(100, 0);
+    const quality::Table table = quality::Table::whole(model, model.root, view.kinds);
+    const Job job;
+    for (const uint64_t triangles : {uint64_t{0}, uint64_t{1} << 60u}) {
+        quality::FactorField field(model, view);
+        quality::Chooser chooser(table, nullptr, view, field, job, 1000);
+        quality::Cut cut;
+        if (triangles == 0) {
+            EXPECT_THROW(chooser.run(table.find(model.root), {}, cut), Error);
+        } else {
+            EXPECT_FALSE(chooser.run(table.find(model.root), {triangles, 0}, cut));
+        }
+        EXPECT_LT(cut.nodes.size(), 1002u);
+    }
 }

@@ -250,7 +250,46 @@ static void test_a_cut_goes_along_with_the_camera(void) {
     lds_cut_destroy(cut);
 }
 
+static void test_a_cut_is_stale_once_its_groups_are_structured(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    lds_object_info info = info_of("many", "Many");
+    lds_object many;
+    EXPECT(lds_model_add_group(model, &info, &many) == LDS_OK);
+    double moved[12];
+    memcpy(moved, kIdentity, sizeof moved);
+    for (int i = 0; i < 40; ++i) {
+        moved[3] = 5 * i;
+        EXPECT(lds_model_add_placement(model, many, cube, moved, "one") == LDS_OK);
+    }
+    EXPECT(lds_model_set_root(model, many) == LDS_OK);
+    lds_view view = view_before(30, 640, 360);
+    lds_cut* cut = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    lds_reason reason;
+    memset(&reason, 0, sizeof reason);
+    reason.struct_size = sizeof reason;
+    EXPECT(lds_cut_choice_reason(model, cut, 39, &reason) == LDS_OK);
+    size_t added = 0;
+    EXPECT(lds_model_group_by_position(model, many, 8, &added) == LDS_OK && added > 0);
+    EXPECT(lds_cut_choice_reason(model, cut, 39, &reason) == LDS_ERROR_STALE_ID);
+    int32_t drawn = 0;
+    size_t position = 0;
+    EXPECT(lds_cut_find_choice(model, cut, cube, moved, &drawn, &position) == LDS_ERROR_STALE_ID);
+    lds_ray_choice choice;
+    memset(&choice, 0, sizeof choice);
+    choice.struct_size = sizeof choice;
+    EXPECT(lds_cut_choice_rays(model, cut, 39, LDS_RAYS_SHADOW, &choice) == LDS_ERROR_STALE_ID);
+    EXPECT(strcmp(lds_cut_choice_path(cut, 39), "one") == 0);
+    EXPECT(lds_cut_step(model, cut, &view, NULL) == LDS_OK);
+    EXPECT(lds_cut_choice_count(cut) == 40);
+    EXPECT(lds_cut_choice_reason(model, cut, 39, &reason) == LDS_OK);
+    lds_cut_destroy(cut);
+    lds_model_destroy(model);
+}
+
 int main(void) {
+    test_a_cut_is_stale_once_its_groups_are_structured();
     test_a_view_without_modifiers_is_one_of_version_1();
     test_nonsense_is_refused_by_name();
     test_a_budget_says_what_fits();

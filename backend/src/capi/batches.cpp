@@ -31,7 +31,7 @@ lds_status lds_cut_make_batches(lds_model* model, lds_cut* cut, size_t* out_coun
         require(model, "model");
         require(cut, "cut");
         require(out_count, "out_count");
-        require_made_from(*model, *cut);
+        require_current(*model, *cut);
         cut->batches = quality::batches_of(model->model, cut->cut, cut->colors);
         cut->batch_colors = cut->colors;
         *out_count = cut->batches.size();
@@ -60,7 +60,7 @@ lds_status lds_batch_create(lds_model* model, const lds_cut* cut, size_t positio
         require(model, "model");
         require(cut, "cut");
         require(out_batch, "out_batch");
-        require_made_from(*model, *cut);
+        require_current(*model, *cut);
         if (position >= cut->batches.size())
             fail(Status::InvalidArgument, "batch ", position, " of ", cut->batches.size());
         const quality::Batch& batch = cut->batches[position];

@@ -102,10 +102,12 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         model->load_finest();
         const segment::Store target(store);
         model->table.reset();
+        const size_t before = model->model.objects.size();
         const build::Report report =
             build::build_hierarchy(model->model, target, settings, model->problems, job_of(job));
         model->store.emplace(target);
         model->summarized = true;
+        model->structured += model->model.objects.size() == before ? 0 : 1;
         hand_out_grown(out_report, report_of(report), kFirstReport, "out_report");
     });
 }

@@ -12,6 +12,12 @@ void require_made_from(const lds_model& model, const lds_cut& cut) {
         fail(Status::StaleId, "the cut belongs to another model");
 }
 
+void require_current(const lds_model& model, const lds_cut& cut) {
+    require_made_from(model, cut);
+    if (cut.structured != model.structured)
+        fail(Status::StaleId, "the cut was made before the model's groups changed");
+}
+
 std::vector<Representation>& levels_with(lds_model& model, const quality::Node& node,
                                          uint32_t lod) {
     std::vector<Object>& objects = model.model.objects;
@@ -21,7 +27,7 @@ std::vector<Representation>& levels_with(lds_model& model, const quality::Node& 
 }
 
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position) {
-    require_made_from(model, cut);
+    require_current(model, cut);
     if (position >= cut.cut.chosen.size())
         fail(Status::InvalidArgument, "choice ", position, " of ", cut.cut.chosen.size());
     return cut.cut.chosen[position];

@@ -10,10 +10,13 @@ namespace lodestone::capi {
 /// Throws Error(StaleId) unless the cut was made from this model.
 void require_made_from(const lds_model& model, const lds_cut& cut);
 
+/// The same, and unless the model's groups place what they placed then where they placed it.
+void require_current(const lds_model& model, const lds_cut& cut);
+
 /// The levels of a node's object; throws Error(StaleId) where it has no number `lod` any more.
 std::vector<Representation>& levels_with(lds_model& model, const quality::Node& node, uint32_t lod);
 
-/// Index of the node that a choice is; throws unless the cut was made from this model and has it.
+/// Index of the node that a choice is; throws unless the cut is current and has it.
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);
 
 /// Reads the meshes of these levels of cut.chosen that are not in memory yet; a level that no object

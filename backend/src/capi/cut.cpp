@@ -17,6 +17,7 @@ constexpr size_t kFirstSummary = offsetof(lds_cut_summary, largest_error_choice)
 /// What is known of a cut besides it, with what its classes of rays meet.
 void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
     made.view = std::move(view);
+    made.structured = model.structured;
     made.paths.clear();
     made.colors.clear();
     made.surface = {};

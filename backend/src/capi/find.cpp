@@ -16,7 +16,7 @@ lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object 
         require(world, "world");
         require(out_drawn, "out_drawn");
         require(out_position, "out_position");
-        require_made_from(*model, *cut);
+        require_current(*model, *cut);
         const ObjectIndex index = model->index_of(object);
         const Affine place = Affine::from_rows(world);
         if (!place.finite())

@@ -48,8 +48,10 @@ Placement placement_of(const lds_model& model, lds_object child, const double* t
 void list_new(lds_model& model, size_t first) {
     for (size_t i = first; i < model.model.objects.size(); ++i)
         model.by_uid.emplace(model.model.objects[i].uid, static_cast<uint32_t>(i));
-    if (first < model.model.objects.size())
+    if (first < model.model.objects.size()) {
         model.summarized = false;
+        ++model.structured;
+    }
 }
 
 group::StructureOptions structure_options(const lds_structure_options* given) {

@@ -28,6 +28,7 @@ struct lds_model {
     /// Finest meshes by content, for those that are added next.
     std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
+    uint64_t structured = 0;  // how often what groups place was put into other groups
     /// For choosing; reset when the model changes. Cuts keep it.
     std::shared_ptr<const lodestone::quality::Table> table;
     /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
@@ -55,6 +56,7 @@ struct lds_cut {
     lodestone::quality::Resident resident;         // for the camera and these
     lodestone::View view;                          // that it was made for, with the threshold found
     uint32_t generation = 0;                       // of the model it was made from
+    uint64_t structured = 0;                       // the model's then
     std::shared_ptr<const lodestone::quality::Table> table;  // that it was chosen from
     std::unique_ptr<lodestone::quality::Stepper> stepper;    // of the table; null: not stepped yet
     std::vector<std::string> paths;                          // by choice; those asked for

@@ -74,7 +74,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(folder, "folder");
         require_size(out_report, kFirstPovrayReport, "out_report");
         const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
-        require_made_from(*model, *cut);
+        require_current(*model, *cut);
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
         progress.stage(Stage::Export);

@@ -62,7 +62,7 @@ lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_tr
         require(model, "model");
         require(cut, "cut");
         require(out_triangles, "out_triangles");
-        require_made_from(*model, *cut);
+        require_current(*model, *cut);
         quality::Surface made;
         if (most_triangles > 0) {
             const Job progress = job_of(job);

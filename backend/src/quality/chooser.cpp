@@ -107,7 +107,7 @@ bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
     nodes_ = &cut.nodes;
     visit_root(root);
     visit_all();
-    if (!budget.fits(cut))
+    if (too_dear())
         return false;
     cut.kinds = named(kinds_);
     table_.expect(cut.nodes.size());
@@ -153,9 +153,17 @@ void Chooser::visit_root(uint32_t root) {
     visit(known(root), top, 1, path, 0);
 }
 
+bool Chooser::too_dear() const {
+    const bool limited = budget_ != nullptr && (budget_->triangles > 0 || budget_->bytes > 0);
+    if (nodes_->size() > most_ && !limited)
+        fail(Status::InvalidArgument, "more than ", most_,
+             " things and groups at a Pixel Error of ", view_.pixel_error);
+    return nodes_->size() > most_ || (limited && !budget_->fits(*cut_));
+}
+
 void Chooser::visit_all() {
     while (!stack_.empty()) {
-        if (budget_ != nullptr && !budget_->fits(*cut_))
+        if (too_dear())
             return;
         const Entry entry = stack_.back();
         stack_.pop_back();

@@ -11,6 +11,10 @@
 
 namespace lodestone::quality {
 
+/// More nodes than this are refused: as many occurrences take POV-Ray 25 GB, and groups that place
+/// another twice, so many deep, would not end.
+inline constexpr size_t kMostNodes = size_t{1} << 24u;
+
 inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
 
 /// Throws Error(InvalidArgument) for a view that makes no sense.
@@ -50,11 +54,12 @@ struct Seen {
 class Chooser {
 public:
     /// `growing`: the same table, where rows are made on the way. All must outlive it.
+    /// `most`: nodes; where there would be more, Error(InvalidArgument) is thrown, or it is too dear.
     Chooser(const Table& table, Table* growing, const View& view, FactorField& field,
-            const Job& job)
-        : table_(table), growing_(growing), view_(view), field_(field), job_(job) {}
+            const Job& job, size_t most = kMostNodes)
+        : table_(table), growing_(growing), view_(view), field_(field), job_(job), most_(most) {}
 
-    /// All of a cut, but its kinds and sums where `budget` was exceeded: false.
+    /// All of a cut, but its kinds and sums where `budget` was exceeded, or with one `most`: false.
     bool run(uint32_t root, const Budget& budget, Cut& cut);
     /// The least threshold that gives the same (of Criterion::Distance: the greatest).
     double least() const { return least_; }
@@ -99,6 +104,7 @@ private:
     Known known(uint32_t row) const;
     size_t levels_of(uint32_t row) const { return table_.object(row).all_levels; }
     void take(uint32_t index, const TableLevel& level, double shown_px);
+    bool too_dear() const;
     void visit_all();
 
     const Table& table_;
@@ -106,6 +112,7 @@ private:
     const View& view_;
     FactorField& field_;
     const Job& job_;
+    const size_t most_;
     const Budget* budget_ = nullptr;
     Cut* cut_ = nullptr;                  // whose sums are made; null: none are
     std::vector<Node>* nodes_ = nullptr;  // what is appended to
