@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/splice.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+namespace lodestone::quality {
+namespace {
+
+/// Each node gives way to one: nothing moves.
+bool in_place(const std::vector<Edit>& edits) {
+    return std::all_of(edits.begin(), edits.end(), [](const Edit& edit) {
+        return edit.removed == 1 && edit.end - edit.begin == 1;
+    });
+}
+
+template <typename Value>
+void grow(std::vector<Value>& values, size_t most) {
+    if (values.capacity() < most)
+        values.reserve(most + most / 4);
+}
+
+}  // namespace
+
+void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+    const size_t most = cut.nodes.size() + fresh.nodes.size();
+    spare_chosen_.clear();
+    if (in_place(edits)) {
+        spare_chosen_.reserve(edits.size());
+        return;
+    }
+    grow(cut.nodes, most);
+    grow(kept.seen, most);
+    kept.slack.grow(most);
+    spare_chosen_.reserve(most);
+    runs_.reserve(edits.size() + 1);
+}
+
+void Splicer::replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+    spare_chosen_.clear();
+    if (!in_place(edits)) {
+        move_all(edits, fresh, cut, kept);
+        return;
+    }
+    for (const Edit& edit : edits)
+        insert(edit, edit.at, fresh.nodes[edit.begin].parent, fresh, cut, kept);
+}
+
+/// Moves what stays, in its place, and puts the fresh nodes between.
+void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+    runs_.assign(1, {});
+    for (const Edit& edit : edits) {
+        Run& before = runs_.back();
+        before.end = edit.at;
+        const uint32_t shift = before.shift + (edit.end - edit.begin) - edit.removed;
+        runs_.push_back({edit.at + edit.removed, 0, shift});
+    }
+    const auto count = static_cast<uint32_t>(cut.nodes.size());
+    runs_.back().end = count;
+    const uint32_t wanted = count + runs_.back().shift;
+    const uint32_t room = std::max(count, wanted);
+    cut.nodes.resize(room);
+    kept.seen.resize(room);
+    kept.slack.resize(room);
+    const auto moved = [&](uint32_t index) {
+        if (index == kNoParent)
+            return index;
+        const auto after =
+            std::upper_bound(runs_.begin(), runs_.end(), index,
+                             [](uint32_t value, const Run& run) { return value < run.begin; });
+        return index + (after - 1)->shift;
+    };
+    const auto move = [&](const Run& run) {
+        const auto one = [&](auto* all) {
+            if (run.shift != 0)
+                std::memmove(all + (run.begin + run.shift), all + run.begin,
+                             (run.end - run.begin) * sizeof(*all));
+        };
+        static_assert(std::is_trivially_copyable_v<Node> && std::is_trivially_copyable_v<Seen>);
+        one(kept.seen.data());
+        if (run.shift != 0)
+            kept.slack.move(run.begin, run.end, run.begin + run.shift);
+        one(cut.nodes.data());
+        for (uint32_t i = run.begin + run.shift; run.begin > 0 && i < run.end + run.shift; ++i) {
+            uint32_t& parent = cut.nodes[i].parent;
+            parent =
+                parent >= run.begin && parent != kNoParent ? parent + run.shift : moved(parent);
+        }
+    };
+    // What moves down overwrites only what has moved down before it, or is gone; then, from the end,
+    // what moves up overwrites only what has moved.
+    const auto down = [](const Run& run) { return static_cast<int32_t>(run.shift) < 0; };
+    for (size_t i = 0; i < runs_.size(); ++i) {
+        if (down(runs_[i]))
+            move(runs_[i]);
+    }
+    for (size_t i = runs_.size(); i-- > 0;) {
+        if (!down(runs_[i]))
+            move(runs_[i]);
+    }
+    cut.nodes.resize(wanted);
+    kept.seen.resize(wanted);
+    kept.slack.resize(wanted);
+    spare_chosen_.clear();
+    auto chosen = cut.chosen.begin();
+    for (size_t k = 0; k < runs_.size(); ++k) {
+        const Run& run = runs_[k];
+        chosen = std::lower_bound(chosen, cut.chosen.end(), run.begin);
+        const auto end = std::lower_bound(chosen, cut.chosen.end(), run.end);
+        for (; chosen != end; ++chosen)
+            spare_chosen_.push_back(*chosen + run.shift);
+        if (k < edits.size())
+            insert(edits[k], run.end + run.shift, moved(fresh.nodes[edits[k].begin].parent), fresh,
+                   cut, kept);
+    }
+    cut.chosen.swap(spare_chosen_);
+}
+
+/// Puts the fresh nodes of an edit at a place that is free. `parent`: of the first of them.
+void Splicer::insert(const Edit& edit, uint32_t place, uint32_t parent, const Fresh& fresh,
+                     Cut& cut, Kept& kept) {
+    for (uint32_t from = edit.begin; from < edit.end; ++from) {
+        const uint32_t to = place + (from - edit.begin);
+        Node& node = cut.nodes[to] = fresh.nodes[from];
+        node.parent = from == edit.begin ? parent : node.parent - edit.begin + place;
+        kept.seen[to] = fresh.seen[from];
+        kept.slack.copy(fresh.slack, from, to);
+        if (!node.opened)
+            spare_chosen_.push_back(to);
+    }
+}
+
+}  // namespace lodestone::quality

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tally: a cut's sums, kept while nodes come and go.
+#pragma once
+
+#include "quality/chooser.h"
+
+namespace lodestone::quality {
+
+class Tally {
+public:
+    /// Of nothing.
+    void clear(const Table& table);
+    /// Adds a node's costs to the cut's sums, or takes them away.
+    void count(const Table& table, const Node& node, const Seen& seen, bool more, Cut& cut);
+    const std::array<uint64_t, kKinds>& kinds() const { return kinds_; }
+
+private:
+    std::vector<uint32_t> uses_;  // by TableLevel::distinct
+    std::array<uint64_t, kKinds> kinds_{};
+};
+
+}  // namespace lodestone::quality
