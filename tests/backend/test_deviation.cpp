@@ -305,6 +305,39 @@ TEST(DeviationLooks, BoardsAreRepaintedLikeTheTilesThatLayOnThem) {
     EXPECT_EQ(same.slots, roof.slots);
 }
 
+TEST(DeviationLooks, OfARepaintedLevelIsTheSameWithWhatRepaintingFound) {
+    const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.1, 0.1, 0.1)};
+    const Mesh finest = field_with_road();
+    measure::Looks palette;
+    const std::vector<uint16_t> looks = palette.of(finest, materials);
+    const DeviationReference reference(finest, {2048, 2048, 1}, {looks, &palette, nullptr});
+    Mesh level = shapes::quad(20, 20);
+    append(level, shapes::quad(3, 20), Affine{}, 1);  // another road, at the edge
+    const std::vector<ray::Closest> nearest = reference.repaint(level);
+    ASSERT_EQ(nearest.size(), reference.visible_points());
+    const std::vector<uint16_t> theirs = palette.of(level, materials);
+    const measure::Surface surface{theirs, &palette, nullptr};
+    const double never = std::numeric_limits<double>::infinity();
+    const Deviation told = reference.of(level, surface, nearest, never, {});
+    EXPECT_NEAR(told.error, reference.of(level, surface).error, 1e-9);
+    EXPECT_GT(told.error, 0.5);
+    const Deviation rough = reference.roughly(level, surface, nearest, never, {});
+    EXPECT_NEAR(rough.error, told.error, 0.2 * told.error);
+    EXPECT_GE(rough.max, rough.error);
+}
+
+TEST(Deviation, RoughlyIsNearTheSame) {
+    const Mesh finest = shapes::sphere(1, 4);
+    const DeviationReference reference(finest, {2048, 2048, 1});
+    const double never = std::numeric_limits<double>::infinity();
+    for (const int subdivisions : {0, 1, 2, 3}) {
+        const Mesh level = shapes::sphere(1, subdivisions);
+        const double error = reference.of(level).error;
+        EXPECT_NEAR(reference.roughly(level, {}, {}, never, {}).error, error, 0.04 * error);
+    }
+    EXPECT_EQ(reference.roughly(Mesh{}, {}, {}, never, {}).error, reference.of(Mesh{}).error);
+}
+
 TEST(DeviationLooks, ColorsThatNobodyCanTellApartDoNotCount) {
     const std::vector<Material> alike{colored(0.1, 0.5, 0.1), colored(0.11, 0.5, 0.1)};
     EXPECT_NEAR(of_looks(field_with_road(), alike, shapes::quad(20, 20), alike).error, 0.02, 1e-3);

@@ -46,9 +46,15 @@ const Mesh& traced_mesh(const Candidate& candidate, Mesh& solid) {
     return solid;
 }
 
-/// The ground is large, and what lies on it (roads, fields) a small share of it.
-uint32_t samples_of(bool environment, const Settings& settings) {
-    return environment ? 8 * settings.samples : settings.samples;
+/// The ground is large, and what lies on it (roads, fields) a small share of it; a few triangles, with
+/// all of their corners, are known from a few points of each.
+uint32_t samples_of(const Mesh& finest, bool environment, const Settings& settings) {
+    constexpr uint64_t kOfTriangle = 8;
+    constexpr uint64_t kFewest = 512;
+    if (environment)
+        return 8 * settings.samples;
+    return static_cast<uint32_t>(std::min<uint64_t>(
+        settings.samples, std::max(kFewest, kOfTriangle * finest.triangles.size())));
 }
 
 }  // namespace
@@ -69,7 +75,7 @@ Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::Tex
       materials_(materials.begin(), materials.end()),
       skin_(std::make_shared<const ray::Skin>(materials, texels)),
       finest_looks_(looks_.of(finest, materials)),
-      reference_(finest, {samples_of(environment, settings), settings.samples, seed},
+      reference_(finest, {samples_of(finest, environment, settings), settings.samples, seed},
                  {finest_looks_, &looks_, skin_}, job) {}
 
 void Judge::measure_finest(const Mesh& finest, const Job& job) {
@@ -119,10 +125,14 @@ bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
     return change <= kMostAreaChange;
 }
 
-void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless) {
+void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
+                         std::span<const ray::Closest> nearest) {
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    set_error(candidate, reference_.of(mesh, {looks, &looks_, skin_}, job, distance_for(useless)));
+    const measure::Surface surface{looks, &looks_, skin_};
+    const double most = distance_for(useless);
+    set_error(candidate, rough_ ? reference_.roughly(mesh, surface, nearest, most, job)
+                                : reference_.of(mesh, surface, nearest, most, job));
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {

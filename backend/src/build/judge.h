@@ -38,6 +38,10 @@ public:
     /// from here on. After measure_finest().
     void count_layers();
 
+    /// Errors of meshes are those of half of the points from here on: of a group's, which are far off
+    /// beside those of a leaf. What a solid of one color hides takes all points to be told.
+    void measure_roughly() { rough_ = true; }
+
     const Attributes& attributes() const { return attributes_; }
     /// Whether something solid may stand for it.
     bool solid() const;
@@ -49,14 +53,18 @@ public:
     const ray::Scene& finest_scene() const { return reference_.scene(); }
     const measure::Sides& finest_sides() const { return reference_.sampler().sides(); }
 
-    void repaint(Mesh& level, const Job& job) const { reference_.repaint(level, skin_.get(), job); }
+    /// As DeviationReference::repaint(), whose answer measure_mesh() may be told.
+    std::vector<ray::Closest> repaint(Mesh& level, const Job& job) const {
+        return reference_.repaint(level, skin_.get(), job);
+    }
 
     /// False for a level of the finest's materials that shows another amount of surface.
     bool shows_as_much(const Mesh& level, const Job& job) const;
     /// Fill the errors of a candidate; a mesh has the finest's materials. Where the error is much
     /// larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
-                      double useless = std::numeric_limits<double>::infinity());
+                      double useless = std::numeric_limits<double>::infinity(),
+                      std::span<const ray::Closest> nearest = {});
     /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 
@@ -93,6 +101,7 @@ private:
     double child_error_;
     bool environment_;
     bool layer_ = false;
+    bool rough_ = false;
     double least_primitive_ = std::numeric_limits<double>::infinity();  // error of those measured
     uint64_t seed_;
     uint64_t rays_;

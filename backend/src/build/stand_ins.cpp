@@ -21,7 +21,7 @@ namespace {
 // So many things drawn in a group may be a crowd.
 constexpr size_t kManyChildren = 32;
 // Rays from a triangle that decide whether anything outside can see it.
-constexpr int kRaysPerTriangle = 24;
+constexpr int kRaysPerTriangle = 16;
 
 /// From which error on a mesh of so many triangles is no use.
 using Useless = std::function<double(size_t triangles)>;
@@ -48,12 +48,12 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
             coarser /= kMostNearer;
             continue;
         }
-        judge.repaint(level, job);
+        const std::vector<ray::Closest> nearest = judge.repaint(level, job);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
         candidate.unproven = true;
-        judge.measure_mesh(candidate, job, std::max(most, told));
+        judge.measure_mesh(candidate, job, std::max(most, told), nearest);
         coarser = std::min(candidate.error, std::max(most, told));
         if (std::isfinite(candidate.error))
             measured.push_back(std::move(candidate));
@@ -276,6 +276,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const uint64_t seed = seed_of(object, settings);
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
                 reference.child_error, job);
+    judge.measure_roughly();
     judge.measure_finest(reference.mesh, job);
     if (std::set<ObjectIndex> asked; lies_on_a_layer(model, group, surroundings.layers, asked))
         judge.count_layers();

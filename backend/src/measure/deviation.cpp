@@ -25,6 +25,16 @@ constexpr uint32_t kLevelVertices = 16384;
 // color miss changes little from one sample to the next, and takes long.
 constexpr size_t kAsked = 512;
 constexpr size_t kAskedOfMixed = 256;
+// One point of so many is asked for a rough answer.
+constexpr uint32_t kFew = 2;
+
+/// A stand-in of few triangles is not asked at more points than some of each, or than a quarter of
+/// `all`: what it hides, or has lost, the points of the finest tell.
+uint32_t samples_for(const Mesh& stand_in, uint32_t most, uint32_t all) {
+    constexpr uint64_t kOfTriangle = 8;
+    const uint64_t enough = std::max<uint64_t>(all / 4, kOfTriangle * stand_in.triangles.size());
+    return static_cast<uint32_t>(std::min<uint64_t>(most, enough));
+}
 
 }  // namespace
 
@@ -115,12 +125,15 @@ struct DeviationReference::Against {
 /// From the samples to the nearest points of the other mesh. What is not near the quantile is found
 /// out no further than that it is below, and looks are asked for at some samples for all.
 Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
-                                      double useless, const Job& job) {
+                                      std::span<const ray::Closest> nearest, double useless,
+                                      const Job& job) {
     constexpr size_t kFewSamples = 512;
     constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
     std::vector<double> moves(samples.size(), 0);
     const ray::Scene& scene = against.other.whole();
+    // What hides in part was not asked for as such.
+    const bool known_before = nearest.size() == samples.size() && !scene.see_through();
     const bool one_thing = against.shows_one_thing();
     const std::vector<uint8_t> asked =
         asked_for_looks(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
@@ -140,7 +153,8 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
                     (again && ((looks && !one_thing) || places[i] > before)))
                     continue;
                 looks = looks && !again;
-                if (!looks && known < samples.size()) {
+                const bool given = known_before && std::isfinite(nearest[i].distance);
+                if (!given && !looks && known < samples.size()) {
                     // What is beside something that is near is near.
                     const double most =
                         places[known] + glm::length(sample.point - samples[known].point);
@@ -152,8 +166,10 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
                 // Neighbors in the list are mostly neighbors in space. Where only the distance
                 // counts, any point that is near enough will do.
                 const ray::Closest closest =
-                    scene.closest_point(sample.point, std::numeric_limits<double>::infinity(), last,
-                                        looks && !one_thing ? 0 : enough);
+                    given
+                        ? nearest[i]
+                        : scene.closest_point(sample.point, std::numeric_limits<double>::infinity(),
+                                              last, looks && !one_thing ? 0 : enough);
                 // Nothing in reach at all: a scene of triangles that have no finite corners.
                 const bool found = std::isfinite(closest.distance);
                 places[i] = found ? closest.distance : against.none;
@@ -192,41 +208,65 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
       sampler_(finest, scenes_.whole(), options.seed),
       palette_(surface.palette),
       diameter_(2 * radius_of(finest)) {
+    std::vector<Sample>& points = seen_.points;
     if (!sampler_.empty()) {
-        add_visible_points(finest, sampler_, surface, options.samples, job, visible_);
+        add_visible_points(finest, sampler_, surface, options.samples, job, points);
         const std::vector<WeightedVertex> vertices =
             weighted_vertices(finest, options.most_vertices, options.seed);
         if (surface.skin && surface.skin->transmits())
-            add_vertex_samples(finest, scenes_.whole(), vertices, visible_);
+            add_vertex_samples(finest, scenes_.whole(), vertices, points);
         else
             add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), vertices,
-                                 ray_lift(diameter_ / 2), options.seed, job, visible_);
+                                 ray_lift(diameter_ / 2), options.seed, job, points);
     }
-    seen_ = std::make_unique<const VisibleLooks>(visible_, palette_);
+    for (size_t i = 0; i < points.size(); i += kFew)
+        few_.points.push_back(points[i]);
+    for (Seen* seen : {&seen_, &few_})
+        seen->looks = std::make_unique<const VisibleLooks>(seen->points, palette_);
 }
 
 DeviationReference::~DeviationReference() = default;
 
-Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface, const Job& job,
-                                 double useless) const {
+Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
+                                 std::span<const ray::Closest> nearest, double useless,
+                                 const Job& job) const {
+    return compare(seen_, stand_in, surface,
+                   samples_for(stand_in, options_.samples, options_.samples),
+                   std::max(options_.most_vertices, kLevelVertices), nearest, useless, job);
+}
+
+Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surface,
+                                      std::span<const ray::Closest> nearest, double useless,
+                                      const Job& job) const {
+    std::vector<ray::Closest> few;
+    for (size_t i = 0; i < nearest.size(); i += kFew)
+        few.push_back(nearest[i]);
+    return compare(few_, stand_in, surface,
+                   samples_for(stand_in, options_.samples / kFew, options_.samples),
+                   std::max(options_.most_vertices, kLevelVertices) / kFew, few, useless, job);
+}
+
+Deviation DeviationReference::compare(const Seen& seen, const Mesh& stand_in,
+                                      const Surface& surface, uint32_t count,
+                                      uint32_t most_vertices, std::span<const ray::Closest> nearest,
+                                      double useless, const Job& job) const {
     const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints);
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
     // What the stand-in shows where, the visible points have asked already.
     std::vector<Sample> samples;
-    add_area_samples(stand_in, scenes.whole(), options_.samples, options_.seed, samples);
+    add_area_samples(stand_in, scenes.whole(), count, options_.seed, samples);
     add_vertex_samples(stand_in, scenes.whole(),
-                       weighted_vertices(stand_in, std::max(options_.most_vertices, kLevelVertices),
-                                         options_.seed),
-                       samples);
+                       weighted_vertices(stand_in, most_vertices, options_.seed), samples);
     const ray::Skin* const skin = surface.skin.get();
-    const Deviation there =
-        measure(visible_, {scenes, *seen_, scenes_, palette_, none, stand_in, skin}, useless, job);
+    const auto against = [&](const LookScenes& other) {
+        return Against{other, *seen.looks, scenes_, palette_, none, stand_in, skin};
+    };
+    const Deviation there = measure(seen.points, against(scenes), nearest, useless, job);
     if (!std::isfinite(there.error))
         return there;
-    const Deviation back =
-        measure(samples, {scenes_, *seen_, scenes_, palette_, none, stand_in, skin}, useless, job);
+    const Deviation back = measure(samples, against(scenes_), {}, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

@@ -47,13 +47,25 @@ public:
     /// bounding sphere; two empty ones agree. Where the error is much larger than `useless` the answer
     /// may be infinite, and sooner there. May be called from any thread.
     Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
-                 double useless = std::numeric_limits<double>::infinity()) const;
+                 double useless = std::numeric_limits<double>::infinity()) const {
+        return of(stand_in, surface, {}, useless, job);
+    }
+    /// The same of a level that was repainted (or not, and no triangle of it has moved since), knowing
+    /// what that found; `nearest` may be empty.
+    Deviation of(const Mesh& stand_in, const Surface& surface,
+                 std::span<const ray::Closest> nearest, double useless, const Job& job) const;
+
+    /// The same with half of all points, for what need not be known as well.
+    Deviation roughly(const Mesh& stand_in, const Surface& surface,
+                      std::span<const ray::Closest> nearest, double useless, const Job& job) const;
 
     /// Gives each triangle of a level (of the finest's slots and skin) the slot that most of the
     /// visible points nearest to it show, where enough of them agree: boards look like the tiles
     /// that lay on them. A slot with textures comes with texture coordinates that show what those
-    /// points show, or not at all.
-    void repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {}) const;
+    /// points show, or not at all. The nearest point of the level by visible point, at infinity where
+    /// it was not looked for; empty where nothing was.
+    std::vector<ray::Closest> repaint(Mesh& level, const ray::Skin* skin = nullptr,
+                                      const Job& job = {}) const;
 
     /// Of the finest, as it was made for this.
     const ray::Scene& scene() const { return scenes_.whole(); }
@@ -61,19 +73,27 @@ public:
     const VisibleSampler& sampler() const { return sampler_; }
 
     /// How many visible points and vertices of the finest there are.
-    size_t visible_points() const { return visible_.size(); }
+    size_t visible_points() const { return seen_.points.size(); }
 
 private:
+    /// Points of the finest.
+    struct Seen {
+        std::vector<SurfaceSample> points;  // neighbors in the list are mostly neighbors in space
+        std::unique_ptr<const VisibleLooks> looks;  // the same, to be searched
+    };
     struct Against;
     static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
-                             double useless, const Job& job);
+                             std::span<const ray::Closest> nearest, double useless, const Job& job);
+    Deviation compare(const Seen& seen, const Mesh& stand_in, const Surface& surface,
+                      uint32_t samples, uint32_t most_vertices,
+                      std::span<const ray::Closest> nearest, double useless, const Job& job) const;
 
     DeviationOptions options_;
     LookScenes scenes_;
     VisibleSampler sampler_;
     const Looks* palette_;
-    std::vector<SurfaceSample> visible_;  // neighbors in the list are mostly neighbors in space
-    std::unique_ptr<const VisibleLooks> seen_;  // the same, to be searched
+    Seen seen_;
+    Seen few_;  // half of them
     double diameter_ = 0;
 };
 

@@ -120,29 +120,30 @@ size_t step_for(size_t triangles, size_t points) {
 
 }  // namespace
 
-void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& job) const {
-    if (level.slots.empty() || shows_one_slot(level, visible_))
-        return;
-    const size_t step = step_for(level.triangles.size(), visible_.size());
+std::vector<ray::Closest> DeviationReference::repaint(Mesh& level, const ray::Skin* skin,
+                                                      const Job& job) const {
+    const std::vector<SurfaceSample>& points = seen_.points;
+    std::vector<ray::Closest> nearest;
+    if (level.slots.empty() || shows_one_slot(level, points))
+        return nearest;
+    nearest.resize(points.size());
+    const size_t step = step_for(level.triangles.size(), points.size());
     const ray::Scene scene(level, nullptr, ray::Uses::ClosestPoints);
-    std::vector<uint32_t> nearest(visible_.size(), ray::kNoTriangle);
-    parallel_for((visible_.size() + kBlock - 1) / kBlock, [&](size_t block) {
+    parallel_for((points.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         uint32_t last = ray::kNoTriangle;
-        for (size_t i = block * kBlock; i < std::min(visible_.size(), (block + 1) * kBlock); ++i) {
-            if (visible_[i].look == kAnyLook || i % step != 0)
+        for (size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i) {
+            if (points[i].look == kAnyLook || i % step != 0)
                 continue;
             nearest[i] =
-                scene
-                    .closest_point(visible_[i].point, std::numeric_limits<double>::infinity(), last)
-                    .triangle;
-            last = nearest[i];
+                scene.closest_point(points[i].point, std::numeric_limits<double>::infinity(), last);
+            last = nearest[i].triangle;
         }
     });
     std::map<uint32_t, std::map<uint16_t, Voters>> votes;  // by triangle and slot
     for (size_t i = 0; i < nearest.size(); ++i) {
-        if (nearest[i] != ray::kNoTriangle)
-            votes[nearest[i]][visible_[i].slot].push_back(&visible_[i]);
+        if (nearest[i].triangle != ray::kNoTriangle)
+            votes[nearest[i].triangle][points[i].slot].push_back(&points[i]);
     }
     for (const auto& [triangle, slots] : votes) {
         const auto most = std::max_element(
@@ -163,6 +164,7 @@ void DeviationReference::repaint(Mesh& level, const ray::Skin* skin, const Job& 
         }
         level.slots[triangle] = most->first;
     }
+    return nearest;
 }
 
 }  // namespace lodestone::measure

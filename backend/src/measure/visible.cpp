@@ -8,6 +8,7 @@
 #include "measure/visible_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lodestone::measure {
@@ -322,7 +323,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const double share = area > mean ? std::min(area / mean, kMostRaysTimes) : 1;
         return static_cast<int>(std::ceil(share * rays_per_triangle));
     };
-    const auto see = [&](size_t index) {
+    const auto see = [&](size_t index, int first, int end) {
         const glm::dvec3 area = area_vector(mesh, index);
         const double length = glm::length(area);
         if (!(length > 0))
@@ -332,9 +333,8 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const glm::dvec3 a(mesh.positions[t.x]);
         const glm::dvec3 ab = glm::dvec3(mesh.positions[t.y]) - a;
         const glm::dvec3 ac = glm::dvec3(mesh.positions[t.z]) - a;
-        Random random(scramble(seed) + index, index);
-        const int rays = rays_of(length);
-        for (int i = 0; i < rays; ++i) {
+        Random random(scramble(seed + static_cast<uint64_t>(first)) + index, index);
+        for (int i = first; i < end; ++i) {
             const bool back = sides.both(index) ? (i & 1) != 0 : sides.of[index] == Side::Back;
             const glm::dvec3 outward = back ? -normal : normal;
             const double u[4] = {random.uniform(), random.uniform(), random.uniform(),
@@ -346,12 +346,41 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         }
         return false;
     };
-    parallel_for((seen.size() + kBlock - 1) / kBlock, [&](size_t block) {
-        job.check();
-        const size_t end = std::min<size_t>(seen.size(), (block + 1) * kBlock);
-        for (size_t i = block * kBlock; i < end; ++i)
-            seen[i] = see(i) ? 1 : 0;
-    });
+    // Half of the rays each: what they do not tell to be seen, and touches nothing that is, is in the
+    // dark with all that is around it.
+    std::vector<uint8_t> bright(mesh.positions.size(), 0);
+    const std::vector<uint32_t> welded = weld(mesh);
+    const auto corners_of = [&](size_t index) {
+        const Triangle& t = mesh.triangles[index];
+        return std::array<uint32_t, 3>{welded[t.x], welded[t.y], welded[t.z]};
+    };
+    const auto may_be_bright = [&](size_t index) {
+        const std::array<uint32_t, 3> at = corners_of(index);
+        return std::any_of(at.begin(), at.end(),
+                           [&](uint32_t corner) { return bright[corner] != 0; });
+    };
+    const auto visit = [&](bool again) {
+        parallel_for((seen.size() + kBlock - 1) / kBlock, [&](size_t block) {
+            job.check();
+            const size_t end = std::min<size_t>(seen.size(), (block + 1) * kBlock);
+            for (size_t i = block * kBlock; i < end; ++i) {
+                const int rays = rays_of(glm::length(area_vector(mesh, i)));
+                const int half = rays > rays_per_triangle ? rays : (rays + 1) / 2;
+                if (!again)
+                    seen[i] = see(i, 0, half) ? 1 : 0;
+                else if (seen[i] == 0 && half < rays && may_be_bright(i))
+                    seen[i] = see(i, half, rays) ? 1 : 0;
+            }
+        });
+    };
+    visit(false);
+    for (size_t i = 0; i < seen.size(); ++i) {
+        for (const uint32_t corner : corners_of(i)) {
+            if (seen[i] != 0)
+                bright[corner] = 1;
+        }
+    }
+    visit(true);
     return seen;
 }
 

@@ -49,9 +49,10 @@ Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const r
                         const Job& job = {});
 
 /// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
-/// dropped before simplifying. One larger than the mean has as many times more rays, to 64 times:
-/// whatever tears open above it would otherwise show what is behind. Rays leave random points in random directions (cosine), on both
-/// sides of parts that are not closed and opaque. Triangles without area count as seen: nobody knows.
+/// dropped before simplifying. What touches nothing that is seen by half of its rays has no others.
+/// One larger than the mean has as many times more rays, to 64 times: whatever tears open above it
+/// would otherwise show what is behind. Rays leave random points in random directions (cosine), on
+/// both sides of parts that are not closed and opaque. Triangles without area count as seen: nobody knows.
 /// Same bits on any number of threads.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});

@@ -2,10 +2,10 @@
 #include "measure/visible_looks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <tuple>
 
 namespace lodestone::measure {
 namespace {
@@ -93,22 +93,16 @@ double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec
 
 double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& color,
                                    double most) const {
-    struct Near {
-        double square;
-        uint16_t look;
-        uint32_t index;
-        bool operator<(const Near& other) const {
-            return std::tie(square, look, index) < std::tie(other.square, other.look, other.index);
-        }
-    };
     constexpr size_t kFirst = 16;
-    std::vector<Near> near;
+    // A square and the number of what is so near: bits of floats that are not negative are in order.
+    std::vector<uint64_t> near;
     near.reserve(mixed_.size());
     for (uint32_t i = 0; i < mixed_.size(); ++i) {
         const glm::dvec3 arm = mixed_[i].point - from.point;
         const double square = glm::dot(arm, arm);
         if (square < most * most && face_alike(mixed_[i].side, from.side))
-            near.push_back({square, mixed_[i].look, i});
+            near.push_back(uint64_t{std::bit_cast<uint32_t>(static_cast<float>(square))} << 32u |
+                           i);
     }
     const Looks::Lights wanted = Looks::lights_alike(color);
     glm::dvec3 sum(0.0);
@@ -121,9 +115,10 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
             std::nth_element(at(begin), at(end), near.end());
         std::sort(at(begin), at(end));
         for (size_t i = begin; i < end; ++i) {
-            sum += mixed_[near[i].index].light;
+            const Mixed& next = mixed_[static_cast<uint32_t>(near[i])];
+            sum += next.light;
             if (wanted.hold(sum / static_cast<double>(i + 1)))
-                return std::sqrt(near[i].square);
+                return glm::length(next.point - from.point);
         }
     }
     return most;
