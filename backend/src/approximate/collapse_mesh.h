@@ -33,7 +33,7 @@ struct CollapseMesh {
     std::vector<glm::vec4> colors;    // empty or one a wedge
     std::vector<OtherPose> others;    // what a collapse must suit besides; mostly none
     std::vector<uint32_t> ids;        // of each vertex: its first number, into the next two
-    std::vector<uint32_t> sources;    // the input vertex (the welded one) it was
+    std::vector<uint32_t> sources;    // the input vertex (the welded one) it was; kNone: inserted
     std::vector<uint32_t> merged;  // the vertex it was collapsed into, by first number, or itself
     std::vector<std::pair<uint32_t, uint32_t>> outline;  // edges on borders at first, likewise
     uint32_t part_count = 0;

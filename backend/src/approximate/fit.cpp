@@ -3,6 +3,7 @@
 
 #include "approximate/fit_sample.h"
 #include "approximate/flips.h"
+#include "approximate/insert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,8 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         solve_fit(mesh, samples, options.iterations, moves);
         move(places, adjacency, moves);
     }
+    // Nothing moves after it: what misses most then misses less.
+    insert_vertices(places, adjacency, samples, options.insert, job);
 }
 
 }  // namespace lodestone::approximate

@@ -13,6 +13,8 @@ struct FitOptions {
     int iterations = 3;  // of the solver in each sweep
     /// Flips edges before solving and draws back vertices that stick out. Takes many samples.
     bool careful = false;
+    /// Vertices that may be put back where it is farthest from the original. Takes many samples.
+    size_t insert = 0;
 };
 
 /// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was

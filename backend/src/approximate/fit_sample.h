@@ -37,6 +37,10 @@ public:
     /// The vertex that one of the original became; kNone when it vanished with its part.
     uint32_t place(uint32_t vertex) const { return place_of_[mesh_.merged[vertex]]; }
 
+    /// Numbers a vertex that the mesh and its points have got. One of the original, unless it stands
+    /// for others or is kNone, is at that place from now on.
+    void add(uint32_t vertex, uint32_t original);
+
     CollapseMesh& mesh() { return mesh_; }
     const CollapseMesh& mesh() const { return mesh_; }
     const Mesh& source() const { return source_; }

@@ -151,6 +151,16 @@ FitPlaces::FitPlaces(CollapseMesh& mesh, const Mesh& source)
         points_.emplace_back(point);
 }
 
+void FitPlaces::add(uint32_t vertex, uint32_t original) {
+    const auto id = static_cast<uint32_t>(mesh_.merged.size());
+    mesh_.ids.push_back(id);
+    mesh_.merged.push_back(id);
+    mesh_.sources.push_back(kNone);
+    place_of_.push_back(vertex);
+    if (original != kNone && mesh_.merged[original] != original)
+        mesh_.merged[original] = id;
+}
+
 SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles) {
     first_.assign(triangles + 1, 0);
     for (const FitSample& sample : samples)
