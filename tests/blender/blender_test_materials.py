@@ -365,6 +365,18 @@ class Materials(MaterialCase):
             look, left = look.other, rest
         self.close([weights[c[:3]] for c in colors], (0.45, 0.15, 0.4))
 
+    def test_mixtures_that_each_show_the_one_before_twice_end_and_are_named(self):
+        diffuse = self.node("ShaderNodeBsdfDiffuse")
+        last = self.mix(self.principled, diffuse)
+        for _ in range(32):  # 2^32 ways down to a surface
+            last = self.mix(last, last)
+        look, codes = self.translate()
+        self.assertEqual(codes, {"mixed_shaders"})
+        count = 1
+        while look.other is not None:
+            look, count = look.other, count + 1
+        self.assertEqual(count, 4)
+
     def test_light_added_is_emission(self):
         add = self.node("ShaderNodeAddShader", (0, self.output.inputs["Surface"]))
         glow = self.node("ShaderNodeEmission", (0, add.inputs[0]), Color=(1, 0.5, 0, 1))

@@ -18,11 +18,11 @@ from .ids import name_of
 from .looks import DEFAULT, Look, Value, VertexColors, gray
 from .node_expressions import NodeExpressions, Setting, mean_of
 from .pictures import NoPictures, Pictures
-from .shaders import Clear, Shader, Shaders, Surface, each_surface
+from .shaders import Shaders
+from .surfaces import Clear, Shader, Surface, each_surface, surfaces
 from .textures import Textures, main_coordinates
 
 AlphaMode = native.AlphaMode
-MOST_MIXED = 4  # surfaces in one material
 Color = tuple[float, ...]
 
 
@@ -120,13 +120,13 @@ class _Translator:
         self.problems.add(name, severity, code, text, library=ids.library_of(self.material))
 
     def look(self) -> Look:
-        surfaces = self._surfaces(self._shader())
-        first = [value for surface, _ in surfaces for value in _in_order(surface)]
-        shares = [share for _, share in surfaces]
+        mixed = surfaces(self._shader())
+        first = [value for surface, _ in mixed for value in _in_order(surface)]
+        shares = [share for _, share in mixed]
         main = main_coordinates([*first, *shares])
         textures = Textures(self.pictures, self.note, main)
         look = None
-        for surface, share in reversed(surfaces):  # each holds what is mixed with it
+        for surface, share in reversed(mixed):  # each holds what is mixed with it
             made = self._look(surface, textures)
             if look is not None:
                 made = replace(made, other=look, mix=textures.number(share))
@@ -134,12 +134,12 @@ class _Translator:
         if len(set(_vertex_colors(look))) > 1:
             self.note(WARNING, "vertex_colors", "of its several vertex colors one is drawn")
         coordinates = main if _has_texture(look) else None
-        return replace(look, coordinates=coordinates, radiance=self._radiance(surfaces))
+        return replace(look, coordinates=coordinates, radiance=self._radiance(mixed))
 
-    def _radiance(self, surfaces: list[tuple[Surface, Expression]]) -> tuple[float, float, float]:
+    def _radiance(self, mixed: list[tuple[Surface, Expression]]) -> tuple[float, float, float]:
         """Of all of them together, in the mean."""
         found, left = [0.0, 0.0, 0.0], 1.0
-        for surface, share in surfaces:
+        for surface, share in mixed:
             rest = min(1.0, max(0.0, mean_of(share, self.pictures)[0]))
             seen = (
                 left * (1.0 - rest) * min(1.0, max(0.0, mean_of(surface.alpha, self.pictures)[0]))
@@ -199,33 +199,6 @@ class _Translator:
             return replace(surface, relief=shaders.bumped(surface.relief, height, size))
 
         return each_surface(shader, bumped)
-
-    def _surfaces(self, shader: Shader) -> list[tuple[Surface, Expression]]:
-        """(surface, share of all that follows it) from a tree of mixtures."""
-        if isinstance(shader, Clear):
-            return [(Surface(alpha=e.ZERO), e.ZERO)]
-        if isinstance(shader, Surface):
-            return [(shader, e.ZERO)]
-        first, second = self._surfaces(shader.first), self._surfaces(shader.second)
-        share = shader.share
-        if len(first) > 1 and len(second) == 1:
-            first, second, share = second, first, e.subtract(e.ONE, share)
-        if len(first) > 1:
-            first = [(self._heaviest(first), e.ZERO)]
-        chain = [(first[0][0], share), *second]
-        if len(chain) > MOST_MIXED:
-            self.note(WARNING, "mixed_shaders", f"of its mixed shaders {MOST_MIXED} are drawn")
-            chain = chain[:MOST_MIXED]
-        return chain
-
-    def _heaviest(self, chain: list[tuple[Surface, Expression]]) -> Surface:
-        self.note(WARNING, "mixed_shaders", "a mixture in a mixture is drawn as its main shader")
-        left, best = 1.0, (-1.0, chain[0][0])
-        for surface, share in chain:
-            rest = min(1.0, max(0.0, mean_of(share, self.pictures)[0]))
-            best = max(best, (left * (1.0 - rest), surface), key=lambda pair: pair[0])
-            left *= rest
-        return best[1]
 
     # ---- From a surface to a look ----
 

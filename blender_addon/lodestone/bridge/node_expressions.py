@@ -61,7 +61,7 @@ class NodeExpressions:
     """`pictures` is a Pictures or NoPictures; `note` is told about all that is not exact."""
 
     def __init__(self, pictures: Any, note: Note, setting: Setting = Setting()) -> None:
-        self._pictures = pictures
+        self.pictures = pictures
         self._note = note
         self._setting = setting
         self._found: dict[tuple, Expression | None] = {}
@@ -116,7 +116,7 @@ class NodeExpressions:
 
     def _image(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression:
         sample = self._sample(node, groups)
-        if sample.source.kind == MISSING or self._pictures.index(sample.source) is None:
+        if sample.source.kind == MISSING or self.pictures.index(sample.source) is None:
             if sample.source.kind != MISSING:
                 name = sample.source.name
                 text = f'image "{name}" cannot be read; drawn in magenta'
@@ -128,7 +128,7 @@ class NodeExpressions:
         color = e.texel(sample)
         if not source.has_alpha or source.packed_channels or source.data:
             return color
-        if self._pictures.mean(source)[3] >= 1.0 - 1e-9:
+        if self.pictures.mean(source)[3] >= 1.0 - 1e-9:
             return color
         used = node.outputs["Alpha"].is_linked
         if used == (not source.associated):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shader nodes as principled surfaces, mixtures of them, and nothing: still as expressions."""
+"""Shader nodes as surfaces and mixtures of them."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from ..core import expression as e
@@ -10,58 +9,12 @@ from ..core.expression import Expression
 from ..core.problems import INFO, WARNING
 from . import compat, graph
 from .node_expressions import NodeExpressions, Note, mean_of
+from .surfaces import FLAT, NOTHING, Clear, Mixed, Relief, Shader, Surface, mixed
 
 _MAX_DEPTH = 48
-_BLACK = e.ZERO
 # The roughness at which the principled diffuse lobe is nearest to Lambert's law: rougher ones send
 # back more at grazing angles
 LAMBERT = e.number(0.45)
-
-
-@dataclass(frozen=True)
-class Relief:
-    """Normal and bump maps: expressions of their texels, None where there is none."""
-
-    normal: Expression | None = None
-    strength: float = 1.0
-    bump: Expression | None = None
-    distance: float = 0.0  # metres from 0 to 1
-
-
-FLAT = Relief()
-
-
-@dataclass(frozen=True)
-class Surface:
-    """The backend's material before its textures are told apart from its constants."""
-
-    base_color: Expression = e.number(0.8)
-    roughness: Expression = e.number(0.5)
-    metallic: Expression = e.ZERO
-    specular: Expression = e.number(0.5)
-    emission: Expression = e.ZERO
-    alpha: Expression = e.ONE
-    transmission: Expression = e.ZERO
-    ior: Expression = e.number(1.45)
-    clearcoat: Expression = e.ZERO
-    clearcoat_roughness: Expression = e.number(0.03)
-    relief: Relief = FLAT
-
-
-@dataclass(frozen=True)
-class Mixed:
-    first: "Shader"
-    second: "Shader"
-    share: Expression  # of the second
-
-
-@dataclass(frozen=True)
-class Clear:
-    """Nothing: what is behind is seen."""
-
-
-Shader = Surface | Mixed | Clear
-NOTHING = Surface(_BLACK, e.ONE, specular=e.ZERO)  # an unlinked shader: black
 
 
 class Shaders:
@@ -71,6 +24,7 @@ class Shaders:
         self._values = values
         self._note = note
         self._viewport = viewport
+        self._found: dict[tuple, Shader] = {}
 
     def shader(self, socket: Any, groups: tuple = (), depth: int = 0) -> Shader:
         """What is plugged into a shader input."""
@@ -80,6 +34,12 @@ class Shaders:
         found = graph.feed(socket, groups)
         if found.node is None:
             return NOTHING
+        key = (found.socket.as_pointer(), tuple(group.as_pointer() for group in found.groups))
+        if key not in self._found:  # trees share their branches
+            self._found[key] = self._output(found, depth)
+        return self._found[key]
+
+    def _output(self, found: graph.Feed, depth: int) -> Shader:
         node, kind = found.node, found.node.type
         if kind == "MIX_SHADER":
             return self._mix(node, found.groups, depth + 1)
@@ -99,11 +59,7 @@ class Shaders:
         if share.constant and share.value[0] >= 1.0:
             return self.shader(second, groups, depth)
         a, b = self.shader(first, groups, depth), self.shader(second, groups, depth)
-        if isinstance(a, Clear):
-            return faded(b, share)
-        if isinstance(b, Clear):
-            return faded(a, e.subtract(e.ONE, share))
-        return Mixed(a, b, share)
+        return mixed(a, b, share, self._note, self._values.pictures)
 
     def _add(self, node: Any, groups: tuple, depth: int) -> Shader:
         a, b = (self.shader(s, groups, depth) for s in node.inputs if s.type == "SHADER")
@@ -279,24 +235,6 @@ class Shaders:
         if under.bump is not None:
             self._note(WARNING, "bump", "of several bumps the last one is drawn")
         return replace(under, bump=height, distance=size)
-
-
-def faded(shader: Shader, share: Expression) -> Shader:
-    """Covering only that share of what it covers."""
-    if isinstance(shader, Clear):
-        return shader
-    if isinstance(shader, Mixed):
-        return replace(shader, first=faded(shader.first, share), second=faded(shader.second, share))
-    return replace(shader, alpha=e.multiply(shader.alpha, share))
-
-
-def each_surface(shader: Shader, change: Callable[[Surface], Surface]) -> Shader:
-    if isinstance(shader, Clear):
-        return shader
-    if isinstance(shader, Mixed):
-        first, second = each_surface(shader.first, change), each_surface(shader.second, change)
-        return replace(shader, first=first, second=second)
-    return change(shader)
 
 
 def _only_glows(surface: Surface) -> bool:
