@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import bpy
 
-from . import preferences, preview
+from . import preferences, preview, render_job
 from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
@@ -41,6 +41,7 @@ _SHARES["Coverage"] = (1.0, 0.0)
 # Of the render that is running
 _folder = RenderFolder()
 _poses = {}  # by scene and view layer
+_leaving = False  # the add-on is disabled: what runs is to stop
 
 
 class Refused(Exception):
@@ -265,12 +266,12 @@ class _Run:
 
     def _tick(self):
         """Between two meshes of the extraction."""
-        if self.engine.test_break():
+        if self._stopped():
             raise Stopped
         self._show(self.clock.line("Extract", time.monotonic()))
 
     def _poll(self):
-        if self.engine.test_break():
+        if self._stopped():
             self.work.stop()
         stage, fraction = self.work.stage, self.work.fraction
         if self.work.library_stage == native.Stage.PARSE:
@@ -278,6 +279,9 @@ class _Run:
         start, share = _SHARES.get(stage, (0.0, 0.0))
         self.engine.update_progress(start + share * fraction)
         self._show(self.clock.line(stage, time.monotonic(), fraction))
+
+    def _stopped(self):
+        return _leaving or self.engine.test_break()
 
     def _show(self, line):
         if line != self._shown:  # without a window each one is a line on the console
@@ -365,18 +369,27 @@ _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray
 
 
 def register():
-    _register()
+    global _leaving
+    if not render_job.take_back(_leave):
+        _register()
+    _leaving = False
     for name in _HANDLERS:
         getattr(bpy.app.handlers, name).append(_forget)
     atexit.register(_folder.close)
 
 
 def unregister():
+    global _leaving
+    _leaving = True
     atexit.unregister(_folder.close)
     for name in _HANDLERS:
         handlers = getattr(bpy.app.handlers, name)
         if _forget in handlers:
             handlers.remove(_forget)
+    render_job.when_none_runs(_leave)
+
+
+def _leave():
     _forget()
     kept_model.clear()
     last_render.clear()

@@ -64,6 +64,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             request.tick()
 
         try:
+            tick()  # it may have been stopped while Blender made the scene ready
             if request.with_poses:
                 request.poses = poses.read(depsgraph, self.frame_set, request.still, tick)
             extraction = scene.extract(depsgraph, tick, request.still, request.structured)

@@ -106,6 +106,13 @@ class Window(unittest.TestCase):
         if kept:
             shutil.copytree(self.folder, kept, dirs_exist_ok=True)
 
+    def test_disabling_the_addon_stops_what_runs_and_crashes_nothing(self):
+        program = self.folder / "povray"
+        program.write_text("#!/bin/sh\nexec sleep 60\n")
+        program.chmod(0o755)
+        self.environment["LODESTONE_POVRAY"] = str(program)
+        self.succeeds(self.blender("window_disable.py"))
+
     def test_escape_stops_povray_within_a_second(self):
         pid = self.folder / "pid"
         program = self.folder / "povray"

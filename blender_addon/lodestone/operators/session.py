@@ -6,18 +6,16 @@ and Esc stops each. Loading a file or disabling the add-on ends a session, the f
 """
 
 import contextlib
-import time
 import traceback
 
 import bpy
 
-from .. import extract_engine
+from .. import extract_engine, render_job
 from ..core import work
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
 
 INTERVAL_S = 0.1
-PATIENCE_S = 10.0  # for a render job that was told to stop
 FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)
 _current = None
 
@@ -41,7 +39,7 @@ class Session:
         """True while the render job runs; afterwards `extraction` is there. Raises what failed."""
         if self.extraction is not None:
             return False
-        if bpy.app.is_job_running("RENDER"):
+        if render_job.runs():
             return True
         self._reading.close()
         if self.work.stopping:
@@ -74,13 +72,16 @@ class Session:
         self.work.stop()
 
     def busy(self):
-        return bpy.app.is_job_running("RENDER") or self.working()
+        return render_job.runs() or self.working()
 
     def close(self, keep=False):
         """Puts everything back, but with `keep` what the session has written into the file."""
         self.work.stop()
         if self._thread is not None:
             self._thread.join()
+        render_job.when_none_runs(self._put_back)
+
+    def _put_back(self):
         self._reading.close()
         if self.request.extraction is not None:
             self.request.extraction.model.close()
@@ -96,7 +97,7 @@ def refusal():
     """Why no session can start now; "" when one can."""
     if _current is not None:
         return "Already running (Esc to cancel)"
-    return "A render is running" if bpy.app.is_job_running("RENDER") else ""
+    return "A render is running" if render_job.runs() else ""
 
 
 class InWindow:
@@ -203,9 +204,6 @@ def stop_running():
     if session is None:
         return
     session.stop()
-    deadline = time.monotonic() + PATIENCE_S
-    while bpy.app.is_job_running("RENDER") and time.monotonic() < deadline:
-        time.sleep(INTERVAL_S / 2)
     session.close()
 
 
