@@ -29,6 +29,7 @@ from lodestone.core import motion_file, process_session, progress, report  # noq
 from lodestone.core import store_path, unseen  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode  # noqa: E402
+from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
 from lodestone.core.picture import (  # noqa: E402
     SceneFolder,
@@ -87,7 +88,7 @@ class FileRun:
             code, text = error.code, str(error)
         except native.LodestoneError as error:
             code, text = _code_of(error), str(error)
-        except extract_engine.CameraMissing as error:
+        except (extract_engine.CameraMissing, InUse) as error:
             code, text = ExitCode.FAILED, str(error)
         except Exception as error:
             traceback.print_exc()

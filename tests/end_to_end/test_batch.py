@@ -278,6 +278,13 @@ class Batch(unittest.TestCase):
         self.povray("kill -KILL $$\n")
         self.fails(5, "(?i)kill|signal", "render", self.blend(), "--out", str(self.out))
 
+    def test_blender_killed_by_a_signal_without_a_name(self):
+        blender = self.folder / "dying_blender"
+        blender.write_text("#!/bin/sh\nkill -40 $$\n")
+        blender.chmod(0o755)
+        arguments = ("--out", str(self.out), "--blender", str(blender))
+        self.fails(4, r"died on the file \(signal 40\)", "render", self.blend(), *arguments)
+
     def test_an_output_that_cannot_be_written(self):
         (self.folder / "file").write_text("no folder")
         out = str(self.folder / "file" / "picture.png")

@@ -11,6 +11,7 @@ from pathlib import Path
 import addon_path
 from lodestone.core import locked_folder
 from lodestone.core.locked_folder import LockedFolder
+from lodestone.core.picture import SceneFolder
 
 DYING = """
 import os, sys
@@ -64,6 +65,21 @@ class Folders(unittest.TestCase):
         self.assertEqual(list(locked_folder.abandoned(self.parent, "a.scene")), [])
         locked_folder.settle(self.parent, "b.scene")
         self.assertEqual(self.names(), sorted([first.name, second.name]))
+
+    def test_two_cannot_keep_their_scene_in_one_folder(self):
+        kept = self.parent / "a.scene"
+        with SceneFolder(kept, "ALWAYS") as first:
+            (first.path / "scene.pov").write_text("sphere{}")
+            with self.assertRaisesRegex(OSError, "another Blender"):
+                SceneFolder(kept, "ALWAYS").__enter__()
+        self.assertEqual(os.listdir(kept), ["scene.pov"])
+        with SceneFolder(kept, "ALWAYS") as second:
+            self.assertEqual(second.path, kept)
+
+    def test_a_killed_owner_of_the_users_folder_is_not_in_the_way(self):
+        (self.parent / "in_use").write_text("")
+        locked_folder.Hold(self.parent).release()
+        self.assertEqual(self.names(), [])
 
     def test_folders_of_others_are_never_touched(self):
         for name in ("a.scene-mine", "a.scene", "a.scene-link", "b"):

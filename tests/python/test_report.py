@@ -35,6 +35,14 @@ class Report(unittest.TestCase):
         self.assertEqual([p["object"] for p in found[:4]], names[:4])
         self.assertEqual(len(found), 5)
 
+    def test_has_the_rights_that_the_user_gives_new_files(self):
+        before = os.umask(0o027)
+        try:
+            report.write(self.path, {})
+        finally:
+            os.umask(before)
+        self.assertEqual(self.path.stat().st_mode & 0o777, 0o640)
+
     def test_a_failed_write_keeps_the_old_one_and_leaves_nothing(self):
         report.write(self.path, {"old": 1})
         with self.assertRaises(TypeError):

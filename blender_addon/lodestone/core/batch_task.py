@@ -241,7 +241,7 @@ class FileTask:
     def _crashed(self, returncode: int) -> dict[str, Any]:
         how = f"exit code {returncode}"
         if returncode < 0:
-            how = f"signal {signal.Signals(-returncode).name}"
+            how = f"signal {_signal_name(-returncode)}"
         file = self.job.file
         text = f"Blender died on the file ({how}){blend_header.written_by(file)}"
         made = report.file_report(self.job.verb, file, ExitCode.UNREADABLE, text)
@@ -324,6 +324,13 @@ def _results(job: FileJob, made: dict[str, Any]) -> list[str]:
 
 def _result(made: dict[str, Any]) -> str:
     return made.get("picture") or made.get("scene") or ""
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # most real-time signals have none
+        return str(number)
 
 
 def _written(path: Path) -> dict[str, Any]:

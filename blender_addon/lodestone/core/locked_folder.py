@@ -20,6 +20,42 @@ def prefix_of(name: str) -> str:
     return fitting(name, _LONGEST) + "-"
 
 
+class InUse(OSError):
+    """Another process works in a folder."""
+
+
+class Hold:
+    """The user's own folder, which exists, while one process works in it: two would make pictures
+    of each other's files. Raises InUse."""
+
+    def __init__(self, folder: Path) -> None:
+        self._mark = folder / MARK
+        self._lock = -1
+        while self._lock < 0:
+            lock = os.open(self._mark, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                os.close(lock)
+                raise InUse(f"another Blender is at work in {folder}") from None
+            except OSError:
+                pass  # a file system without locks
+            if self._is(lock):
+                self._lock = lock
+            else:  # the one before removed the mark while we looked at it
+                os.close(lock)
+
+    def _is(self, lock: int) -> bool:
+        try:
+            return os.path.samestat(os.fstat(lock), os.lstat(self._mark))
+        except OSError:
+            return False
+
+    def release(self) -> None:
+        self._mark.unlink(missing_ok=True)
+        os.close(self._lock)
+
+
 class LockedFolder:
     """A new folder in `parent`, which exists. Ends with remove() or keep()."""
 

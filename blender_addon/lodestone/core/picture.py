@@ -231,12 +231,14 @@ class SceneFolder:
         self.path = kept
         self.stays = keep == "ALWAYS"
         self._locked: locked_folder.LockedFolder | None = None
+        self._hold: locked_folder.Hold | None = None
 
     def __enter__(self) -> "SceneFolder":
         parent, name = self._kept.parent, self._kept.name
         parent.mkdir(parents=True, exist_ok=True)
         if self._keep == "ALWAYS":
             self._kept.mkdir(exist_ok=True)
+            self._hold = locked_folder.Hold(self._kept)
         else:
             locked_folder.settle(parent, name)  # what a killed run left
             self._locked = locked_folder.LockedFolder(parent, name)
@@ -246,7 +248,9 @@ class SceneFolder:
     def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
         failed = kind is not None and not getattr(error, "cancelled", False)
         self.stays = self._keep == "ALWAYS" or (self._keep == "FAILED" and failed)
-        if self._locked is not None and self.stays:
+        if self._hold is not None:
+            self._hold.release()
+        elif self._locked is not None and self.stays:
             self._locked.keep()
         elif self._locked is not None:
             self._locked.remove()
