@@ -4,8 +4,6 @@
 import ctypes
 from ctypes import Structure, c_double, c_int32, c_uint32
 
-from .enums import Stage
-
 
 class Job(Structure):
     """Give it to a long call; read `stage` and `fraction` and call `stop` from any thread."""
@@ -23,10 +21,3 @@ class Job(Structure):
     def stop(self) -> None:
         """The call raises CANCELLED within about 0.1 s."""
         self.cancel = 1
-
-    @property
-    def stage_name(self) -> str:
-        try:
-            return Stage(self.stage).name.capitalize()
-        except ValueError:
-            return ""

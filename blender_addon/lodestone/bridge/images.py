@@ -3,7 +3,7 @@
 
 import os
 from array import array
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 
@@ -84,10 +84,20 @@ def _is_there(image: Any) -> bool:
         return False
 
 
-def read_pixels(image: Any) -> tuple[int, int, array, int, bool] | None:
-    """Its width, height, pixels (array 'f', lowest row first), channels, and whether they are
-    sRGB-encoded, by Blender's own reader; None when it cannot be read. An image that was not loaded
-    is not kept."""
+class Pixels(NamedTuple):
+    """Lowest row first."""
+
+    width: int
+    height: int
+    values: array  # 'f'
+    channels: int
+    encoded: bool  # in sRGB
+    floats: bool  # of an image that is not made of bytes
+
+
+def read_pixels(image: Any) -> Pixels | None:
+    """By Blender's own reader; None when it cannot be read. An image that was not loaded is not
+    kept."""
     loaded = image.has_data
     width, height = image.size  # loads it
     channels = image.channels
@@ -96,24 +106,28 @@ def read_pixels(image: Any) -> tuple[int, int, array, int, bool] | None:
         return None
     pixels = array("f", bytes(4 * count))
     image.pixels.foreach_get(pixels)
-    encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
-    if not loaded and not image.is_dirty and image.source == "FILE":
+    floats = image.is_float
+    encoded = not floats and image.colorspace_settings.name == "sRGB"
+    if not loaded and not image.is_dirty and image.source != "GENERATED":
         image.buffers_free()
-    return width, height, pixels, channels, encoded
+    return Pixels(width, height, pixels, channels, encoded, floats)
 
 
 def _mean(image: Any) -> Color | None:
     found = read_pixels(image)
     if found is None:
         return None
-    _, _, pixels, channels, encoded = found
-    if channels != 4:
-        pixels = _with_four_channels(pixels, channels)
-    return mean_of_pixels(pixels, encoded)
+    return mean_of_pixels(with_four_channels(found), found.encoded)
 
 
-def _with_four_channels(pixels: array, channels: int) -> array:
-    wide = array("f", [1.0]) * (len(pixels) // channels * 4)
+def with_four_channels(pixels: Pixels) -> array:
+    """RGBA of gray, gray and alpha, or RGB."""
+    values, channels = pixels.values, pixels.channels
+    if channels == 4:
+        return values
+    wide = array("f", [1.0]) * (len(values) // channels * 4)
     for channel in range(3):
-        wide[channel::4] = pixels[min(channel, channels - 1) :: channels]
+        wide[channel::4] = values[(channel if channels == 3 else 0) :: channels]
+    if channels == 2:
+        wide[3::4] = values[1::2]
     return wide

@@ -4,14 +4,13 @@
 Files that the backend reads itself never pass through Blender's memory.
 """
 
-from array import array
 from typing import Any
 
 from ..core.expression import Color
 from ..core.native import lodestone_native as native
 from .image_sources import FILE, MISSING, PACKED, Source
+from .images import read_pixels, with_four_channels
 
-MAGENTA = (1.0, 0.0, 1.0)  # as Cycles draws an image that is not there
 Texel = tuple[float, float, float, float]
 
 
@@ -77,25 +76,14 @@ class Pictures:
         return self._add_pixels(source)
 
     def _add_pixels(self, source: Source) -> int | None:
-        """By way of Blender's own reader, whose memory is given back where that is possible."""
-        image = source.image
-        loaded = image.has_data
-        width, height = image.size  # loads it
-        channels = image.channels
-        count = width * height * channels
-        if count == 0 or len(image.pixels) != count:
+        """By way of Blender's own reader."""
+        found = read_pixels(source.image)
+        if found is None:
             return None
-        pixels = array("f", bytes(4 * count))
-        image.pixels.foreach_get(pixels)
-        linear = source.linear or image.is_float
-        if not loaded and not image.is_dirty and image.source != "GENERATED":
-            image.buffers_free()
-        if channels != 4:
-            pixels = with_four_channels(pixels, channels)
+        pixels, size = with_four_channels(found), (found.width, found.height)
+        linear = source.linear or found.floats
         try:
-            return self._model.add_picture(
-                source.name, pixels=pixels, size=(width, height), linear=linear
-            )
+            return self._model.add_picture(source.name, pixels=pixels, size=size, linear=linear)
         except native.LodestoneError as error:
             if error.status in {native.Status.OUT_OF_MEMORY, native.Status.INVALID_ARGUMENT}:
                 return None
@@ -116,14 +104,3 @@ class NoPictures:
 
     def texture_mean(self, texture: Any) -> Color:
         return (0.5, 0.5, 0.5)
-
-
-def with_four_channels(pixels: array, channels: int) -> array:
-    """RGBA of gray, gray and alpha, or RGB."""
-    count = len(pixels) // channels
-    wide = array("f", [1.0]) * (4 * count)
-    for channel in range(3):
-        wide[channel::4] = pixels[(channel if channels == 3 else 0) :: channels]
-    if channels == 2:
-        wide[3::4] = pixels[1::2]
-    return wide

@@ -199,7 +199,7 @@ class _Reader:
         found = read_pixels(image)
         if found is None:
             return None
-        width, height, pixels, channels, encoded = found
+        width, height, pixels, channels, encoded, _ = found
         if encoded:
             table = [to_linear(i / 255.0) for i in range(256)]
             pixels = array("f", (table[min(255, max(0, int(255.0 * p + 0.5)))] for p in pixels))
