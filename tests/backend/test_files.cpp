@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <locale>
+#include <sys/stat.h>
 #include <unistd.h>
 
 using namespace lodestone;
@@ -47,6 +49,36 @@ TEST(Files, WhatAKilledProcessOfOurNumberLeftIsNotInTheWay) {
     EXPECT_EQ(entries(folder), 110u);
     for (int i = 0; i < 10; ++i)
         EXPECT_EQ(read_file(folder / text("file", i)), "new");
+}
+
+TEST(Files, APipeThatNobodyWritesToIsRefusedInsteadOfWaitedFor) {
+    const fs::path pipe = scratch("pipe") / "model.obj";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    alarm(20);  // or it would wait forever
+    EXPECT_THROW(read_file(pipe), Error);
+    alarm(0);
+}
+
+TEST(Files, ALockThatCannotBeMadeIsNotTakenForAnotherWriter) {
+    const fs::path path = scratch("lock") / "none" / "lock";
+    try {
+        const FileLock lock(path);
+        ADD_FAILURE() << "a lock in no folder";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot lock"), std::string::npos);
+    }
+}
+
+TEST(Text, NumbersAreWrittenAlikeWhateverTheHostsLocaleIs) {
+    struct Grouped : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+        char do_thousands_sep() const override { return '.'; }
+        std::string do_grouping() const override { return "\3"; }
+    };
+    const std::locale before = std::locale::global(std::locale(std::locale(), new Grouped));
+    const std::string words = text("+W", 1920, ' ', 1.5);
+    std::locale::global(before);
+    EXPECT_EQ(words, "+W1920 1.5");
 }
 
 TEST(Files, NamesThatLeaveTheFolderAreNotSafe) {

@@ -3,6 +3,7 @@
 // comes back as a value plus Problems.
 #pragma once
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -36,6 +37,7 @@ public:
 template <typename... Parts>
 std::string text(const Parts&... parts) {
     std::ostringstream out;
+    out.imbue(std::locale::classic());  // the host's may write 1.920 for 1920
     (out << ... << parts);
     return out.str();
 }

@@ -26,7 +26,8 @@ std::string reason(int number) {
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path, uint64_t limit) {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // A pipe that nobody writes to would hold us here; for files the flag means nothing.
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0)
         fail(Status::Io, "cannot read '", path.string(), "': ", reason(errno));
     struct stat info {};
