@@ -406,6 +406,33 @@ TEST(Glb, LoopsDepthBombsAndUnknownExtensionsAreRefused) {
         with_nodes(R"([{"mesh":0,"matrix":[1e999,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}])").empty());
 }
 
+TEST(Glb, SlotsThatNoTriangleHasDoNotWriteBeyondTheMaterials) {
+    const auto read_with = [](const std::string& mark, const std::string& primitives) {
+        const std::string mesh = R"("meshes":[{"extras":{"lodestone":{"version":1,"slots":)" +
+                                 mark + R"(}},"primitives":[)" + primitives + "]}],";
+        Problems problems;
+        return read(gltf(mesh + kOneNode), problems);
+    };
+    const std::string points = R"({"attributes":{"POSITION":0},"mode":0})";
+    const std::string quad = R"({"attributes":{"POSITION":0},"indices":1})";
+    for (const char* slots : {"[2000000000]", "[-2000000]", "[]", "[\"a\"]"})
+        EXPECT_EQ(totals(read_with(slots, points)).triangles_placed, 0u) << slots;
+    // One slot of two has no triangle at all: its primitive has two corners.
+    const std::string text =
+        gltf(R"("meshes":[{"extras":{"lodestone":{"version":1,"slots":[0,60000]}},
+        "primitives":[)" +
+             quad + R"(,{"attributes":{"POSITION":0},"indices":2}]}],)" + kOneNode);
+    const std::string two_corners =
+        R"({"bufferView":1,"componentType":5123,"count":2,"type":"SCALAR"},)";
+    std::string bytes = text;
+    const size_t at = bytes.find(R"({"bufferView":0,"componentType":5126)");
+    ASSERT_NE(at, std::string::npos);
+    const size_t end = bytes.find("}]", at);
+    bytes.insert(end + 1, "," + two_corners.substr(0, two_corners.size() - 1));
+    Problems problems;
+    EXPECT_EQ(totals(read(bytes, problems)).triangles_placed, 2u);
+}
+
 TEST(Glb, DataShownTooOftenIsRefused) {
     Mesh mesh = shapes::terrain(100);
     std::string bytes = write_glb_mesh(mesh, {}, "mesh");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/text.h"
 #include "format/glb.h"
 #include "format/gltf_file.h"
 #include "format/gltf_material.h"
@@ -45,11 +46,12 @@ Mesh read_glb_mesh(std::string_view bytes) {
     load_gltf(from, bytes, {}, name);
     if (from.meshes.empty() && from.asset.generator == "Lodestone")
         return {};
-    std::optional<Mesh> mesh;
+    std::optional<ReadMesh> read;
     if (from.meshes.size() == 1)
-        mesh = own_mesh(from, from.meshes[0]);
-    if (!mesh)
+        read = own_mesh(from, from.meshes[0]);
+    if (!read)
         fail(Status::BadFile, "the GLB does not hold one mesh as Lodestone writes it");
+    Mesh* const mesh = &read->mesh;
     check(*mesh);
     for (size_t i = 0; i < mesh->positions.size(); ++i) {
         for (int c = 0; c < 4; ++c) {

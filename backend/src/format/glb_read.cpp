@@ -216,29 +216,15 @@ private:
         const tinygltf::Mesh& from = from_.meshes[static_cast<size_t>(index)];
         const std::string name = from.name.empty() ? node : from.name;
         Representation finest;
-        auto mesh = std::make_shared<Mesh>();
-        std::vector<int> materials;
-        std::optional<Mesh> own = own_mesh(from_, from);
-        if (own && own->positions.size() <= budget_.vertices &&
-            own->triangles.size() * 3 <= budget_.triangles) {
-            budget_.vertices -= own->positions.size();
-            budget_.triangles -= own->triangles.size() * 3;
-            *mesh = std::move(*own);
-            uint16_t most = 0;
-            for (const uint16_t slot : mesh->slots)
-                most = std::max(most, slot);
-            materials.assign(size_t{most} + 1, -1);
-            const tinygltf::Value& slots = member(member(from.extras, "lodestone"), "slots");
-            for (size_t i = 0; i < from.primitives.size(); ++i) {
-                const int slot =
-                    slots.IsArray() ? slots.Get(static_cast<int>(i)).GetNumberAsInt() : 0;
-                materials[static_cast<size_t>(slot)] = from.primitives[i].material;
-            }
+        std::optional<ReadMesh> read = own_mesh(from_, from);
+        if (read && read->mesh.positions.size() <= budget_.vertices &&
+            read->mesh.triangles.size() * 3 <= budget_.triangles) {
+            budget_.vertices -= read->mesh.positions.size();
+            budget_.triangles -= read->mesh.triangles.size() * 3;
         } else {
-            ForeignMesh foreign = foreign_mesh(from_, from, name, budget_, problems_);
-            *mesh = std::move(foreign.mesh);
-            materials = std::move(foreign.materials);
+            read = foreign_mesh(from_, from, name, budget_, problems_);
         }
+        auto mesh = std::make_shared<Mesh>(std::move(read->mesh));
         check(*mesh);
         repair(*mesh, name, problems_);
         if (mesh->empty()) {
@@ -251,7 +237,7 @@ private:
             from.primitives.begin(), from.primitives.end(), [](const tinygltf::Primitive& p) {
                 return p.material < 0 && p.attributes.contains("COLOR_0");
             });
-        for (const int material : materials)
+        for (const int material : read->materials)
             finest.materials.push_back(material >= 0 && static_cast<uint32_t>(material) < standard
                                            ? static_cast<uint32_t>(material)
                                            : standard + (colored ? 1 : 0));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/text.h"
 #include "format/glb.h"
 #include "format/gltf_file.h"
 #include "format/gltf_frame.h"

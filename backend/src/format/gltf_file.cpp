@@ -246,35 +246,6 @@ std::string save_glb(tinygltf::Model& model) {
     return std::move(out).str();
 }
 
-std::string valid_utf8(const std::string& name) {
-    std::string out;
-    for (size_t i = 0; i < name.size();) {
-        const auto lead = static_cast<unsigned char>(name[i]);
-        const size_t length = lead < 0x80   ? 1
-                              : lead < 0xc2 ? 0
-                              : lead < 0xe0 ? 2
-                              : lead < 0xf0 ? 3
-                              : lead < 0xf5 ? 4
-                                            : 0;
-        bool valid = length > 0 && i + length <= name.size();
-        uint32_t code = length > 1 ? lead & (0x7fu >> length) : lead;
-        for (size_t k = 1; valid && k < length; ++k) {
-            const auto next = static_cast<unsigned char>(name[i + k]);
-            valid = (next & 0xc0u) == 0x80;
-            code = (code << 6u) | (next & 0x3fu);
-        }
-        // Overlong forms, surrogates and numbers above the last.
-        valid = valid && !(length == 3 && (code < 0x800 || (code >= 0xd800 && code < 0xe000))) &&
-                !(length == 4 && (code < 0x10000 || code > 0x10ffff));
-        if (valid)
-            out.append(name, i, length);
-        else
-            out += "\xef\xbf\xbd";
-        i += valid ? length : 1;
-    }
-    return out;
-}
-
 std::string percent_decoded(std::string_view uri) {
     const auto digit = [](char c) {
         return c >= '0' && c <= '9'   ? c - '0'

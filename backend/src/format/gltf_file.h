@@ -23,9 +23,6 @@ void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesy
 /// chunk. Throws Error(InvalidArgument) when that has 2 GiB or more.
 std::string save_glb(tinygltf::Model& model);
 
-/// The same text with bytes that are no UTF-8 replaced by U+FFFD.
-std::string valid_utf8(const std::string& name);
-
 /// What a URI names: %41 becomes A.
 std::string percent_decoded(std::string_view uri);
 

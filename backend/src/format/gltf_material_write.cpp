@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/maths.h"
+#include "base/text.h"
 #include "format/bake.h"
 #include "format/gltf_file.h"
 #include "format/gltf_material.h"

@@ -254,14 +254,14 @@ Attributes by_one_name(Attributes attributes) {
 }
 
 /// own_mesh() without the safety net.
-std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& from) {
+std::optional<ReadMesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& from) {
     const tinygltf::Value& mark = member(from.extras, "lodestone");
     if (!mark.Has("version") || !mark.Get("version").IsInt() ||
         mark.Get("version").GetNumberAsInt() != 1 || from.primitives.empty())
         return std::nullopt;
     Mesh mesh = read_attributes(model, from.primitives[0].attributes);
     if (from.primitives.size() == 1 && from.primitives[0].mode == TINYGLTF_MODE_POINTS)
-        return mesh;
+        return ReadMesh{std::move(mesh), {from.primitives[0].material}};
     std::vector<Group> groups;
     for (size_t i = 0; i < from.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = from.primitives[i];
@@ -275,16 +275,20 @@ std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& 
         if (groups.size() != 1)
             return std::nullopt;
         mesh.triangles = std::move(groups[0].triangles);
-        return mesh;
+        return ReadMesh{std::move(mesh), {from.primitives[0].material}};
     }
     const tinygltf::Value& slots = mark.Get("slots");
     if (!slots.IsArray() || slots.ArrayLen() != groups.size())
         return std::nullopt;
+    std::vector<int> materials;
     for (size_t i = 0; i < groups.size(); ++i) {
         const tinygltf::Value& slot = slots.Get(static_cast<int>(i));
         if (!slot.IsInt() || slot.GetNumberAsInt() < 0 || slot.GetNumberAsInt() > 65535)
             return std::nullopt;
         groups[i].slot = static_cast<uint16_t>(slot.GetNumberAsInt());
+        if (groups[i].slot >= materials.size())
+            materials.resize(groups[i].slot + size_t{1}, -1);
+        materials[groups[i].slot] = from.primitives[i].material;
     }
     std::vector<uint16_t> order;
     if (mark.Has("order")) {
@@ -299,7 +303,7 @@ std::optional<Mesh> try_own(const tinygltf::Model& model, const tinygltf::Mesh& 
     }
     if (!reorder(groups, order, mesh))
         return std::nullopt;
-    return mesh;
+    return ReadMesh{std::move(mesh), std::move(materials)};
 }
 
 }  // namespace
@@ -349,7 +353,7 @@ int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMater
     return static_cast<int>(model.meshes.size() - 1);
 }
 
-std::optional<Mesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from) {
+std::optional<ReadMesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from) {
     if (!from.extras.Has("lodestone"))
         return std::nullopt;
     try {
@@ -359,9 +363,9 @@ std::optional<Mesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh&
     }
 }
 
-ForeignMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
-                         const std::string& name, Budget& budget, Problems& problems) {
-    ForeignMesh out;
+ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
+                      const std::string& name, Budget& budget, Problems& problems) {
+    ReadMesh out;
     std::map<int, uint16_t> slot_of;
     std::vector<Mesh> parts;
     std::map<Attributes, size_t> part_of;

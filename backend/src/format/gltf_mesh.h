@@ -34,8 +34,13 @@ struct SlotMaterial {
 int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMaterial> materials,
              const std::string& name);
 
+struct ReadMesh {
+    Mesh mesh;
+    std::vector<int> materials;  // by slot, into the file's materials or -1; not checked
+};
+
 /// The mesh when all is as add_mesh() writes it (not repaired); else nothing.
-std::optional<Mesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from);
+std::optional<ReadMesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from);
 
 /// What can still be read of a file: vertices and triangles.
 struct Budget {
@@ -43,14 +48,9 @@ struct Budget {
     uint64_t triangles = 0;
 };
 
-struct ForeignMesh {
-    Mesh mesh;
-    std::vector<int> materials;  // by slot, into the file's materials or -1; not checked
-};
-
 /// Any mesh: lists, strips and fans of triangles. Primitives that are broken or no triangles are
 /// left out with a problem of `name`.
-ForeignMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
-                         const std::string& name, Budget& budget, Problems& problems);
+ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
+                      const std::string& name, Budget& budget, Problems& problems);
 
 }  // namespace lodestone::format

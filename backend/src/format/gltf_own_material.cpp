@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/maths.h"
+#include "base/text.h"
 #include "format/gltf_accessor.h"
 #include "format/gltf_file.h"
 #include "format/gltf_picture.h"

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/text.h"
 #include "format/gltf_accessor.h"
 #include "format/gltf_file.h"
 #include "format/sibling.h"
@@ -11,7 +12,6 @@
 #include <tiny_gltf.h>
 
 namespace lodestone::format {
-namespace {}  // namespace
 
 PictureReader::PictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
                              const std::string& name, size_t bytes)
