@@ -287,6 +287,55 @@ TEST(Image, HeadersThatPromiseTooMuchAreRefusedBeforeMemoryIsSpent) {
     EXPECT_NE(complaint(vast).find("too large"), std::string::npos) << complaint(vast);
 }
 
+TEST(Image, AnExrThatHidesASecondSizeInAnotherAttributeIsRefused) {
+    // OpenEXR takes an int for four bytes long whatever its size says, and what follows for more of
+    // the header: a window a hundred times as wide as the memory that we would have made for it.
+    const Imath::Box2i window({0, 0}, {3, 2});
+    std::string bytes = exr("R", window, window);
+    const auto number = [](int32_t value) {
+        return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::string wide = std::string("dataWindow\0box2i\0", 17) + number(16) + number(0) +
+                             number(0) + number(399) + number(2);
+    const std::string inner = number(7) + wide;
+    const std::string hiding =
+        std::string("dx\0int\0", 7) + number(static_cast<int32_t>(inner.size())) + inner;
+    const size_t at = bytes.find("displayWindow");
+    ASSERT_NE(at, std::string::npos);
+    bytes.insert(at, hiding);
+    EXPECT_NE(complaint(bytes).find("two things"), std::string::npos) << complaint(bytes);
+}
+
+/// Gray, 16 x 16, progressive: a first scan, then `scans` of two bytes each that change nothing.
+std::string scans_of_nothing(int scans) {
+    const auto segment = [](int marker, const std::string& content) {
+        const size_t size = content.size() + 2;
+        return std::string{'\xff', static_cast<char>(marker), static_cast<char>(size >> 8u),
+                           static_cast<char>(size & 0xffu)} +
+               content;
+    };
+    const auto table = [&](int kind, int symbol) {  // one symbol, of the code 0
+        return segment(0xc4, std::string(1, static_cast<char>(kind)) + '\1' +
+                                 std::string(15, '\0') + static_cast<char>(symbol));
+    };
+    const auto scan = [&](int first, int last, const std::string& bits) {
+        return segment(0xda, {1, 1, 0, static_cast<char>(first), static_cast<char>(last), 0}) +
+               bits;
+    };
+    std::string out = "\xff\xd8" + segment(0xdb, std::string(1, '\0') + std::string(64, '\1')) +
+                      segment(0xc2, {8, 0, 16, 0, 16, 1, 1, 0x11, 0}) + table(0x00, 0) +
+                      table(0x10, 0x20) + scan(0, 0, "\x0f");
+    for (int i = 0; i < scans; ++i)
+        out += scan(1, 1, "\x1f");  // the end of this block and of the three after it
+    return out + "\xff\xd9";
+}
+
+TEST(Image, AJpegOfThousandsOfEmptyScansIsRefused) {
+    EXPECT_EQ(complaint(scans_of_nothing(8)), "");
+    EXPECT_NE(complaint(scans_of_nothing(5000)).find("more than 500 scans"), std::string::npos)
+        << complaint(scans_of_nothing(5000));
+}
+
 TEST(Image, WritingRefusesWhatIsNoImage) {
     Image image;
     EXPECT_THROW(write_png(scratch("none.png"), image), Error);

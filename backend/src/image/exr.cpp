@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OpenEXR allocates by what the header says, so the header's sizes are checked by our own walk
-// through it first (OpenEXR's own limits are global and would hold for our host program, too).
+// through it first (OpenEXR's own limits are global and would hold for our host program, too). Where
+// OpenEXR reads a header otherwise than we do (it takes an attribute's size from its type), it is refused.
 #include "base/error.h"
 #include "image/codecs.h"
 
@@ -122,11 +123,19 @@ void check_layout(const Layout& layout) {
         throw std::runtime_error("too many channels, or tiles too large");
 }
 
+bool same(const Window& ours, const Imath::Box2i& theirs) {
+    return ours.x0 == theirs.min.x && ours.y0 == theirs.min.y && ours.x1 == theirs.max.x &&
+           ours.y1 == theirs.max.y;
+}
+
 Image decode(std::string_view bytes, const std::string& name) {
     const Layout layout = layout_of(bytes);
     check_layout(layout);
     Memory memory(bytes, name);
     Imf::InputFile file(memory, 0);
+    if (!same(layout.data, file.header().dataWindow()) ||
+        !same(layout.display, file.header().displayWindow()))
+        throw std::runtime_error("its header says two things about its size");
     const Imf::ChannelList& channels = file.header().channels();
     const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;
     if (!gray && channels.findChannel("R") == nullptr)

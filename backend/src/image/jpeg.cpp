@@ -13,9 +13,13 @@
 namespace lodestone::image {
 namespace {
 
+/// A scan of a few bytes makes libjpeg go through the whole picture; real ones have some ten.
+constexpr int kMostScans = 500;
+
 struct JpegReader {
     jpeg_decompress_struct jpeg{};
     jpeg_error_mgr errors{};
+    jpeg_progress_mgr progress{};
     std::jmp_buf out{};
     char complaint[JMSG_LENGTH_MAX] = "";
 
@@ -38,6 +42,14 @@ void on_message(j_common_ptr jpeg, int level) {
         on_error(jpeg);
 }
 
+void on_progress(j_common_ptr jpeg) {
+    if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans)
+        return;
+    auto* reader = static_cast<JpegReader*>(jpeg->client_data);
+    std::snprintf(reader->complaint, sizeof reader->complaint, "more than %d scans", kMostScans);
+    std::longjmp(reader->out, 1);  // NOLINT(cert-err52-cpp)
+}
+
 bool start(JpegReader& reader, std::string_view bytes) {
     if (setjmp(reader.out) != 0)  // NOLINT(cert-err52-cpp)
         return false;
@@ -47,6 +59,8 @@ bool start(JpegReader& reader, std::string_view bytes) {
     reader.jpeg.client_data = &reader;
     jpeg_create_decompress(&reader.jpeg);
     reader.jpeg.client_data = &reader;
+    reader.progress.progress_monitor = on_progress;
+    reader.jpeg.progress = &reader.progress;
     reader.jpeg.mem->max_memory_to_use = 1l << 30;
     jpeg_mem_src(&reader.jpeg, reinterpret_cast<const unsigned char*>(bytes.data()),
                  static_cast<unsigned long>(bytes.size()));
