@@ -67,6 +67,48 @@ std::string refusal(const Polygons& polygons) {
 
 }  // namespace
 
+TEST(Faces, ATriangleOfAFaceOfOneCornerReadsNothingBeyondIt) {
+    const std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::vector<uint32_t> vertices{0, 1, 2, 0, 0xfffffff0u};  // the last is not given
+    const std::vector<uint32_t> starts{0, 3};
+    const std::vector<uint32_t> triangles{0, 1, 2, 3, 0, 1};
+    const std::vector<float> normals(12, 1.0f);
+    Faces faces;
+    faces.positions = positions.data();
+    faces.vertex_count = 3;
+    faces.vertices = {vertices.data(), 4};
+    faces.starts = starts;
+    faces.triangles = triangles;
+    faces.normals = normals.data();
+    check(faces);
+    const Mesh mesh = mesh_of(faces, 1);
+    EXPECT_EQ(mesh.triangles.size(), 2u);
+    check(mesh);
+}
+
+TEST(Faces, APoleOfManyLooksKeepsThemAll) {
+    Polygons fan;
+    constexpr uint32_t kSides = 2000;
+    fan.positions = {0, 0, 1};
+    for (uint32_t i = 0; i < kSides; ++i) {
+        const double turn = 6.283185307179586 * i / kSides;
+        fan.positions.insert(fan.positions.end(), {static_cast<float>(std::cos(turn)),
+                                                   static_cast<float>(std::sin(turn)), 0.0f});
+    }
+    for (uint32_t i = 0; i < kSides; ++i) {
+        fan.add({0, 1 + i, 1 + (i + 1) % kSides});
+        for (uint32_t corner = 0; corner < 3; ++corner)
+            fan.uvs.insert(fan.uvs.end(), {static_cast<float>(i), static_cast<float>(corner)});
+    }
+    const Mesh mesh = mesh_of(fan.view(), 1);
+    check(mesh);
+    ASSERT_EQ(mesh.triangles.size(), size_t{kSides});
+    for (uint32_t i = 0; i < kSides; ++i) {
+        EXPECT_EQ(mesh.uvs[mesh.triangles[i].x], glm::vec2(i, 0));
+        EXPECT_EQ(mesh.uvs[mesh.triangles[i].z], glm::vec2(i, 2));
+    }
+}
+
 TEST(Faces, NothingBecomesNothing) {
     const Polygons none;
     EXPECT_EQ(refusal(none), "");

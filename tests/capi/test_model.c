@@ -200,6 +200,44 @@ static void test_representations_and_occurrences(void) {
     lds_model_destroy(model);
 }
 
+static void test_positions_that_are_not_there_are_refused(void) {
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    const lds_object_info info = info_of("none", "None");
+    lds_object none;
+    lds_mesh_view mesh;
+    memset(&mesh, 0, sizeof mesh);
+    mesh.struct_size = sizeof mesh;
+    mesh.vertex_count = 1000; /* and no triangle that would use one */
+    EXPECT(lds_model_add_mesh(model, &info, &mesh, NULL, 0, &none) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "mesh.positions") != NULL);
+    lds_faces_view faces;
+    memset(&faces, 0, sizeof faces);
+    faces.struct_size = sizeof faces;
+    faces.vertex_count = 1000;
+    EXPECT(lds_model_add_faces(model, &info, &faces, NULL, 0, &none) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "faces.positions") != NULL);
+    lds_model_destroy(model);
+}
+
+static void test_materials_mixed_without_end_are_refused(void) {
+    lds_model* model = NULL;
+    EXPECT(lds_model_create(&model) == LDS_OK);
+    lds_material material = lds_material_default();
+    material.mix = 0.5;
+    uint32_t index = 0;
+    lds_status status = LDS_OK;
+    int mixtures = -1;
+    while (status == LDS_OK && mixtures < 100000) {
+        status = lds_model_add_material(model, &material, &index);
+        material.other = index + 1;
+        ++mixtures;
+    }
+    EXPECT(status == LDS_ERROR_INVALID_ARGUMENT && mixtures == 65);
+    EXPECT(strstr(lds_last_error_text(), "64") != NULL);
+    lds_model_destroy(model);
+}
+
 static void test_pictures_and_textures_are_checked(void) {
     lds_model* model = NULL;
     EXPECT(lds_model_create(&model) == LDS_OK);
@@ -450,6 +488,8 @@ int main(void) {
     test_older_structs_go_on_working();
     test_representations_and_occurrences();
     test_choices_carry_the_path_of_placements();
+    test_positions_that_are_not_there_are_refused();
+    test_materials_mixed_without_end_are_refused();
     if (lds_rays_check() == LDS_OK) {
         test_pictures_and_textures_are_checked();
         test_texture_coordinates_are_projected();

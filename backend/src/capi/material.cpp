@@ -77,27 +77,26 @@ public:
         made.name = name_of(given_.name);
         made.base_color = vector(given_.base_color, "material.base_color");
         made.emission = vector(given_.emission, "material.emission");
-        made.roughness = share(given_.roughness, "roughness");
-        made.metallic = share(given_.metallic, "metallic");
-        made.specular = share(given_.specular, "specular");
+        made.roughness = finite(given_.roughness, "roughness");
+        made.metallic = finite(given_.metallic, "metallic");
+        made.specular = finite(given_.specular, "specular");
         made.base_color_texture = texture(given_.base_color_texture);
         made.roughness_texture = texture(given_.roughness_texture);
         made.metallic_texture = texture(given_.metallic_texture);
         made.emission_texture = texture(given_.emission_texture);
         made.vertex_colors = given_.vertex_colors != 0;
-        made.alpha = share(given_.alpha, "alpha");
+        made.alpha = finite(given_.alpha, "alpha");
         made.alpha_texture = texture(given_.alpha_texture);
         if (given_.alpha_mode < LDS_ALPHA_MODE_OPAQUE || given_.alpha_mode > LDS_ALPHA_MODE_CLIP)
             fail(Status::InvalidArgument, owner_, " has alpha mode ", given_.alpha_mode);
         made.alpha_mode = static_cast<AlphaMode>(given_.alpha_mode);
-        made.alpha_cutoff = share(given_.alpha_cutoff, "alpha_cutoff");
-        made.transmission = share(given_.transmission, "transmission");
-        made.ior = std::clamp(finite(given_.ior, "ior"), 0.1, 10.0);
-        made.clearcoat = share(given_.clearcoat, "clearcoat");
-        made.clearcoat_roughness = share(given_.clearcoat_roughness, "clearcoat_roughness");
+        made.alpha_cutoff = finite(given_.alpha_cutoff, "alpha_cutoff");
+        made.transmission = finite(given_.transmission, "transmission");
+        made.ior = finite(given_.ior, "ior");
+        made.clearcoat = finite(given_.clearcoat, "clearcoat");
+        made.clearcoat_roughness = finite(given_.clearcoat_roughness, "clearcoat_roughness");
         made.normal_texture = texture(given_.normal_texture);
-        made.normal_strength =
-            std::clamp(finite(given_.normal_strength, "normal_strength"), 0.0, 10.0);
+        made.normal_strength = finite(given_.normal_strength, "normal_strength");
         made.bump_texture = texture(given_.bump_texture);
         made.bump_distance = finite(given_.bump_distance, "bump_distance");
         if (given_.other != 0) {
@@ -105,9 +104,16 @@ public:
                 fail(Status::InvalidArgument, owner_, " is mixed with material ", given_.other - 1,
                      " of ", model_.model.materials.size());
             made.other = std::make_shared<Material>(model_.model.materials[given_.other - 1]);
-            made.mix = share(given_.mix, "mix");
+            int mixtures = 0;
+            for (const Material* at = &made; at->other; at = at->other.get())
+                ++mixtures;
+            if (mixtures > kMostMixtures)
+                fail(Status::InvalidArgument, owner_, " is mixed more than ", kMostMixtures,
+                     " times");
+            made.mix = finite(given_.mix, "mix");
             made.mix_texture = texture(given_.mix_texture);
         }
+        clamp_numbers(made);
         return made;
     }
 
@@ -116,9 +122,6 @@ private:
         if (!std::isfinite(value))
             fail(Status::InvalidArgument, what, " of ", owner_, " is not finite");
         return value;
-    }
-    double share(double value, const char* what) const {
-        return std::clamp(finite(value, what), 0.0, 1.0);
     }
     Texture texture(const lds_texture& given) const { return texture_of(model_, given, owner_); }
 

@@ -82,10 +82,10 @@ std::span<const T> span_of(const T* values, size_t count) {
 
 Faces lodestone::capi::faces_of(const lds_faces_view* view) {
     const lds_faces_view& given = checked(view, "faces");
-    if (given.corner_count > 0) {
+    if (given.vertex_count > 0)
         require(given.positions, "faces.positions");
+    if (given.corner_count > 0)
         require(given.corner_vertices, "faces.corner_vertices");
-    }
     if (given.face_starts == nullptr && given.face_count != given.corner_count / 3)
         fail(Status::InvalidArgument, given.face_count, " faces of ", given.corner_count,
              " corners are not triangles");

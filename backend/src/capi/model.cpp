@@ -23,10 +23,10 @@ bool same(const float* a, const float* b, int count) {
 
 /// One vertex for every distinct (position, normal, uv, color) that a corner uses.
 Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
-    if (view.triangle_count > 0) {
+    if (view.vertex_count > 0)
         require(view.positions, "mesh.positions");
+    if (view.triangle_count > 0)
         require(view.triangles, "mesh.triangles");
-    }
     const uint32_t* corners = view.corners != nullptr ? view.corners : view.triangles;
     const size_t corner_count = view.corners != nullptr ? view.corner_count : view.vertex_count;
     constexpr size_t kMost = size_t{1} << 31u;
@@ -52,11 +52,14 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
     }
     // Chains of the vertices made so far from each position; almost always one or two long.
     constexpr uint32_t kEnd = ~uint32_t{0};
+    constexpr size_t kMostTries = 256;  // for an equal vertex, the last made first
     std::vector<uint32_t> first(split ? view.vertex_count : 0, kEnd);
     std::vector<uint32_t> next;
     std::vector<uint32_t> made_from;  // the corner a vertex was made from
     const auto vertex_of = [&](uint32_t position, uint32_t corner) {
-        for (uint32_t at = first[position]; at != kEnd; at = next[at]) {
+        size_t tries = 0;
+        for (uint32_t at = first[position]; at != kEnd && tries < kMostTries;
+             at = next[at], ++tries) {
             const uint32_t other = made_from[at];
             if ((view.corner_normals == nullptr ||
                  same(view.corner_normals + 3 * size_t{corner},

@@ -11,6 +11,7 @@ namespace lodestone {
 namespace {
 
 constexpr uint32_t kEnd = ~uint32_t{0};
+constexpr size_t kMostTries = 256;  // for an equal vertex, the last made first
 constexpr double kRounding = 2e-5;  // given normals nearer than this are those of the faces
 
 glm::dvec3 point(const Faces& faces, size_t corner) {
@@ -18,8 +19,10 @@ glm::dvec3 point(const Faces& faces, size_t corner) {
     return {p[0], p[1], p[2]};
 }
 
-/// Twice the area of a face times its unit normal.
+/// Twice the area of a face times its unit normal; 0 for fewer than three corners.
 glm::dvec3 area_of(const Faces& faces, size_t begin, size_t end) {
+    if (end < begin + 3)
+        return glm::dvec3(0.0);
     const glm::dvec3 first = point(faces, begin);
     glm::dvec3 sum(0.0);
     glm::dvec3 last = point(faces, begin + 1) - first;
@@ -280,7 +283,8 @@ Mesh mesh_of(const Faces& faces, size_t slot_count) {
         }
         uint32_t vertex = position;
         if (taken[position] != 0) {
-            for (uint32_t at = position; at != kEnd; at = next[at]) {
+            size_t tries = 0;
+            for (uint32_t at = position; at != kEnd && tries < kMostTries; at = next[at], ++tries) {
                 if ((mesh.normals.empty() || mesh.normals[at] == normal) &&
                     (mesh.uvs.empty() || mesh.uvs[at] == uv) &&
                     (mesh.colors.empty() || mesh.colors[at] == color))

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/material.h"
 
+#include <algorithm>
+
 namespace lodestone {
+
+void clamp_numbers(Material& material) {
+    for (double* share : {&material.roughness, &material.metallic, &material.specular,
+                          &material.alpha, &material.alpha_cutoff, &material.transmission,
+                          &material.clearcoat, &material.clearcoat_roughness, &material.mix})
+        *share = std::clamp(*share, 0.0, 1.0);
+    material.ior = std::clamp(material.ior, 0.1, 10.0);
+    material.normal_strength = std::clamp(material.normal_strength, 0.0, 10.0);
+}
 
 Hash hash_of(const Material& material) {
     Hasher hasher;

@@ -46,11 +46,17 @@ struct Material {
     Texture bump_texture;      // height: channel's value times bump_distance
     double bump_distance = 0;  // metres from black to white; below 0 inward
 
-    /// Mixed with another one: shading is (1 - mix) of this and mix of that.
+    /// Mixed with another one (which may be mixed, too; kMostMixtures at most): shading is (1 - mix) of this and mix of that.
     std::shared_ptr<const Material> other;
     double mix = 0;
     Texture mix_texture;
 };
+
+inline constexpr int kMostMixtures = 64;  // deeper ones are a mistake or an attack
+
+/// Brings its own numbers, which are finite, into their ranges: shares 0...1, ior .1...10, normal
+/// strength 0...10.
+void clamp_numbers(Material& material);
 
 /// Of everything but the names.
 Hash hash_of(const Material& material);

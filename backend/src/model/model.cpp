@@ -48,6 +48,32 @@ void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
     }
 }
 
+/// Groups that place groups twice, over and over, have more occurrences than can be counted.
+uint64_t capped_sum(uint64_t a, uint64_t b) {
+    return a > std::numeric_limits<uint64_t>::max() - b ? std::numeric_limits<uint64_t>::max()
+                                                        : a + b;
+}
+
+/// Whether for_each_occurrence() goes on to what an object places.
+bool opened(const Object& object, Below below) {
+    return object.group() && !(object.of_parts && below == Below::Objects);
+}
+
+/// How often for_each_occurrence() visits something below the root. `order` is bottom_up's.
+uint64_t visits(const Model& model, const std::vector<ObjectIndex>& order, Below below) {
+    std::vector<uint64_t> out(model.objects.size(), 0);
+    for (const ObjectIndex index : order) {
+        const Object& object = model.objects[index];
+        if (!opened(object, below)) {
+            out[index] = object.representations.empty() ? 0 : 1;
+            continue;
+        }
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            out[index] = capped_sum(out[index], out[placement.object]);
+    }
+    return out[model.root];
+}
+
 /// 1 for every object that `is` true of, or that places such an object at any depth.
 template <typename Is>
 std::vector<uint8_t> that_hold(const Model& model, const Is& is) {
@@ -171,8 +197,8 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
                     continue;
                 const Summary& part = child.representations[0].summary;
                 summary.bound = merged(summary.bound, transformed(part.bound, placement.transform));
-                summary.cost.triangles += part.cost.triangles;
-                summary.cost.bytes += part.cost.bytes;
+                summary.cost.triangles = capped_sum(summary.cost.triangles, part.cost.triangles);
+                summary.cost.bytes = capped_sum(summary.cost.bytes, part.cost.bytes);
             }
             summary.hash = content.result();
         }
@@ -188,8 +214,10 @@ Totals totals(const Model& model) {
         const Object& object = model.objects[index];
         if (object.group()) {
             for (const Placement& placement : object.representations[0].assembly().placements) {
-                below[index].occurrences += below[placement.object].occurrences;
-                below[index].triangles_placed += below[placement.object].triangles_placed;
+                Totals& sums = below[index];
+                const Totals& part = below[placement.object];
+                sums.occurrences = capped_sum(sums.occurrences, part.occurrences);
+                sums.triangles_placed = capped_sum(sums.triangles_placed, part.triangles_placed);
             }
             if (object.of_parts)
                 below[index].occurrences = 1;
@@ -223,7 +251,10 @@ void for_each_occurrence(const Model& model, const std::function<void(const Occu
                          Below below) {
     if (model.root == kNoObject)
         return;
-    bottom_up(model);  // refuses cycles
+    const uint64_t count = visits(model, bottom_up(model), below);  // refuses cycles
+    if (count > kMostOccurrences)
+        fail(Status::InvalidArgument, "'", model.objects[model.root].name, "' places ", count,
+             " things, counting each copy; at most ", kMostOccurrences);
     struct Entry {
         ObjectIndex object;
         Affine world;
@@ -235,7 +266,7 @@ void for_each_occurrence(const Model& model, const std::function<void(const Occu
         const Entry entry = std::move(stack.back());
         stack.pop_back();
         const Object& object = model.objects[entry.object];
-        if (!object.group() || (object.of_parts && below == Below::Objects)) {
+        if (!opened(object, below)) {
             if (!object.representations.empty())
                 visit({entry.object, entry.world, entry.path, entry.hidden});
             continue;

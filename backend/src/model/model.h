@@ -47,6 +47,7 @@ void summarize(Representation& representation, const Model& model,
                std::optional<Hash> mesh_hash = std::nullopt);
 
 /// Number of leaf occurrences below the root (each path of placements counts), and what they place.
+/// Sums that would be more than 64 bits hold are the largest number.
 /// An object made of parts (Object::of_parts) is one object and one leaf.
 struct Totals {
     uint64_t objects = 0;  // with representations, groups included
@@ -65,6 +66,9 @@ struct Occurrence {
 };
 /// Whether an object made of parts is visited itself, or its parts.
 enum class Below { Objects, Parts };
+/// More are refused: a few groups that place each other twice would take forever.
+inline constexpr uint64_t kMostOccurrences = uint64_t{1} << 28u;
+/// Throws Error(InvalidArgument) for cycles, and when there are more than kMostOccurrences.
 void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,
                          Below below = Below::Objects);
 
