@@ -10,6 +10,7 @@
 #include "quality/cut.h"
 #include "ray/scene.h"
 #include "scratch.h"
+#include "segment/json.h"
 
 #include <gtest/gtest.h>
 
@@ -178,6 +179,32 @@ TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
             EXPECT_EQ(model.objects[i].representations[lod].summary.error,
                       again.objects[i].representations[lod].summary.error);
         }
+    }
+}
+
+TEST_F(Hierarchy, AStandInThatIsGoneFromTheStoreIsBuiltAgain) {
+    const auto ring = [] {
+        Model model;
+        model.root = models::add_leaf(model, "ring", shapes::torus(40, 16));
+        return model;
+    };
+    const fs::path folder = scratch("gone");
+    Model first = ring();
+    build_in(first, folder);
+    fs::path file;
+    for (const Representation& one : first.objects[0].representations) {
+        if (one.summary.kind == Kind::Mesh && one.summary.error > 0)
+            file = folder / segment::file_of(one.summary.hash);
+    }
+    ASSERT_FALSE(file.empty());
+    const std::string before = read_file(file);
+    for (const bool emptied : {false, true}) {
+        fs::remove(file);
+        if (emptied)
+            write_file(file, "");
+        Model again = ring();
+        EXPECT_EQ(build_in(again, folder).built, 1u);
+        EXPECT_EQ(read_file(file), before);
     }
 }
 

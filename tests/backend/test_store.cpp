@@ -285,6 +285,58 @@ TEST(Store, UnusedFilesGoAfterTheNextButOneWrite) {
     EXPECT_FALSE(fs::exists(gone));
 }
 
+TEST(Store, FilesOfTheUserAreNotTakenForUnusedOnes) {
+    const segment::Store store(scratch("mine"));
+    store.write(rich_model(), {});
+    const std::vector<std::string> mine{"i/holiday.png", "r/chair.glb", "r/0123456789ABCDEF.glb",
+                                        "r/notes.tmp", "b/0123456789abcde.bound"};
+    const std::vector<std::string> ours{"r/0123456789abcdef.glb", "r/.lodestone-1-2.tmp"};
+    for (const auto* names : {&mine, &ours}) {
+        for (const std::string& name : *names) {
+            fs::create_directories((store.folder() / name).parent_path());
+            write_file(store.folder() / name, "x");
+        }
+    }
+    store.write(rich_model(), {});
+    for (const std::string& name : mine)
+        EXPECT_TRUE(fs::exists(store.folder() / name)) << name;
+    for (const std::string& name : ours)
+        EXPECT_FALSE(fs::exists(store.folder() / name)) << name;
+}
+
+TEST(Store, FilesThatAPowerFailureEmptiedAreWrittenAgain) {
+    const segment::Store store(scratch("emptied"));
+    const Model model = rich_model();
+    store.write(model, {});
+    const Hash hash = model.objects[0].representations[1].summary.hash;
+    const std::string picture = segment::file_of(*models::checker());
+    write_file(store.folder() / segment::file_of(hash), "");
+    write_file(store.folder() / picture, "");
+    EXPECT_FALSE(store.has_mesh(hash));
+    EXPECT_FALSE(store.has_stand_ins(model.objects[0]));
+    store.write(model, {});
+    EXPECT_TRUE(store.has_stand_ins(model.objects[0]));
+    EXPECT_NO_THROW(store.load_mesh(hash));
+    EXPECT_EQ(read_file(store.folder() / picture), models::checker()->bytes);
+}
+
+TEST(Store, AGroupThatPlacesAGroupTwiceSixtyTimesOverIsStoredAndRefusedWhereEachCopyCounts) {
+    Model model;
+    ObjectIndex below = models::add_leaf(model, "ball", shapes::sphere(1, 1));
+    for (int i = 0; i < 70; ++i)
+        below = models::add_group(model, text("group", i),
+                                  {{below, Affine{}, "a"}, {below, models::moved(2, 0, 0), "b"}});
+    model.root = below;
+    summarize_assemblies(model, bottom_up(model));
+    EXPECT_EQ(totals(model).occurrences, ~uint64_t{0});
+    EXPECT_EQ(model.objects[below].representations[0].summary.cost.triangles, ~uint64_t{0});
+    EXPECT_THROW(for_each_occurrence(model, [](const Occurrence&) {}), Error);
+    const segment::Store store(scratch("doubled"));
+    store.write(model, {});
+    EXPECT_LT(fs::file_size(store.folder() / "tileset.json"), 100'000u);
+    EXPECT_EQ(store.read().objects.size(), 71u);
+}
+
 TEST(Store, TilesHoldTheirChildrenAndErrorsFall) {
     const segment::Store store(scratch("tiles"));
     Model model = rich_model();
@@ -381,6 +433,9 @@ TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
     }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = 99; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = -1; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = uint64_t{1} << 32u; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["root"] = 0.5; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["width"] = 1e300; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j.erase("objects"); }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["source_hash"] = "../../etc"; }));
     EXPECT_TRUE(
@@ -402,6 +457,35 @@ TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
     EXPECT_THROW(segment::model_of_tileset("{"), Error);
     EXPECT_THROW(segment::model_of_tileset(""), Error);
     EXPECT_THROW(segment::model_of_tileset("{\"asset\":{\"version\":\"1.1\"}}"), Error);
+}
+
+TEST(Store, NumbersOfMaterialsAreBroughtIntoTheirRanges) {
+    const segment::Store store(scratch("ranges"));
+    store.write(rich_model(), {});
+    nlohmann::json json = tileset_of(store.folder());
+    nlohmann::json& material = json["asset"]["extras"]["lodestone"]["materials"][0];
+    material["alpha"] = -5;
+    material["roughness"] = 7;
+    material["ior"] = 0;
+    const Model model = segment::model_of_tileset(json.dump());
+    EXPECT_EQ(model.materials[0].alpha, 0);
+    EXPECT_EQ(model.materials[0].roughness, 1);
+    EXPECT_EQ(model.materials[0].ior, 0.1);
+}
+
+TEST(Store, ABrokenMeshFileIsNamedWithWhatToDo) {
+    const segment::Store store(scratch("torn"));
+    const Model model = rich_model();
+    store.write(model, {});
+    const Hash hash = model.objects[0].representations[0].summary.hash;
+    write_file(store.folder() / segment::file_of(hash), "glTF");
+    try {
+        store.load_mesh(hash);
+        FAIL() << "loaded";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(hex16(hash)), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("delete it"), std::string::npos) << error.what();
+    }
 }
 
 TEST(Store, MissingMeshFileIsNamed) {

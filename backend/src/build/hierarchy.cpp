@@ -36,7 +36,7 @@ public:
             return;  // unreadable or of another version: everything is built again
         }
         for (const Object& object : stored_.objects) {
-            if (object.build_hash != 0)
+            if (object.build_hash != 0 && store.has_stand_ins(object))
                 by_hash_.try_emplace(object.build_hash, &object);
         }
     }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lodestone::segment {
 namespace {
@@ -18,6 +19,17 @@ double number(const Json& json, const char* key) {
     if (!std::isfinite(value))
         fail(Status::BadFile, "'", key, "' is not a finite number");
     return value;
+}
+
+template <typename Integer>
+Integer integer(const Json& json, const char* key) {
+    const Json& value = json.at(key);
+    const auto in_range = [](auto found) { return std::in_range<Integer>(found); };
+    if (!value.is_number_integer() ||
+        !(value.is_number_unsigned() ? in_range(value.get<uint64_t>())
+                                     : in_range(value.get<int64_t>())))
+        fail(Status::BadFile, "'", key, "' is not a whole number in its range");
+    return value.get<Integer>();
 }
 
 std::vector<double> numbers(const Json& json, const char* key, size_t count) {
@@ -65,8 +77,8 @@ PicturePtr picture(const Json& json) {
     if (format != suffix_of(p->format))
         fail(Status::BadFile, "a picture has the unknown format '", format, "'");
     p->space = json.at("linear").get<bool>() ? ColorSpace::Linear : ColorSpace::Srgb;
-    p->width = json.at("width").get<int>();
-    p->height = json.at("height").get<int>();
+    p->width = integer<int>(json, "width");
+    p->height = integer<int>(json, "height");
     if (p->width < 1 || p->height < 1)
         fail(Status::BadFile, "a picture has no pixels");
     const std::vector<double> mean = numbers(json, "mean", 4);
@@ -76,7 +88,7 @@ PicturePtr picture(const Json& json) {
 
 template <typename Enum>
 Enum choice(const Json& json, const char* key, Enum last) {
-    const int value = json.at(key).get<int>();
+    const int value = integer<int>(json, key);
     if (value < 0 || value > static_cast<int>(last))
         fail(Status::BadFile, "'", key, "' is ", value);
     return static_cast<Enum>(value);
@@ -89,7 +101,7 @@ Texture texture(const Json& material, const char* key, const Pictures& pictures)
     if (!material.contains(key))
         return t;
     const Json& json = material.at(key);
-    const auto index = json.at("picture").get<size_t>();
+    const auto index = integer<size_t>(json, "picture");
     if (index >= pictures.size())
         fail(Status::BadFile, "a texture names picture ", index, " of ", pictures.size());
     t.picture = pictures[index];
@@ -103,8 +115,6 @@ Texture texture(const Json& material, const char* key, const Pictures& pictures)
     t.offset = vector(json, "offset");
     return t;
 }
-
-constexpr int kMostMixtures = 64;  // deeper ones are no file of ours
 
 Material material(const Json& json, const Pictures& pictures, int depth = 0) {
     if (depth > kMostMixtures)
@@ -140,6 +150,7 @@ Material material(const Json& json, const Pictures& pictures, int depth = 0) {
         m.mix = number(json, "mix");
         m.mix_texture = texture(json, "mix_texture", pictures);
     }
+    clamp_numbers(m);
     return m;
 }
 
@@ -157,7 +168,7 @@ Attributes attributes(const Json& json) {
     a.specular = number(json, "specular");
     a.emission = vector(json, "emission");
     a.relative_error = number(json, "relative_error");
-    a.rays = json.at("rays").get<uint64_t>();
+    a.rays = integer<uint64_t>(json, "rays");
     return a;
 }
 
@@ -165,14 +176,14 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
     auto out = std::make_shared<Assembly>();
     for (const Json& one : json.at("placements")) {
         Placement placement;
-        placement.object = one.at("object").get<uint32_t>();
+        placement.object = integer<uint32_t>(one, "object");
         if (placement.object >= object_count)
             fail(Status::BadFile, "a placement names object ", placement.object, " of ",
                  object_count);
         placement.transform = Affine::from_rows(numbers(one, "transform", 12).data());
         placement.name = one.at("name").get<std::string>();
         if (one.contains("hidden")) {
-            const auto hidden = one.at("hidden").get<uint32_t>();
+            const auto hidden = integer<uint32_t>(one, "hidden");
             if (hidden > kAllRays)
                 fail(Status::BadFile, "'", placement.name, "' is hidden from ray classes ", hidden);
             placement.hidden = static_cast<RayMask>(hidden);
@@ -185,9 +196,9 @@ std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) 
                      placement.importance);
         }
         if (one.contains("coarsest"))
-            placement.coarsest = one.at("coarsest").get<uint32_t>();
+            placement.coarsest = integer<uint32_t>(one, "coarsest");
         if (one.contains("finest"))
-            placement.finest = one.at("finest").get<uint32_t>();
+            placement.finest = integer<uint32_t>(one, "finest");
         out->placements.push_back(std::move(placement));
     }
     return out;
@@ -209,7 +220,7 @@ std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
         Solid solid;
         solid.box = one.at("box").get<bool>();
         solid.primitive = primitive(one, solid.box ? Kind::Box : Kind::Ellipsoid);
-        const auto slot = one.at("slot").get<uint32_t>();
+        const auto slot = integer<uint32_t>(one, "slot");
         if (slot >= slots)
             fail(Status::BadFile, "a solid shows slot ", slot, " of ", slots);
         solid.slot = static_cast<uint16_t>(slot);
@@ -233,8 +244,8 @@ Representation representation(const Json& json, size_t object_count, size_t mate
         s.bound.box.low = vector(json, "low");
         s.bound.box.high = vector(json, "high");
     }
-    s.cost.triangles = json.at("triangles").get<uint64_t>();
-    s.cost.bytes = json.at("bytes").get<uint64_t>();
+    s.cost.triangles = integer<uint64_t>(json, "triangles");
+    s.cost.bytes = integer<uint64_t>(json, "bytes");
     r.materials = json.at("materials").get<std::vector<uint32_t>>();
     for (const uint32_t index : r.materials) {
         if (index >= material_count)
@@ -320,7 +331,7 @@ World world(const Json& json, const Pictures& pictures) {
     world.color = vector(json, "color");
     world.transparent = json.at("transparent").get<bool>();
     if (json.contains("environment")) {
-        const auto index = json.at("environment").get<size_t>();
+        const auto index = integer<size_t>(json, "environment");
         if (index >= pictures.size())
             fail(Status::BadFile, "the world names picture ", index, " of ", pictures.size());
         world.environment = pictures[index];
@@ -333,8 +344,8 @@ World world(const Json& json, const Pictures& pictures) {
 }
 
 Model model_of(const Json& json) {
-    if (json.at("format").get<int>() != kStoreFormat)
-        fail(Status::BadFile, "the store has format ", json.at("format").get<int>(),
+    if (integer<int>(json, "format") != kStoreFormat)
+        fail(Status::BadFile, "the store has format ", integer<int>(json, "format"),
              ", this Lodestone reads ", kStoreFormat, ": update the levels");
     Model model;
     Pictures pictures;
@@ -351,7 +362,7 @@ Model model_of(const Json& json) {
         model.cameras.push_back(camera(one));
     model.world = world(json.at("world"), pictures);
     if (!json.at("root").is_null()) {
-        model.root = json.at("root").get<uint32_t>();
+        model.root = integer<uint32_t>(json, "root");
         if (model.root >= model.objects.size())
             fail(Status::BadFile, "the root is object ", model.root, " of ", objects.size());
     }

@@ -6,6 +6,7 @@
 #include "format/glb.h"
 #include "segment/json.h"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 
@@ -28,19 +29,34 @@ void make_folder(const fs::path& folder) {
         fail(Status::Io, "cannot make the folder '", folder.string(), "': ", error.message());
 }
 
+/// A file's name as this store and write_file() give it; what else lies there is the user's.
+bool ours(const fs::path& name) {
+    static const std::set<std::string> kEndings{".glb", ".bound", ".png", ".jpg", ".exr"};
+    const std::string stem = name.stem().string();
+    const std::string ending = name.extension().string();
+    if (ending == ".tmp")
+        return stem.starts_with(".lodestone-");
+    return kEndings.contains(ending) && stem.size() == 16 &&
+           stem.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 /// Of r/, b/ and i/; `wanted` are relative names.
 void remove_unused(const fs::path& folder, const std::set<std::string>& wanted) {
     for (const char* part : {"r", "b", "i"}) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / part, error)) {
-            const fs::path& path = entry.path();
-            static const std::set<std::string> kOurs{".glb", ".bound", ".png",
-                                                     ".jpg", ".exr",   ".tmp"};
-            if (kOurs.contains(path.extension().string()) &&
-                !wanted.contains(text(part, "/", path.filename().string())))
-                fs::remove(path, error);
+            const fs::path name = entry.path().filename();
+            if (ours(name) && !wanted.contains(text(part, "/", name.string())))
+                fs::remove(entry.path(), error);
         }
     }
+}
+
+/// A power failure soon after a write leaves a name without content.
+bool has_content(const fs::path& path) {
+    std::error_code error;
+    const uintmax_t size = fs::file_size(path, error);
+    return !error && size > 0;
 }
 
 /// Each distinct picture of a model's materials and world.
@@ -87,13 +103,25 @@ Model Store::read() const {
 
 std::shared_ptr<const Mesh> Store::load_mesh(Hash hash) const {
     const fs::path path = folder_ / file_of(hash);
-    auto mesh = std::make_shared<Mesh>(format::read_glb_mesh(read_file(path)));
-    return mesh;
+    const std::string bytes = read_file(path);
+    try {
+        return std::make_shared<Mesh>(format::read_glb_mesh(bytes));
+    } catch (const Error& error) {
+        fail(error.status, "'", path.string(), "' cannot be used (", error.what(),
+             "): delete it and update the levels");
+    }
 }
 
 bool Store::has_mesh(Hash hash) const {
-    std::error_code error;
-    return fs::is_regular_file(folder_ / file_of(hash), error);
+    return has_content(folder_ / file_of(hash));
+}
+
+bool Store::has_stand_ins(const Object& object) const {
+    return std::all_of(object.representations.begin(), object.representations.end(),
+                       [&](const Representation& one) {
+                           return one.summary.kind != Kind::Mesh || one.summary.error == 0 ||
+                                  has_mesh(one.summary.hash);
+                       });
 }
 
 void Store::load(Representation& representation) const {
@@ -146,11 +174,10 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     const FileLock lock(folder_ / "lock", job);
 
     std::map<Hash, const Representation*> missing;
-    std::error_code error;
     for (const ObjectIndex index : bottom_up(model)) {
         for (const Representation& representation : model.objects[index].representations) {
             if (representation.summary.kind != Kind::Assembly &&
-                !fs::exists(folder_ / file_of(representation.summary.hash), error))
+                !has_content(folder_ / file_of(representation.summary.hash)))
                 missing[representation.summary.hash] = &representation;
         }
     }
@@ -180,6 +207,9 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     if (exists())
         wanted = files_of_tileset(read_file(tileset, kMostTilesetBytes));
     const std::string text = tileset_text(model);
+    if (text.size() > kMostTilesetBytes)
+        fail(Status::Io, "'", tileset.string(), "' would have ", text.size(), " bytes; at most ",
+             kMostTilesetBytes, " are read");
     write_file(tileset, text);
     wanted.merge(files_of_tileset(text));
     remove_unused(folder_, wanted);
@@ -192,8 +222,7 @@ uint64_t Store::write_pictures(const Model& model, const Job& job) const {
     for (const auto& [hash, picture] : pictures_of(model)) {
         job.check();
         const fs::path path = folder_ / file_of(*picture);
-        std::error_code error;
-        if (fs::exists(path, error))
+        if (has_content(path))
             continue;
         if (picture->bytes.empty())
             fail(Status::Io, "the picture '", picture->name, "' is gone from the store");

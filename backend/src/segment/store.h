@@ -37,6 +37,9 @@ public:
     /// Whether load_mesh() has a file to read.
     bool has_mesh(Hash hash) const;
 
+    /// Whether it has one for every mesh of an object but the finest, which the caller has.
+    bool has_stand_ins(const Object& object) const;
+
     /// Makes the mesh of a representation resident.
     void load(Representation& representation) const;
 

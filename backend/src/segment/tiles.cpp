@@ -41,10 +41,14 @@ void put_transform(std::string& text, const Affine& transform) {
     }
 }
 
+/// Of more (some 300 bytes each) strangers get the stand-ins of the whole alone.
+constexpr uint64_t kMostTiles = uint64_t{1} << 20u;
+
 /// What all placements of one object share: its chain of tiles, worked out once.
 struct Chain {
     std::vector<double> geometric_errors;  // by LOD number
     Bound bound;                           // of every level and of all below
+    uint64_t tiles = 0;  // of every level and of all below, kMostTiles + 1 at most
 };
 
 class TileWriter {
@@ -90,12 +94,15 @@ private:
                     const double enlarged =
                         top_error(placement.object) * stretch(placement.transform);
                     least = std::max(least, enlarged * (1 + 1e-9));
+                    chain.tiles += chains_[placement.object].tiles;
+                    chain.tiles = std::min(chain.tiles, kMostTiles + 1);
                     chain.bound = merged(chain.bound, transformed(chains_[placement.object].bound,
                                                                   placement.transform));
                 }
                 error = 0;
             } else {
                 chain.bound = merged(chain.bound, representation.summary.bound);
+                chain.tiles = std::min(chain.tiles + 1, kMostTiles + 1);
                 if (lod > 0)
                     error = least = std::max(error, least * (1 + 1e-9));
             }
@@ -147,7 +154,7 @@ private:
     }
 
     void put_children(std::string& text, const Assembly& assembly, bool inside) {
-        if (!inside)
+        if (!inside || chains_[model_.root].tiles > kMostTiles)
             return;
         bool first = true;
         for (const Placement& placement : assembly.placements) {
