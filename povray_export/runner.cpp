@@ -299,11 +299,13 @@ RunReport run(const RunOptions& options, const Job& job) {
     report.parse_cpu_s = messages.parse_cpu_s;
     report.trace_cpu_s = messages.trace_cpu_s;
 
-    if (!child.state_lost && WIFSIGNALED(child.state))
-        fail(Status::PovrayFailed, "POV-Ray was ended by signal ", WTERMSIG(child.state), " (",
-             sigabbrev_np(WTERMSIG(child.state)),
-             WTERMSIG(child.state) == SIGKILL ? "; the system does that when memory is short)"
-                                              : ")");
+    if (!child.state_lost && WIFSIGNALED(child.state)) {
+        const int signal = WTERMSIG(child.state);
+        const char* word = sigabbrev_np(signal);  // real-time signals have none
+        fail(Status::PovrayFailed, "POV-Ray was ended by signal ", signal, " (",
+             word != nullptr ? word : "no name",
+             signal == SIGKILL ? "; the system does that when memory is short)" : ")");
+    }
     report.exit_code = child.state_lost ? (messages.finished ? 0 : 1) : WEXITSTATUS(child.state);
     if (report.exit_code != 0)
         fail(Status::PovrayFailed, "POV-Ray failed: ", messages.reason());

@@ -78,11 +78,19 @@ int run(const std::vector<std::string>& words) {
     throw UsageError("'" + words[0] + "' is no verb of lodestone; see lodestone --help");
 }
 
+/// What was printed may lie in a buffer until now, and the disk be full.
+int told(int code) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return code;
+    std::fprintf(stderr, "lodestone: cannot write to the standard output\n");
+    return code == 0 ? 1 : code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     try {
-        return run(std::vector<std::string>(argv + 1, argv + argc));
+        return told(run(std::vector<std::string>(argv + 1, argv + argc)));
     } catch (const UsageError& error) {
         std::fprintf(stderr, "lodestone: %s\n", shown(error.what()).c_str());
         return 2;

@@ -50,6 +50,12 @@ class CommandNames(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout + done.stderr
 
+    def test_a_full_disk_is_a_failure_even_when_nothing_but_words_are_lost(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([COMMAND, "version"], stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(b"cannot write", done.stderr)
+
     def test_every_verb_takes_a_file_of_any_name_and_writes_what_it_was_told(self):
         for stem in STEMS:
             with self.subTest(stem):

@@ -166,6 +166,7 @@ TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
     EXPECT_EQ(with("exit 0\n").status, Status::PovrayFailed);
     EXPECT_TRUE(says(with("exit 0\n"), "without a picture"));
     EXPECT_TRUE(says(with("kill -KILL $$\n"), "signal 9 (KILL"));
+    EXPECT_TRUE(says(with("kill -40 $$\n"), "signal 40 (no name)"));
     EXPECT_TRUE(says(with("echo 'Parse Error: of mine' >&2; exit 1\n"), "of mine"));
     EXPECT_EQ(with("yes | head -c 3000000; exit 1\n").status, Status::PovrayFailed);
     EXPECT_EQ(read_file(folder / "picture.exr"), "old");
