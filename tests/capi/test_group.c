@@ -274,14 +274,14 @@ static void test_many_are_placed_at_once_or_not_at_all(void) {
     EXPECT(lds_model_add_group(model, &info, &many) == LDS_OK);
     const lds_object children[2] = {cube, cube};
     const lds_object strangers[2] = {cube, {7, 9}};
-    double places[2][12];
-    memcpy(places[0], kIdentity, sizeof places[0]);
-    memcpy(places[1], kIdentity, sizeof places[1]);
+    float places[2][12];
+    for (int i = 0; i < 24; ++i)
+        places[i / 12][i % 12] = (float)kIdentity[i % 12];
     places[1][3] = 5;
     const char* names[2] = {"near", "far"};
     const uint32_t hidden[2] = {0, LDS_RAY_SHADOW};
     const uint32_t unknown[2] = {0, 16};
-    const double* rows = &places[0][0];
+    const float* rows = &places[0][0];
     EXPECT(lds_model_add_placements(model, many, 0, NULL, NULL, NULL, NULL) == LDS_OK);
     EXPECT(lds_model_add_placements(model, cube, 2, children, rows, names, NULL) ==
            LDS_ERROR_INVALID_ARGUMENT);

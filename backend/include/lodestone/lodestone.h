@@ -35,7 +35,7 @@ extern "C" {
 #endif
 
 /* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
-#define LDS_ABI_VERSION 1
+#define LDS_ABI_VERSION 2
 
 typedef enum lds_status {
     LDS_OK = 0,
@@ -437,10 +437,10 @@ LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* 
 /* Places child in group. An object never becomes its own descendant: found when it is used. */
 LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
                                            const double transform[12], const char* name);
-/* Places many, in this order: children[count], transforms float64[count][12], names[count] (UTF-8), and
+/* Places many, in this order: children[count], transforms float32[count][12], names[count] (UTF-8), and
    the ray classes (lds_ray_class bits) each is hidden from as below; null: none is. All or none. */
 LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
-                                            const lds_object* children, const double* transforms,
+                                            const lds_object* children, const float* transforms,
                                             const char* const* names, const uint32_t* hidden);
 /* Hides a group's newest placement, with all below it, from the ray classes in the mask (lds_ray_class
    bits). Groups with something hidden in them are drawn by their children, never by stand-ins. */

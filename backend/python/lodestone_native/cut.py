@@ -95,8 +95,9 @@ class Cut(Handle):
     def counts(self) -> dict[tuple[Object, int], int]:
         """How often which LOD number of which object is chosen."""
         rest = ctypes.sizeof(structs.Choice) - 3 * ctypes.sizeof(ctypes.c_uint32)
-        counted = Counter(struct.iter_unpack(f"=3I{rest}x", self._buffer()))
-        return {(Object(*key[:2]), key[2]): number for key, number in counted.items()}
+        counted = Counter(struct.iter_unpack(f"=12s{rest}x", self._buffer()))
+        found = {struct.unpack("=3I", key): number for (key,), number in counted.items()}
+        return {(Object(*key[:2]), key[2]): number for key, number in found.items()}
 
     def reason(self, position: int) -> Any:
         """Why a choice is what it is: fields as lds_reason's."""

@@ -242,11 +242,14 @@ class Model(Handle):
         names: Sequence[str],
         hidden: Sequence[int],
     ) -> None:
-        """In columns what add_placement() takes, 12 numbers a transform; all or none."""
+        """In columns what add_placement() takes, 12 numbers a transform; all or none. Fast where
+        transforms are an array "f"."""
         number = len(children)
         if (len(transforms), len(names), len(hidden)) != (12 * number, number, number):
             raise ValueError("columns of placements differ in length")
-        rows = array("d", transforms)
+        rows = transforms
+        if not isinstance(rows, array) or rows.typecode != "f":
+            rows = array("f", transforms)
         texts = text_in("\0".join(names)).split(b"\0") if number else []  # all at a stroke
         if len(texts) != number:
             raise ValueError("a name holds NUL")
@@ -258,7 +261,7 @@ class Model(Handle):
                 (Object * number).from_buffer_copy(b"".join(map(bytes, children))),
                 rows.buffer_info()[0] if number else None,
                 (ctypes.c_char_p * number)(*texts),
-                (ctypes.c_uint32 * number)(*hidden),
+                (ctypes.c_uint32 * number)(*hidden) if any(hidden) else None,
             )
         )
 

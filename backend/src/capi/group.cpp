@@ -9,6 +9,7 @@
 #include "group/structure.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 using namespace lodestone;
@@ -109,7 +110,7 @@ lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_objec
 }
 
 lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
-                                    const lds_object* children, const double* transforms,
+                                    const lds_object* children, const float* transforms,
                                     const char* const* names, const uint32_t* hidden) {
     return guard([&] {
         require(model, "model");
@@ -122,11 +123,16 @@ lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t c
         std::vector<Placement> added;
         added.reserve(count);
         for (size_t i = 0; i < count; ++i) {
-            added.push_back(placement_of(*model, children[i], transforms + 12 * i, names[i]));
+            std::array<double, 12> rows{};
+            std::copy_n(transforms + 12 * i, rows.size(), rows.begin());
+            added.push_back(placement_of(*model, children[i], rows.data(), names[i]));
             if (hidden != nullptr)
                 added.back().hidden = ray_mask(hidden[i]);
         }
-        std::move(added.begin(), added.end(), std::back_inserter(into.placements));
+        if (into.placements.empty())
+            into.placements = std::move(added);
+        else
+            std::move(added.begin(), added.end(), std::back_inserter(into.placements));
         model->summarized = false;
     });
 }
