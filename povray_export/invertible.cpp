@@ -19,6 +19,13 @@ constexpr double kSmallestStretch = 1e-9;
 bool make_invertible(Affine& transform) {
     if (!transform.finite())
         return false;
+    // The smallest stretch is the volume over the other two, whose product is less than half of this
+    const double squares = glm::dot(transform.linear[0], transform.linear[0]) +
+                           glm::dot(transform.linear[1], transform.linear[1]) +
+                           glm::dot(transform.linear[2], transform.linear[2]);
+    const double volume = std::abs(glm::determinant(transform.linear));
+    if (std::isfinite(volume) && squares >= 1e-9 && volume > 1e-3 * squares * std::sqrt(squares))
+        return true;
     const Eigen eigen = eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
     // The square's eigenvalues have lost half of the digits: only its axes are used.
     const glm::dvec3 along = transform.linear * eigen.axes[0];

@@ -73,7 +73,7 @@ public:
         if (kept_.empty())
             return "";
         std::string out;
-        out.reserve(200 + kept_.size() * 48);
+        out.reserve(200 + positions_.size() * (smooth_ ? 48 : 24) + kept_.size() * 28);
         out += "#declare " + identifier + " = mesh2{\n";
         append_list(out, "vertex_vectors", positions_.size(), [&](char* at, size_t i) {
             return write_point(at, lattice_, points_[positions_.vertices[i]]);

@@ -22,6 +22,63 @@ constexpr std::array<char, 200> kPairs = [] {
     return pairs;
 }();
 
+/// 10^0 ... 10^22: all that a double holds exactly.
+constexpr std::array<double, 23> kPowers = [] {
+    std::array<double, 23> powers{};
+    double power = 1;
+    for (double& next : powers) {
+        next = power;
+        power *= 10;
+    }
+    return powers;
+}();
+
+/// `left` with leading zeros to that many digits, without zeros at the end; it is not 0.
+char* write_decimals(char* at, uint64_t left, int digits) {
+    char* end = at + digits;
+    char* to = end;
+    for (; to - at >= 2; left /= 100)
+        std::memcpy(to -= 2, kPairs.data() + 2 * (left % 100), 2);
+    if (to > at)
+        *at = static_cast<char>('0' + left);
+    while (end[-1] == '0')
+        --end;
+    return end;
+}
+
+/// As to_chars() writes `value`, > 0, with that many significant digits; null where that takes more
+/// than one multiplication (tiny and huge numbers) or the last digit hangs on how this is rounded.
+char* write_short(char* at, double value, int digits) {
+    if (!(value >= 1e-4 && value < 1e15) || digits < 1 || digits > 15)
+        return nullptr;
+    int exponent = 0;  // of the first digit
+    if (value >= 1) {
+        while (value >= kPowers[static_cast<size_t>(exponent) + 1])
+            ++exponent;
+    } else {
+        do
+            --exponent;
+        while (value * kPowers[static_cast<size_t>(-exponent)] < 1);
+    }
+    const int decimals = digits - 1 - exponent;
+    if (decimals < 0)
+        return nullptr;
+    const double steps = value * kPowers[static_cast<size_t>(decimals)];
+    const double whole = std::floor(steps);
+    if (std::abs(steps - whole - 0.5) <= steps * 0x1p-51)
+        return nullptr;
+    auto left = static_cast<uint64_t>(whole) + (steps - whole > 0.5 ? 1u : 0u);
+    if (static_cast<double>(left) >= kPowers[static_cast<size_t>(digits)])
+        return nullptr;  // rounded up to one digit more
+    const auto unit = static_cast<uint64_t>(kPowers[static_cast<size_t>(decimals)]);
+    at = write_count(at, left / unit);
+    left %= unit;
+    if (left == 0)
+        return at;
+    *at++ = '.';
+    return write_decimals(at, left, decimals);
+}
+
 }  // namespace
 
 char* write_count(char* at, uint64_t value) {
@@ -46,10 +103,15 @@ void append_number(std::string& out, double value, int digits) {
         out += '0';
         return;
     }
-    char buffer[40];
-    const auto end =
-        std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
-    out.append(buffer, end.ptr);
+    char buffer[40] = {'-'};
+    char* end = write_short(buffer + 1, std::abs(value), digits);
+    if (end != nullptr) {
+        out.append(value < 0 ? buffer : buffer + 1, end);
+        return;
+    }
+    end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits)
+              .ptr;
+    out.append(buffer, end);
 }
 
 void append_count(std::string& out, uint64_t value) {
@@ -119,15 +181,7 @@ char* Lattice::write(char* at, int64_t value) const {
     if (left == 0)
         return at;
     *at++ = '.';
-    char* end = at + decimals_;
-    char* to = end;
-    for (; to - at >= 2; left /= 100)
-        std::memcpy(to -= 2, kPairs.data() + 2 * (left % 100), 2);
-    if (to > at)
-        *at = static_cast<char>('0' + left);
-    while (end[-1] == '0')
-        --end;
-    return end;
+    return write_decimals(at, left, decimals_);
 }
 
 }  // namespace lodestone::povray

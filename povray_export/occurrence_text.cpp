@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/occurrence_text.h"
 
+#include <string_view>
+
 namespace lodestone::povray {
 namespace {
 
-/// A user's name inside a comment: letters, digits and underscores only.
-std::string plain(const std::string& name) {
-    std::string out;
-    for (const char c : name) {
-        const bool kept =
-            (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-        out += kept ? c : '_';
-        if (out.size() == 60)
-            break;
-    }
-    return out.empty() ? "unnamed" : out;
-}
-
-std::string name_of_node(const Model& model, const quality::Cut& cut, uint32_t node) {
+const std::string& name_of_node(const Model& model, const quality::Cut& cut, uint32_t node) {
     const quality::Node& here = cut.nodes[node];
     if (here.parent == quality::kNoParent)
         return model.objects[here.object].name;
@@ -38,8 +27,15 @@ void append_hidden(std::string& out, RayMask hidden) {
         out += " no_radiosity";
 }
 
-std::string comment_of(const Model& model, const quality::Cut& cut, uint32_t node) {
-    return plain(name_of_node(model, cut, node));
+void append_name(std::string& out, const Model& model, const quality::Cut& cut, uint32_t node) {
+    const std::string& name = name_of_node(model, cut, node);
+    if (name.empty())
+        out += "unnamed";
+    for (const char c : std::string_view(name).substr(0, 60)) {
+        const bool kept =
+            (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+        out += kept ? c : '_';
+    }
 }
 
 }  // namespace lodestone::povray

@@ -62,6 +62,8 @@ std::string beginning_of(const std::filesystem::path& path) {
     return text;
 }
 
+constexpr size_t kTypicalObject = 192;  // characters
+
 struct Use {
     uint32_t node;
     uint32_t lod;
@@ -75,7 +77,9 @@ struct Use {
 struct Include {
     const Representation* representation = nullptr;
     Hash hash = 0;
+    std::string identifier;
     RepresentationOptions options = {};
+    bool pictured = false;  // shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // of its nearest use
     uint64_t bytes = 0;
     double cpu_s = 0;
@@ -193,11 +197,14 @@ private:
         if (fresh) {
             includes_.emplace_back().representation = &representation;
             includes_.back().options = as;
+            includes_.back().pictured =
+                shading_.texture_error > 0 && textures && pictured(includes_.back());
         }
         use.file = at->second;
         uses_.push_back(use);
-        double& texel = includes_[use.file].texel;
-        texel = std::min(texel, texel_of(node, representation, use.world));
+        Include& include = includes_[use.file];
+        if (include.pictured)
+            include.texel = std::min(include.texel, texel_of(node, representation, use.world));
     }
 
     void collect() {
@@ -221,9 +228,10 @@ private:
         }
         collect_own();
         for (Include& include : includes_) {
-            if (shading_.texture_error > 0 && include.options.textures && pictured(include))
+            if (include.pictured)
                 include.options.texel = exponent_of(include.texel);
             include.hash = file_hash(*include.representation, include.options);
+            include.identifier = identifier_of(include.hash);
         }
     }
 
@@ -268,9 +276,8 @@ private:
                 include.drawn = true;
             } else {
                 PictureWriter pictures;
-                text = representation_text(model_, *include.representation,
-                                           identifier_of(include.hash), include.options, pictures,
-                                           job_);
+                text = representation_text(model_, *include.representation, include.identifier,
+                                           include.options, pictures, job_);
                 if (!text.empty()) {
                     pictures.write(pictures_);
                     write_file(path, text);
@@ -359,6 +366,9 @@ private:
                                 double times) {
         std::string out;
         std::vector<const Use*> drawn;
+        drawn.reserve(uses_.size());
+        if (plan.empty())
+            out.reserve(uses_.size() * kTypicalObject);
         for (const Use& use : uses_) {
             if (!includes_[use.file].drawn)
                 continue;
@@ -377,7 +387,9 @@ private:
     /// What of it is `within` a box (world frame).
     void append_object(std::string& out, const Use& use, double times,
                        const std::optional<Box3>& within = {}) const {
-        out += "object{" + identifier_of(includes_[use.file].hash) + ' ';
+        out += "object{";
+        out += includes_[use.file].identifier;
+        out += ' ';
         if (options_.false_color) {
             const Kind kind = includes_[use.file].representation->summary.kind;
             append_flat_texture(out, options_.colors.empty() ? color_of(kind, use.lod)
@@ -393,7 +405,9 @@ private:
             append_vector(out, within->high * times, 15);
             out += "}}";
         }
-        out += "} // " + comment_of(model_, cut_, use.node) + ", LOD ";
+        out += "} // ";
+        append_name(out, model_, cut_, use.node);
+        out += ", LOD ";
         append_count(out, use.lod);
         out += use.in_place != 0 ? ", unseen\n" : "\n";
     }
@@ -415,7 +429,7 @@ private:
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, thorough(),
                                        problems_);
         const std::vector<std::string> names = scene_lights.declare(lights, plan);
-        const std::string objects = grouped_objects(plan, names, times);
+        std::string objects = grouped_objects(plan, names, times);
         std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
         append_number(out, view_.pixel_error, 6);
         out += "\n// ";
@@ -471,7 +485,9 @@ private:
             if (include.drawn)
                 out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
         }
-        return out + '\n' + objects;
+        out += '\n';
+        objects.insert(0, out);
+        return objects;
     }
 
     const Model& model_;

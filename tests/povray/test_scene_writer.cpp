@@ -83,6 +83,31 @@ TEST(PovrayWriter, NumbersAreShortAndExactToTheStep) {
     EXPECT_THROW(append_number(out, std::numeric_limits<double>::infinity()), Error);
 }
 
+TEST(PovrayWriter, NumbersAreThoseOfPrintfWhateverTheirSize) {
+    std::vector<double> values = {
+        1,    0.1,     0.5,       2.5,    1e-4,   9.9999e-5, 9999999999.4,
+        1e10, 1e15,    0.1 + 0.2, 1e-300, 1e300,  123456.5,  0.99999999995,
+        1e9,  1 / 3.0, 2 / 3.0,   1e22,   5e-324, 0.000125,  999999.99999999,
+        1e14, 4.5e9};
+    for (int i = 1; i < 4000; ++i)
+        values.push_back(std::sin(i * 12.9898) * std::pow(10.0, i % 31 - 12));
+    for (int i = 1; i < 2000; ++i)  // as Blender's transforms are, and what lies between two texts
+        values.insert(values.end(),
+                      {double{static_cast<float>(std::sin(i * 0.7) * i)}, i + 0.5,
+                       i * 1e-10 + 0.5e-10, std::nextafter(std::pow(10.0, i % 15), 0)});
+    for (const int digits : {1, 2, 6, 9, 10, 15, 17}) {
+        for (const double value : values) {
+            for (const double signed_value : {value, -value}) {
+                char expected[64];
+                (void)std::snprintf(expected, sizeof expected, "%.*g", digits, signed_value);
+                std::string out;
+                append_number(out, signed_value, digits);
+                ASSERT_EQ(out, expected) << digits << " digits";
+            }
+        }
+    }
+}
+
 TEST(PovrayWriter, AnEmptyModelIsASceneWithoutObjects) {
     ExportOptions options;
     options.folder = scratch("empty");
