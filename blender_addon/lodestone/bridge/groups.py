@@ -4,6 +4,7 @@
 from array import array
 from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -13,15 +14,16 @@ from . import ids
 from .ids import name_of
 from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
-from .listed import Rows, rows
+from .listed import Rows, gathered, rows
 from .motion import Motion
 from .placements import Placements
+from .plain import Plain
 from .shutter import Moving
 
 IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
 MOST_CHILDREN = 64  # of an emitter's group: more are grouped by position
-_ORIGINAL = attrgetter("original")
+_ORIGINAL, _OBJECT = attrgetter("original"), attrgetter("object")
 
 
 @dataclass
@@ -87,7 +89,10 @@ def _claim(claimed: set[Any], collection: Any) -> bool:
 
 def _own(claimed: set[Any], collection: Any) -> list[Any]:
     """The originals of the collection's own objects that belong to no earlier one."""
-    found = [item for item in map(_ORIGINAL, collection.objects) if item not in claimed]
+    objects = collection.objects  # of an original collection all are originals
+    found = list(map(_ORIGINAL, objects) if collection.is_evaluated else objects)
+    if not claimed.isdisjoint(found):
+        found = [item for item in found if item not in claimed]
     claimed.update(found)
     return found
 
@@ -112,6 +117,13 @@ def _same_but_for_rounding(a: list[Emitted], b: list[Emitted]) -> bool:
     return True
 
 
+class Rest(NamedTuple):
+    """What of a context no branch has had yet, by original."""
+
+    entries: dict[Any, Entry]
+    plain: dict[Any, int]  # their rows
+
+
 class Aside(NamedTuple):
     """What is in no collection's group: it changes in an animation, or the designer wants it in no
     stand-in."""
@@ -133,6 +145,9 @@ class Groups:
         self._roles = roles
         self._motion = motion
         self._above: list[Branch] = []  # branches around the one at hand, with collections
+        # By uid, environment, whether it changes, and how much it places; a second one that is the
+        # same in these, and the first, by all they place too: that key takes as long as the group
+        self._first: dict[tuple, tuple[Placements, Any] | None] = {}
         self._made: dict[tuple, Any] = {}
         self._branches: dict[int, Branch] = {}
         self._emitters: dict[Any, list[tuple[list[Emitted], Any]]] = {}
@@ -143,10 +158,13 @@ class Groups:
 
     def build(self, context: Context, branch: Branch) -> Any | None:
         """The group of a context, or None when it shows nothing."""
-        rest = dict(context.entries)
+        rest = Rest(dict(context.entries), context.plain.rows())
         aside = Aside(Placements(), Placements(), [])
         placements, anew = self._members(context, branch, rest, aside)
-        for entry in rest.values():  # shown, but in no branch: never lose it
+        # Shown, but in no branch: never lose it
+        self.unplaced += map(context.plain.names.__getitem__, rest.plain.values())
+        self._add_plain(placements, context.plain, list(rest.plain.values()))
+        for entry in rest.entries.values():
             extra = self._entry(entry)
             if extra:
                 self.unplaced.append(entry.name)
@@ -163,7 +181,7 @@ class Groups:
         return self._group(branch, placements, anew)
 
     def _members(
-        self, context: Context, branch: Branch, rest: dict[Any, Entry], aside: "Aside"
+        self, context: Context, branch: Branch, rest: "Rest", aside: "Aside"
     ) -> tuple[Placements, bool]:
         """What of a context is in a branch, and whether it changes in an animation. What does in
         the scene itself goes aside: a group of things that rest keeps its levels in every frame.
@@ -177,14 +195,12 @@ class Groups:
                 decision = ids.decision_of(child.collection)
                 into = aside.apart if decision.apart and in_scene else placements
                 into.add(group, IDENTITY, child.name, 0, decision)
-        for original in branch.objects:
-            entry = rest.pop(original, None)
+        rows, done = list(map(rest.plain.pop, branch.objects, repeat(None))), 0
+        for at in (at for at, row in enumerate(rows) if row is None):
+            self._add_plain(placements, context.plain, rows[done:at])
+            done, original = at + 1, branch.objects[at]
+            entry = rest.entries.pop(original, None)
             if entry is None:
-                continue
-            if entry.rests:
-                item = entry.leaf.object
-                placements.add(item, entry.place, entry.key[2])
-                self.parts[entry.key] = [item]
                 continue
             made, changes = self._entry(entry), self._changes(entry)
             if in_scene and (changes or entry.decision.apart):
@@ -196,8 +212,18 @@ class Groups:
             else:
                 placements.extend(made)
                 anew = anew or changes
+        self._add_plain(placements, context.plain, rows[done:])
         self._above.pop()
         return placements, anew
+
+    def _add_plain(self, placements: Placements, plain: Plain, rows: list[int]) -> None:
+        if not rows:
+            return
+        items = list(map(_OBJECT, map(plain.shows.__getitem__, rows)))
+        names = list(map(plain.names.__getitem__, rows))
+        placements.add_all(items, gathered(plain.places, rows), names)
+        keys = map(plain.keys.__getitem__, rows)
+        self.parts.update(zip(keys, map(list, zip(items))))
 
     def _note_moving(self, group: Any, lifted: Placements, movers: list[Any]) -> None:
         for position, item in enumerate(movers):
@@ -281,19 +307,29 @@ class Groups:
         placements: Placements,
         changes: bool = False,
     ) -> Any:
-        key = (uid, environment, changes, placements.key)
-        group = self._made.get(key)
-        if group is None:
-            claimed = self._uids.claim(uid)
-            group = self._model.add_group(claimed, name, ids.role(environment), changes)
-            self._model.add_placements(
-                group,
-                placements.objects,
-                placements.transforms,
-                placements.names,
-                placements.hidden,
-            )
-            for position, decision in placements.decisions.items():
-                self._decide(group, position, decision)
+        about = (uid, environment, changes, len(placements))
+        key = None
+        if about in self._first:
+            if self._first[about] is not None:
+                first, group = self._first[about]
+                self._made[about, first.key] = group
+                self._first[about] = None
+            key = (about, placements.key)
+            if key in self._made:
+                return self._made[key]
+        claimed = self._uids.claim(uid)
+        group = self._model.add_group(claimed, name, ids.role(environment), changes)
+        self._model.add_placements(
+            group,
+            placements.objects,
+            placements.transforms,
+            placements.names,
+            placements.hidden,
+        )
+        for position, decision in placements.decisions.items():
+            self._decide(group, position, decision)
+        if key is None:
+            self._first[about] = (placements, group)
+        else:
             self._made[key] = group
         return group

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a Blender datablock is called outside Blender: its uid, and its role."""
 
+from itertools import repeat
+from operator import contains
 from typing import Any
 
 import bpy
@@ -56,6 +58,13 @@ def has_settings(datablock: Any) -> bool:
     if _STORED_AMONG_CUSTOM:
         return "lodestone" in datablock  # a sixth of the time
     return settings_of(datablock) is not None
+
+
+def have_settings(datablocks: list[Any]) -> list[bool]:
+    """Of each has_settings()."""
+    if _STORED_AMONG_CUSTOM:
+        return list(map(contains, datablocks, repeat("lodestone")))
+    return list(map(has_settings, datablocks))
 
 
 def stored_uid(datablock: Any) -> str:

@@ -19,10 +19,10 @@ from ..core.problems import ERROR, WARNING, Problems
 from . import ids, strands
 from .glow import Glows
 from .ids import name_of
-from .leaves import DRAWN, MATERIAL, Leaf, Look, undrawn
+from .leaves import DRAWN, Leaf, Look, undrawn
 from .listed import Listed, Rows, rows
 from .motion import Motion
-from .plain import plain
+from .plain import Plain, find
 from .users import Users
 from .visibility import RayClass, Visibility
 
@@ -35,6 +35,7 @@ class Entry:
     """One object in one context: what of it is shown there."""
 
     # What most have, and so need not be given
+    leaf: Leaf | None = None
     hidden = 0  # from these ray classes
     holdout = False
     hair: Leaf | None = None  # of its particle systems
@@ -43,16 +44,11 @@ class Entry:
     decision = UNDECIDED
     pending = False  # shown, but no mesh: converted when nothing else shows it
 
-    def __init__(
-        self, item: Any, key: ids.Key, place: Rows, leaf: Leaf | None = None, rests: bool = False
-    ) -> None:
-        """An evaluated object; its transform to the context's frame. `rests`: nothing changes it,
-        and its leaf is all that it shows."""
+    def __init__(self, item: Any, key: ids.Key, place: Rows) -> None:
+        """An evaluated object; its transform to the context's frame."""
         self.object = item
         self.key = key
         self.place = place
-        self.leaf = leaf
-        self.rests = rests
 
     @property
     def name(self) -> str:
@@ -69,6 +65,7 @@ class Context:
     environment: set[Any]  # originals of objects whose collections are environment
     holdout: bool = False  # all of it
     entries: dict[Any, Entry] = field(default_factory=dict)  # by original
+    plain: Plain = field(default_factory=Plain)  # what has no entry: instances nothing, is in place
     inverse: Matrix | None = None
 
 
@@ -99,62 +96,47 @@ class Instances:
         self._collections: dict[int, tuple[list[Any], set[Any]]] = {}
         self._hidden: dict[Any, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
         self._looks: dict[Any, Look] = {}  # by original, but for what the context adds
-        self._plain: dict[tuple, Leaf] = {}  # of plain objects, by what they are made of
-        self._one_slot: set[Any] = set()  # meshes
         self._keys: dict[Any, ids.Key] = {}  # by original
         self._decisions: dict[Any, Decision] = {}  # of emitted objects, by original
 
     def walk(self, listed: Listed, environment: set[Any]) -> None:
         """`environment`: originals of the objects that an environment collection holds."""
         self.scene.environment = environment
-        plain_here = not self._visibility.by_layer
+        plain = self.scene.plain
+        if not self._visibility.by_layer:
+            plain = find(listed, environment, self._motion, self._tick)
+            self.scene.plain = plain
+        listed.want(plain.numbers, False)
+        first = {plain.numbers[rows[0]]: rows for rows in plain.kinds}
+        listed.want(first, True)
         for number, instance in listed:
             if number % 256 == 0:
                 self._tick()
-            if not instance.show_self:
-                if instance.show_particles:
-                    self._take(instance, listed.place(number))
-                continue
-            if plain_here and not instance.is_instance:
-                shown = instance.object
-                loose = plain(shown)
-                if loose is not None:
-                    self._take_plain(shown, listed.place(number), loose)
+            alike = first.get(number)
+            if alike is not None:
+                if self._take_plain(instance.object, alike):
                     continue
-            self._take(instance, listed.place(number))
+                listed.want(map(plain.numbers.__getitem__, alike), True)
+            if instance.show_self or instance.show_particles:
+                self._take(instance, listed.place(number))
         self._convert_pending()
 
-    def _take_plain(self, shown: Any, place: Rows | None, loose: bool) -> None:
-        """What most instances are, on the shortest way. It has no entry yet: what instances
-        others is not plain."""
-        if place is None:
-            return self._name_bad_place(name_of(shown))
-        original, data = shown.original, shown.data
-        key = ("object", "", name_of(shown))
-        marked = original in self.scene.environment
-        if data in self._one_slot:  # then everybody who shows them has one: no list is made
-            made_of = (data, marked, shown.active_material)
-        else:
-            made_of = (data, marked, *map(MATERIAL, shown.material_slots))
-        leaf = self._plain.get(made_of)
-        if leaf is not None:
-            self._leaves.users_of(leaf)[key] = None
-        else:
-            leaf = self._leaves.leaf(
-                key, shown, shown, Look(marked, False, self._motion.deforms(shown))
-            )
-            if leaf is None:
-                return
-            if len(made_of) == 3:
-                self._one_slot.add(data)
-            if leaf.settled:
-                self._plain[made_of] = leaf
-        self.shown += 1
-        rests = not leaf.deforms and (loose or not self._motion.moves(shown))
-        entry = self.scene.entries[original] = Entry(shown, key, place, leaf, rests)
-        if leaf.glow is not None:
-            entry.rests = False
-            entry.hidden = self.glows.add(leaf.glow, shown.matrix_world, entry.name)
+    def _take_plain(self, shown: Any, rows: list[int]) -> bool:
+        """Plain objects that are made of the same, of which this is the first; what they show is
+        in the columns then. False: each is something else for all that."""
+        plain = self.scene.plain
+        keys = list(map(plain.keys.__getitem__, rows))
+        marked = shown.original in self.scene.environment
+        look = Look(marked, False, self._motion.deforms(shown))
+        leaf = self._leaves.leaf(keys[0], shown, shown, look)
+        if leaf is None:
+            return True
+        if leaf.deforms or leaf.glow is not None or not leaf.settled:
+            return False
+        self._leaves.note(leaf, keys)
+        plain.settle(rows, leaf)
+        self.shown += len(rows)
+        return True
 
     def _take(self, instance: Any, place: Rows | None) -> None:
         shown = instance.object

@@ -3,7 +3,9 @@
 
 import math
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import compress
+from operator import not_
 from typing import Any
 
 from . import compat
@@ -20,18 +22,54 @@ class Listed:
         count = len(instances)
         columns = compat.buffer("f", 16 * count)
         instances.foreach_get("matrix_world", columns)
-        self._rows = compat.buffer("f", 12 * count)
+        self.places: Rows = compat.buffer("f", 12 * count)  # of all
         for i in range(12):
-            self._rows[i::12] = columns[4 * (i % 4) + i // 4 :: 16]
-        self._finite = math.isfinite(sum(self._rows))
+            self.places[i::12] = columns[4 * (i % 4) + i // 4 :: 16]
+        self._finite = math.isfinite(sum(self.places))
+        self._wanted = bytearray(b"\1") * count
 
     def __iter__(self) -> Iterator[tuple[int, Any]]:
-        return enumerate(self._depsgraph.object_instances)
+        return compress(enumerate(self._depsgraph.object_instances), self._wanted)
+
+    def want(self, numbers: Iterable[int], wanted: bool) -> None:
+        """Whether the iteration comes to these, which may be under way."""
+        for number in numbers:
+            self._wanted[number] = wanted
+
+    def objects(self) -> tuple[Sequence[int], list[Any]]:
+        """Evaluated objects that are shown by themselves, at transforms that are numbers, and their
+        numbers, in order. Do not keep them while iterating: as long as anybody in Python knows an
+        evaluated object, its instances are handed out as that object itself."""
+        depsgraph, count = self._depsgraph, len(self._wanted)
+        objects, numbers = list(depsgraph.objects), range(count)
+        if len(objects) != count:
+            instanced = [False] * count
+            depsgraph.object_instances.foreach_get("is_instance", instanced)
+            numbers = list(compress(numbers, map(not_, instanced)))
+        if len(objects) != len(numbers):
+            return (), []
+        if not self._finite:
+            right = [self.place(number) is not None for number in numbers]
+            numbers, objects = list(compress(numbers, right)), list(compress(objects, right))
+        return numbers, objects
 
     def place(self, number: int) -> Rows | None:
         """From the instance's own frame to the world; None: it is not made of numbers."""
-        rows = self._rows[12 * number : 12 * number + 12]
+        rows = self.places[12 * number : 12 * number + 12]
         return rows if self._finite or math.isfinite(sum(rows)) else None
+
+
+def gathered(places: Rows, numbers: Sequence[int]) -> Rows:
+    """Of many, 12 numbers each, those of some."""
+    if not numbers:
+        return array("f")
+    first, end = numbers[0], numbers[-1] + 1
+    if end - first == len(numbers) and list(numbers) == list(range(first, end)):
+        return places[12 * first : 12 * end]
+    found = array("f")
+    for number in numbers:
+        found += places[12 * number : 12 * number + 12]
+    return found
 
 
 def rows(matrix: Any) -> Rows:

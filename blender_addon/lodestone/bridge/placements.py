@@ -36,6 +36,13 @@ class Placements:
         self.names.append(name)
         self.hidden.append(hidden)
 
+    def add_all(self, items: list[Any], places: Rows, names: list[str]) -> None:
+        """Of nothing hidden or decided; 12 numbers a place."""
+        self.objects += items
+        self.transforms += places
+        self.names += names
+        self.hidden += [0] * len(items)
+
     def extend(self, others: "Placements") -> None:
         before = len(self.objects)
         self.decisions.update((before + at, found) for at, found in others.decisions.items())

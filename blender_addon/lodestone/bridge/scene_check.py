@@ -7,8 +7,10 @@ depsgraph of the viewport, less what renders hide; what only renders show is add
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import compress
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,6 +23,8 @@ from .images import ImageHeads
 from .leaves import material_slots, override_of
 from .listed import Listed, Rows, rows
 from .materials import Materials
+
+_ORIGINAL = attrgetter("original")
 
 
 def check(
@@ -129,10 +133,11 @@ class Shown(Listed):
         """`rendered`: see rendered_objects()."""
         super().__init__(depsgraph)
         self._rendered = rendered
+        self._met: set[Any] = set()  # originals of what the depsgraph shows
         self._stored: list[Any] = []  # transforms of what is added, by -1 - its number
 
     def __iter__(self) -> Iterator[tuple[int, Any]]:
-        rendered, met = self._rendered, set()
+        rendered, met = self._rendered, self._met
         for number, instance in super().__iter__():
             if instance.is_instance:
                 host = instance.parent.original
@@ -151,6 +156,13 @@ class Shown(Listed):
                 for instance in _as_stored(item, seen):
                     self._stored.append(instance.matrix_world)
                     yield -len(self._stored), instance
+
+    def objects(self) -> tuple[Sequence[int], list[Any]]:
+        numbers, objects = super().objects()
+        originals = list(map(_ORIGINAL, objects))
+        kept = list(map(self._rendered.__contains__, originals))
+        self._met.update(compress(originals, kept))
+        return list(compress(numbers, kept)), list(compress(objects, kept))
 
     def place(self, number: int) -> Rows | None:
         if number >= 0:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects show which material: noted on the way to the leaves, whoever makes them."""
 
+from collections.abc import Iterable
 from functools import partial
+from itertools import chain
 from typing import Any
 
 from ..core.problems import Problem, Subject
@@ -16,6 +18,7 @@ class Users:
         self._leaves = leaves
         self._slots_of = partial(material_slots, override=leaves.override)
         self._users: dict[Any, dict[Subject, None]] = {}  # by leaf
+        self._more: dict[Any, list[Iterable[Subject]]] = {}  # by leaf; noted many at a time
         self._materials: dict[Any, list[Subject]] = {}  # by leaf
         self._seen: set[Subject] = set()  # materials
 
@@ -29,9 +32,9 @@ class Users:
             known[user] = None
         return leaf
 
-    def users_of(self, leaf: Any) -> dict[Subject, None]:
-        """Of a leaf that was given out: to note one more."""
-        return self._users[leaf]
+    def note(self, leaf: Any, users: Iterable[Subject]) -> None:
+        """More objects that show a leaf that was given out."""
+        self._more.setdefault(leaf, []).append(users)
 
     def hair(self, user: Subject, shown: Any, *how: Any) -> Any:
         return self._noted(self._leaves.hair(shown, *how), user, shown)
@@ -58,6 +61,7 @@ class Users:
         """The objects of every material that a face of them wears."""
         found: dict[Subject, dict[Subject, None]] = {}
         for leaf, users in self._users.items():
+            users |= dict.fromkeys(chain.from_iterable(self._more.pop(leaf, ())))
             for material in self._materials[leaf]:
                 found.setdefault(material, {}).update(users)
         return {material: tuple(users) for material, users in found.items()}

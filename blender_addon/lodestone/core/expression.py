@@ -141,6 +141,8 @@ def walk(a: Expression) -> Iterator[Expression]:
 
 def leaves(a: Expression) -> list[Any]:
     """The different leaves in it, in the order they are met."""
+    if not a.args:  # nearly always: a number, or a picture as it is
+        return [a.leaf] if a.op == Op.TEXEL else []
     return list({item.leaf: None for item in walk(a) if item.op == Op.TEXEL})
 
 
