@@ -145,17 +145,33 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
     if (cells_.empty() || !(glm::dot(direction, direction) > 0))
         return;
     const glm::dvec3 inverse = 1.0 / direction;
-    std::array<uint32_t, 64> stack{};  // a tree is no deeper than that
+    struct Open {
+        uint32_t cell;
+        double near;
+    };
+    std::array<Open, 64> stack;  // a tree is no deeper than that
     size_t depth = 0;
-    stack[depth++] = 0;
+    const auto open = [&](uint32_t index, double near) {
+        if (near <= far)
+            stack[depth++] = {index, near};
+    };
+    open(0, entry(cells_[0].box, origin, inverse, far));
     while (depth > 0) {
-        const uint32_t index = stack[--depth];
-        const Cell& cell = cells_[index];
-        if (!(entry(cell.box, origin, inverse, far) <= far))
+        const auto [index, near] = stack[--depth];
+        if (!(near <= far))  // something nearer was found since
             continue;
+        const Cell& cell = cells_[index];
         if (cell.count == 0) {
-            stack[depth++] = cell.first;
-            stack[depth++] = index + 1;
+            // The nearer one first: what it hides is not looked at.
+            const double left = entry(cells_[index + 1].box, origin, inverse, far);
+            const double right = entry(cells_[cell.first].box, origin, inverse, far);
+            if (right < left) {
+                open(index + 1, left);
+                open(cell.first, right);
+            } else {
+                open(cell.first, right);
+                open(index + 1, left);
+            }
             continue;
         }
         for (uint32_t i = cell.first; i < cell.first + cell.count; ++i) {
