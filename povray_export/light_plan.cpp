@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/light_plan.h"
 
+#include "povray_export/light_coverage.h"
 #include "povray_export/light_regions.h"
 #include "povray_export/lit_points.h"
 #include "quality/light_arrival.h"
@@ -17,6 +18,7 @@ constexpr double kRays = 2e7;     // at most: points times lamps
 constexpr double kRooms = 12000;  // points that tell a hundred rooms from each other
 constexpr double kFewestPoints = 256;
 constexpr double kMostPoints = 65536;
+constexpr int kMostHanded = 2;  // bounces that are looked at: light of later ones is faint
 constexpr size_t kMostLamps = 20000;
 constexpr uint64_t kMostTriangles = 2'000'000;  // distinct: 130 bytes each
 // Of all lamps: POV-Ray remembers for each lamp what last hid it, but not for those of groups, whose
@@ -76,7 +78,7 @@ LightPlan plan_of(const quality::LightTree& tree, const quality::LightCut& cut,
 }  // namespace
 
 LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
-                      double pixel_error, Problems& problems, const Job& job) {
+                      double pixel_error, int bounces, Problems& problems, const Job& job) {
     const auto lamps =
         static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), quality::lamp));
     if (!(pixel_error > 0) || lamps < kFewLamps || drawn.empty() || !ray::available())
@@ -92,17 +94,8 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
     const double wanted = std::max(kShare * view.width * view.height, kRooms);
     const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
                                     kFewestPoints, kMostPoints);
-    std::vector<quality::LitPoint> points = scene.points(view, static_cast<size_t>(count), job);
-    if (points.empty())
-        return {};
-    const quality::LightTree tree = quality::make_light_tree(
-        model.lights,
-        [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
-    const quality::Reaches reaches = [&](const Light& light, const quality::LitPoint& point,
-                                         uint32_t& blocker) {
-        return scene.reaches(light, point, blocker);
-    };
-    const quality::LightShares shares = quality::find_shares(tree, points, reaches, job);
+    bounces = std::min(bounces, kMostHanded);
+    LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
     std::vector<Bound> bounds;
     std::vector<uint8_t> divisible;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
@@ -112,10 +105,25 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
         divisible.push_back(drawn[i].hidden == 0 && summary.kind != Kind::Composite &&
                             !scene.partly_clear(i));
     }
+    const size_t even = grid.points.size();
+    const std::vector<Sighting> sightings = cover(scene, view, divisible, grid, job);
+    std::vector<quality::LitPoint>& points = grid.points;
+    if (points.empty())
+        return {};
+    const quality::LightTree tree = quality::make_light_tree(
+        model.lights,
+        [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
+    const quality::Reaches reaches = [&](const Light& light, const quality::LitPoint& point,
+                                         uint32_t& blocker) {
+        return scene.reaches(light, point, blocker);
+    };
+    quality::LightShares shares = quality::find_shares(tree, points, reaches, job);
     const LightRegions regions = make_light_regions(bounds, divisible, shares, points);
+    lend(sightings, regions, points, shares);
     const quality::LightCut cut = quality::cut_lights(tree, points, shares, regions.count,
                                                       model.world.color, reaches, pixel_error, job);
-    return plan_of(tree, cut, points, regions);
+    // What was added looks at corners: the mean is of what is spread evenly.
+    return plan_of(tree, cut, std::span(points).first(even > 0 ? even : points.size()), regions);
 }
 
 }  // namespace lodestone::povray

@@ -2,7 +2,6 @@
 #include "povray_export/lit_points.h"
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "povray_export/finish.h"
 #include "povray_export/magnification.h"
 #include "povray_export/texture_writer.h"
@@ -41,6 +40,21 @@ glm::dvec3 any_across(const glm::dvec3& unit) {
 }
 
 }  // namespace
+
+std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column) {
+    std::vector<size_t> cells;
+    for (size_t r = row > 0 ? row - 1 : 0; r < std::min(grid.rows, row + 2); ++r) {
+        for (size_t c = column > 0 ? column - 1 : 0; c < std::min(grid.columns, column + 2); ++c)
+            cells.push_back(r * grid.columns + c);
+    }
+    return cells;
+}
+
+double reach_beside(const View& view, const LitGrid& grid, const quality::LitPoint& point) {
+    const double cell = view.width / static_cast<double>(grid.columns);
+    const double z = glm::length(point.position - view.camera.position);
+    return kBeside * cell * quality::pixel_size(view, z);
+}
 
 LitScene::Shape LitScene::shape_of(const Lit& lit) const {
     const Representation& representation = *lit.representation;
@@ -117,19 +131,20 @@ LitScene::Surface LitScene::surface_of(const Lit& lit, uint16_t slot) const {
     return surfaces_[std::min(index, surfaces_.size() - 1)];
 }
 
-void LitScene::follow(Ray ray, std::vector<quality::LitPoint>& out) const {
+std::vector<quality::LitPoint> LitScene::followed(Ray ray) const {
+    std::vector<quality::LitPoint> out;
     bool mirrored = false;
     for (int bounce = 0; bounce <= kMostBounces; ++bounce) {
         const ray::PlacedScenes::Hit hit = seen_.first_hit(ray.origin, ray.direction);
         if (!hit.hit)
-            return;
+            return out;
         const Lit& lit = drawn_[hit.name];
         const Mesh& mesh = *shapes_[shape_of_[hit.name]].mesh;
         const Surface surface = surface_of(lit, mesh.slot(hit.triangle));
         const glm::dmat3 turn = glm::transpose(glm::inverse(lit.world.linear));
         glm::dvec3 flat = glm::normalize(turn * area_vector(mesh, hit.triangle));
         if (!(glm::dot(flat, flat) > 0))
-            return;
+            return out;
         if (glm::dot(flat, ray.direction) > 0)
             flat = -flat;
         glm::dvec3 normal = flat;
@@ -163,72 +178,90 @@ void LitScene::follow(Ray ray, std::vector<quality::LitPoint>& out) const {
         if (shown && surface.mirror && !surface.see_through) {
             ray.direction = ray.direction - 2 * glm::dot(ray.direction, normal) * normal;
             if (!(glm::dot(ray.direction, flat) > 0))
-                return;
+                return out;
             ray.origin = point + flat * aside;
             mirrored = true;
         } else if (!shown || surface.see_through) {
             ray.origin = point - flat * aside;
         } else {
-            return;
+            return out;
         }
+    }
+    return out;
+}
+
+LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
+    const Camera& camera = view.camera;
+    const glm::dvec3 aside = (x - 0.5) * camera.right + (0.5 - y) * camera.up;
+    Ray ray;
+    ray.origin = camera.orthographic ? camera.position + aside : camera.position;
+    ray.direction =
+        glm::normalize(camera.orthographic ? camera.direction : camera.direction + aside);
+    return ray;
+}
+
+/// From the last point on, as a matt surface hands on light.
+void LitScene::bounce(int times, Random& random, std::vector<quality::LitPoint>& out) const {
+    for (int i = 0; i < times && !out.empty(); ++i) {
+        const quality::LitPoint& from = out.back();
+        const double turn = 2 * std::numbers::pi * random.uniform();
+        const double out_of = random.uniform();  // square of the sine
+        const glm::dvec3 u = any_across(from.normal);
+        const glm::dvec3 v = glm::cross(from.normal, u);
+        Ray ray;
+        ray.origin = from.position + from.aside;
+        ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
+                        std::sqrt(1 - out_of) * from.normal;
+        std::vector<quality::LitPoint> more = followed(ray);
+        if (more.empty())
+            return;
+        out.push_back(std::move(more.back()));
     }
 }
 
-std::vector<quality::LitPoint> LitScene::points(const View& view, size_t count,
-                                                const Job& job) const {
+LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job& job) const {
     const double aspect = static_cast<double>(view.width) / std::max(1, view.height);
-    const auto rows = static_cast<size_t>(
+    LitGrid grid;
+    grid.rows = static_cast<size_t>(
         std::clamp(std::sqrt(static_cast<double>(count) / aspect), 1.0, view.height * 1.0));
-    const auto columns = static_cast<size_t>(
-        std::clamp(static_cast<double>(count) / static_cast<double>(rows), 1.0, view.width * 1.0));
-    const Camera& camera = view.camera;
-    const double cell = static_cast<double>(view.width) / static_cast<double>(columns);
-    std::vector<std::vector<quality::LitPoint>> found(rows * columns);
-    parallel_for(rows, [&](size_t row) {
+    const auto rows = static_cast<double>(grid.rows);
+    grid.columns =
+        static_cast<size_t>(std::clamp(static_cast<double>(count) / rows, 1.0, view.width * 1.0));
+    const auto columns = static_cast<double>(grid.columns);
+    std::vector<std::vector<quality::LitPoint>> found(grid.rows * grid.columns);
+    parallel_for(grid.rows, [&](size_t row) {
         job.check();
         Random random(1, row);
-        for (size_t column = 0; column < columns; ++column) {
-            const double u =
-                (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns) -
-                0.5;
-            const double v =
-                0.5 - (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows);
-            const glm::dvec3 aside = u * camera.right + v * camera.up;
-            Ray ray;
-            ray.origin = camera.orthographic ? camera.position + aside : camera.position;
-            ray.direction =
-                glm::normalize(camera.orthographic ? camera.direction : camera.direction + aside);
-            follow(ray, found[row * columns + column]);
+        for (size_t column = 0; column < grid.columns; ++column) {
+            const double x = (static_cast<double>(column) + random.uniform()) / columns;
+            const double y = (static_cast<double>(row) + random.uniform()) / rows;
+            std::vector<quality::LitPoint>& points = found[row * grid.columns + column];
+            points = seen(view, x, y);
+            bounce(bounces, random, points);
         }
     });
     // Neighbors in the picture, by the first point of each; those of far behind are none.
-    std::vector<uint32_t> first(found.size() + 1, 0);
+    grid.first.assign(found.size() + 1, 0);
     for (size_t i = 0; i < found.size(); ++i)
-        first[i + 1] = first[i] + static_cast<uint32_t>(found[i].size());
-    std::vector<quality::LitPoint> out;
-    out.reserve(first.back());
-    for (size_t row = 0; row < rows; ++row) {
-        for (size_t column = 0; column < columns; ++column) {
-            const size_t here = row * columns + column;
+        grid.first[i + 1] = grid.first[i] + static_cast<uint32_t>(found[i].size());
+    grid.points.reserve(grid.first.back());
+    for (size_t row = 0; row < grid.rows; ++row) {
+        for (size_t column = 0; column < grid.columns; ++column) {
+            const size_t here = row * grid.columns + column;
             for (size_t i = 0; i < found[here].size(); ++i) {
-                out.push_back(found[here][i]);
-                quality::LitPoint& point = out.back();
-                const double z = glm::length(point.position - camera.position);
-                const double most = kBeside * cell * quality::pixel_size(view, z);
-                for (size_t r = row > 0 ? row - 1 : 0; r < std::min(rows, row + 2); ++r) {
-                    for (size_t c = column > 0 ? column - 1 : 0; c < std::min(columns, column + 2);
-                         ++c) {
-                        const size_t there = r * columns + c;
-                        if (there == here || i >= found[there].size())
-                            continue;
-                        if (glm::length(found[there][i].position - point.position) <= most)
-                            point.beside.push_back(first[there] + static_cast<uint32_t>(i));
-                    }
+                grid.points.push_back(found[here][i]);
+                quality::LitPoint& point = grid.points.back();
+                const double most = reach_beside(view, grid, point);
+                for (const size_t there : around(grid, row, column)) {
+                    if (there == here || i >= found[there].size())
+                        continue;
+                    if (glm::length(found[there][i].position - point.position) <= most)
+                        point.beside.push_back(grid.first[there] + static_cast<uint32_t>(i));
                 }
             }
         }
     }
-    return out;
+    return grid;
 }
 
 bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {

@@ -2,11 +2,26 @@
 // Lit points: what a view shows of a scene, as points with what they send back.
 #pragma once
 
+#include "base/random.h"
 #include "povray_export/light_plan.h"
 #include "quality/light_cut.h"
 #include "ray/placed_scenes.h"
 
 namespace lodestone::povray {
+
+/// Points in a grid over a picture, row by row; those of one cell lie one behind the other.
+struct LitGrid {
+    size_t rows = 0;
+    size_t columns = 0;
+    std::vector<uint32_t> first;  // point of each cell; one more at the end
+    std::vector<quality::LitPoint> points;
+};
+
+/// A cell and those that touch it, rising.
+std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column);
+
+/// How far from a point those are that count as beside it.
+double reach_beside(const View& view, const LitGrid& grid, const quality::LitPoint& point);
 
 /// The drawn things, ready for rays. Things hidden from a class of rays are not met by it.
 class LitScene {
@@ -14,8 +29,13 @@ public:
     /// Throws Error(RaysUnavailable); needs what is drawn to be resident, and to outlive it.
     LitScene(const Model& model, std::span<const Lit> drawn, const Job& job);
 
-    /// About `count` points, evenly over the picture; `region` is the index of the drawn thing.
-    std::vector<quality::LitPoint> points(const View& view, size_t count, const Job& job) const;
+    /// About `count` cells, a ray through each; `region` of a point is the index of the drawn thing.
+    /// `bounces`: then from where it ends on, each where light may come from.
+    LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
+    /// What is seen at a place of the picture (0...1 from its left, top), nearest first.
+    std::vector<quality::LitPoint> seen(const View& view, double x, double y) const {
+        return followed(ray_at(view, x, y));
+    }
 
     /// Share of a light that reaches a point; what is see-through hides nothing.
     /// `blocker`: see quality::Reaches.
@@ -49,7 +69,9 @@ private:
 
     Surface surface_of(const Lit& lit, uint16_t slot) const;
     Shape shape_of(const Lit& lit) const;
-    void follow(Ray ray, std::vector<quality::LitPoint>& out) const;
+    static Ray ray_at(const View& view, double x, double y);
+    std::vector<quality::LitPoint> followed(Ray ray) const;
+    void bounce(int times, Random& random, std::vector<quality::LitPoint>& out) const;
 
     const Model& model_;
     std::span<const Lit> drawn_;

@@ -42,6 +42,9 @@ std::string render_settings(const View& view, const Shading& shading, Antialiasi
         }
     }
     out += transparent ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
+    // Else what is gathered depends on which thread comes first.
+    if (shading.bounces > 0)
+        out += "High_Reproducibility=On\n";
     if (blurred(view.camera))
         return out + "Antialias=Off\n";
     switch (antialiasing) {

@@ -2,9 +2,9 @@
 #include "povray_export/scene_writer.h"
 
 #include "base/files.h"
-#include "base/parallel.h"
 #include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
+#include "povray_export/include_files.h"
 #include "povray_export/invertible.h"
 #include "povray_export/light_plan.h"
 #include "povray_export/light_writer.h"
@@ -13,32 +13,20 @@
 #include "povray_export/occurrence_text.h"
 #include "povray_export/own_uses.h"
 #include "povray_export/render_settings.h"
-#include "povray_export/representation_writer.h"
+#include "povray_export/scene_head.h"
 #include "povray_export/scene_lights.h"
-#include "povray_export/sky_writer.h"
-#include "povray_export/texture_writer.h"
 #include "quality/criterion.h"
 #include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <ctime>
-#include <fstream>
 #include <limits>
 #include <span>
-#include <unordered_map>
 
 namespace lodestone::povray {
 namespace {
-
-double thread_cpu_s() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Below an Environment group, or a stand-in for a group that holds Environment.
 bool environment(const Model& model, const quality::Cut& cut,
@@ -52,16 +40,6 @@ bool environment(const Model& model, const quality::Cut& cut,
     return false;
 }
 
-/// As much of an include file as can name its pictures.
-constexpr size_t kBeginning = size_t{16} << 10u;
-std::string beginning_of(const std::filesystem::path& path) {
-    std::string text(kBeginning, ' ');
-    std::ifstream file(path, std::ios::binary);
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-    return text;
-}
-
 constexpr size_t kTypicalObject = 192;  // characters
 
 struct Use {
@@ -70,23 +48,32 @@ struct Use {
     size_t position;  // in cut.chosen
     size_t file;      // index of the include file
     Affine world;
-    RayMask hidden;        // ray classes that do not see it
-    RayMask in_place = 0;  // of what the camera sees, for these classes only
+    RayMask hidden;                       // ray classes that do not see it
+    RayMask in_place = 0;                 // of what the camera sees, for these classes only
+    std::optional<glm::dvec3> dull = {};  // in this color alone
 };
 
-struct Include {
-    const Representation* representation = nullptr;
-    Hash hash = 0;
-    std::string identifier;
-    RepresentationOptions options = {};
-    bool pictured = false;  // shows pictures, as fine as they are seen
-    double texel = std::numeric_limits<double>::infinity();  // of its nearest use
-    uint64_t bytes = 0;
-    double cpu_s = 0;
-    bool written = false;
-    bool drawn = false;
-    bool bumps_left_out = false;
-};
+/// What glows and is hidden from gathering rays, as lights shine in its place: its color without its
+/// glow. Nothing for all else.
+std::optional<glm::dvec3> without_glow(const Model& model, const Representation& representation,
+                                       RayMask hidden) {
+    if ((hidden & kRadiosityRays) == 0)
+        return {};
+    glm::dvec3 color(0.0);
+    bool glows = false;
+    double count = 0;
+    for (const uint32_t index : representation.materials) {
+        if (index >= model.materials.size())
+            continue;
+        const Material& material = model.materials[index];
+        glows = glows || glm::dot(material.emission, material.emission) > 0;
+        color += glm::clamp(material.base_color, 0.0, 1.0);
+        ++count;
+    }
+    if (!glows)
+        return {};
+    return color / count;
+}
 
 class SceneWriter {
 public:
@@ -98,8 +85,8 @@ public:
           options_(options),
           problems_(problems),
           job_(job),
-          shading_(filled_up(options.shading, options.antialiasing, view.pixel_error)),
-          pictures_(options.folder) {}
+          shading_(shading_of(options, view.pixel_error)),
+          includes_(model, options.folder, shading_.texture_error > 0) {}
 
     ExportReport write() {
         const double start = thread_cpu_s();
@@ -113,7 +100,7 @@ public:
         const double before_files = thread_cpu_s();
         if (!options_.covered_only)
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
-        write_includes();
+        includes_.write(job_);
         hide_replaced();
         const double after_files = thread_cpu_s();
         name_problems();
@@ -126,7 +113,8 @@ public:
         write_text("scene.ini",
                    render_settings(view_, shading_, options_.antialiasing, transparent()));
         ExportReport report = report_;
-        for (const Include& include : includes_) {
+        for (size_t i = 0; i < includes_.size(); ++i) {
+            const Include& include = includes_.at(i);
             report.cpu_s += include.cpu_s;
             if (!include.drawn)
                 continue;
@@ -135,7 +123,7 @@ public:
             ++report.representations;
             report.written += include.written ? 1u : 0u;
         }
-        const PictureFolder::Totals pictures = pictures_.totals();
+        const PictureFolder::Totals pictures = includes_.pictures();
         report.bytes += pictures.bytes;
         report.files += pictures.files;
         report.written += pictures.written;
@@ -145,6 +133,13 @@ public:
     }
 
 private:
+    static Shading shading_of(const ExportOptions& options, double pixel_error) {
+        Shading out = filled_up(options.shading, options.antialiasing, pixel_error);
+        if (!lit(options))
+            out.bounces = 0;
+        return out;
+    }
+
     void make_folders() const {
         std::error_code error;
         std::filesystem::create_directories(options_.folder / "r", error);
@@ -169,7 +164,7 @@ private:
     void hide_replaced() {
         std::vector<RayMask> replaced(cut_.nodes.size(), 0);
         for (const Use& use : uses_) {
-            if (includes_[use.file].drawn)
+            if (includes_.at(use.file).drawn)
                 replaced[use.node] |= use.in_place;
         }
         replaced = spread(cut_, std::move(replaced));
@@ -190,21 +185,10 @@ private:
                                  "is scaled to nothing or to a line, so it is not drawn"});
             return;
         }
-        // Copies of one representation share a file, those that are textured for their nearest
-        const RepresentationOptions as{textures, options_.uvs, std::nullopt};
-        const auto [at, fresh] =
-            known_.try_emplace(file_hash(representation, as), includes_.size());
-        if (fresh) {
-            includes_.emplace_back().representation = &representation;
-            includes_.back().options = as;
-            includes_.back().pictured =
-                shading_.texture_error > 0 && textures && pictured(includes_.back());
-        }
-        use.file = at->second;
+        use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt});
         uses_.push_back(use);
-        Include& include = includes_[use.file];
-        if (include.pictured)
-            include.texel = std::min(include.texel, texel_of(node, representation, use.world));
+        if (includes_.at(use.file).pictured)
+            includes_.see(use.file, texel_of(node, representation, use.world));
     }
 
     void collect() {
@@ -225,24 +209,17 @@ private:
             if (nobody[index] != 0)
                 continue;
             add_use({index, node.lod, position, 0, node.world, node.hidden}, !options_.false_color);
+            // Else gathering rays would look through a lamp, at what it lights behind itself.
+            const std::optional<glm::dvec3> dull =
+                shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
+                                     : std::nullopt;
+            if (dull)
+                add_use({index, node.lod, position, 0, node.world,
+                         kAllRays & static_cast<RayMask>(~kRadiosityRays), kRadiosityRays, dull},
+                        false);
         }
         collect_own();
-        for (Include& include : includes_) {
-            if (include.pictured)
-                include.options.texel = exponent_of(include.texel);
-            include.hash = file_hash(*include.representation, include.options);
-            include.identifier = identifier_of(include.hash);
-        }
-    }
-
-    bool pictured(const Include& include) const {
-        if (!include.options.uvs || include.representation->summary.kind != Kind::Mesh)
-            return false;
-        for (const uint32_t material : include.representation->materials) {
-            if (material < model_.materials.size() && textured(model_.materials[material]))
-                return true;
-        }
-        return false;
+        includes_.name();
     }
 
     /// What a texel may cover of one occurrence, in metres of its own frame.
@@ -254,49 +231,11 @@ private:
         return shading_.texture_error * quality::pixel_size(view_, z) / enlarged;
     }
 
-    static int exponent_of(double texel) {
-        constexpr int kMost = 60;
-        return texel > 0 && std::isfinite(texel) ? std::clamp(std::ilogb(texel), -kMost, kMost)
-                                                 : -kMost;
-    }
-
-    void write_includes() {
-        std::atomic<size_t> done{0};
-        parallel_for(includes_.size(), [&](size_t i) {
-            job_.check();
-            const double start = thread_cpu_s();
-            Include& include = includes_[i];
-            const std::filesystem::path path =
-                options_.folder / "r" / (hex16(include.hash) + ".inc");
-            std::error_code error;
-            const uintmax_t found = std::filesystem::file_size(path, error);
-            std::string text = error || found == 0 ? "" : beginning_of(path);
-            if (!text.empty() && pictures_.found(pictures_named(text))) {
-                include.bytes = found;
-                include.drawn = true;
-            } else {
-                PictureWriter pictures;
-                text = representation_text(model_, *include.representation, include.identifier,
-                                           include.options, pictures, job_);
-                if (!text.empty()) {
-                    pictures.write(pictures_);
-                    write_file(path, text);
-                    include.bytes = text.size();
-                    include.written = include.drawn = true;
-                }
-                text.resize(std::min(text.size(), kBeginning));
-            }
-            include.bumps_left_out = text.find(kBumpsLeftOut) != std::string::npos;
-            include.cpu_s = thread_cpu_s() - start;
-            job_.progress(static_cast<double>(++done) / static_cast<double>(includes_.size() + 1));
-        });
-    }
-
     /// Once for what several occurrences show.
     void name_problems() {
         std::vector<uint8_t> named(includes_.size(), 0);
         for (const Use& use : uses_) {
-            if (!includes_[use.file].bumps_left_out || named[use.file]++ != 0)
+            if (!includes_.at(use.file).bumps_left_out || named[use.file]++ != 0)
                 continue;
             problems_.push_back({quality::path_of(model_, cut_, use.node), Severity::Warning,
                                  "bump_not_flat",
@@ -311,19 +250,11 @@ private:
         ++report_.written;
     }
 
-    bool refracts() const {
-        for (const Include& include : includes_) {
-            for (const uint32_t material : include.representation->materials) {
-                if (material < model_.materials.size() &&
-                    refraction_of(model_.materials[material]) > 0)
-                    return true;
-            }
-        }
-        return false;
-    }
-
     bool transparent() const { return options_.covered_only || view_world().transparent; }
-    bool lit() const { return !options_.covered_only && !options_.false_color; }
+    static bool lit(const ExportOptions& options) {
+        return !options.covered_only && !options.false_color;
+    }
+    bool lit() const { return lit(options_); }
     const World& view_world() const { return model_.world; }
 
     bool thorough() const { return options_.antialiasing == Antialiasing::Reference; }
@@ -351,11 +282,12 @@ private:
         std::vector<Lit> drawn;
         drawn.reserve(occluders.size());
         for (const Use& use : uses_) {
-            if (includes_[use.file].drawn)
+            if (includes_.at(use.file).drawn)
                 drawn.push_back(
-                    {includes_[use.file].representation, use.world, hidden_in_plan(use)});
+                    {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
         }
-        LightPlan plan = plan_lights(model_, drawn, view_, error, problems_, job_);
+        LightPlan plan =
+            plan_lights(model_, drawn, view_, error, shading_.bounces, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
         return plan;
@@ -370,7 +302,7 @@ private:
         if (plan.empty())
             out.reserve(uses_.size() * kTypicalObject);
         for (const Use& use : uses_) {
-            if (!includes_[use.file].drawn)
+            if (!includes_.at(use.file).drawn)
                 continue;
             drawn.push_back(&use);
             report_.unseen += use.in_place != 0 ? 1 : 0;
@@ -388,13 +320,18 @@ private:
     void append_object(std::string& out, const Use& use, double times,
                        const std::optional<Box3>& within = {}) const {
         out += "object{";
-        out += includes_[use.file].identifier;
+        out += includes_.at(use.file).identifier;
         out += ' ';
         if (options_.false_color) {
-            const Kind kind = includes_[use.file].representation->summary.kind;
+            const Kind kind = includes_.at(use.file).representation->summary.kind;
             append_flat_texture(out, options_.colors.empty() ? color_of(kind, use.lod)
                                                              : options_.colors[use.position]);
             out += ' ';
+        }
+        if (use.dull) {
+            out += "texture{pigment{";
+            append_rgb(out, *use.dull);
+            out += "} finish{ambient 0 emission 0 diffuse 1}} ";
         }
         append_matrix(out, magnified(use.world, times));
         append_hidden(out, use.hidden);
@@ -416,9 +353,9 @@ private:
         Bound bound;
         std::vector<Bound> occluders;
         for (const Use& use : uses_) {
-            if (!includes_[use.file].drawn)
+            if (!includes_.at(use.file).drawn)
                 continue;
-            const Summary& summary = includes_[use.file].representation->summary;
+            const Summary& summary = includes_.at(use.file).representation->summary;
             occluders.push_back(transformed(summary.bound, use.world));
             bound = merged(bound, occluders.back());
         }
@@ -430,39 +367,11 @@ private:
                                        problems_);
         const std::vector<std::string> names = scene_lights.declare(lights, plan);
         std::string objects = grouped_objects(plan, names, times);
-        std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
-        append_number(out, view_.pixel_error, 6);
-        out += "\n// ";
-        append_count(out, report_.occurrences);
-        out +=
-            " occurrences; render it from this folder with: povray scene.ini\n"
-            "#version 3.7;\n\n";
-        if (times > 1) {
-            out += "// All is ";
-            append_count(out, static_cast<uint64_t>(times));
-            out += " times as large: POV-Ray takes what is nearer than .001 for one point.\n";
-        }
-        out +=
-            "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
-            "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n"
-            "global_settings{assumed_gamma 1 max_trace_level ";
-        // Two surfaces of a glass are two levels.
-        append_count(out, static_cast<uint64_t>(shading_.trace_depth) * (refracts() ? 2 : 1));
-        if (shading_.reflection_error > 1) {
-            out += " adc_bailout ";
-            append_number(out, shading_.reflection_error / 255, 6);
-        }
-        out += " ambient_light rgb ";
-        append_vector(out, sky_.ambient, 6);
-        const glm::dvec3 background = sky_.statement.empty() ? sky_.ambient : glm::dvec3(0.0);
-        out += transparent() ? "}\nbackground{rgbt <" : "}\nbackground{rgb <";
-        for (int i = 0; i < 3; ++i) {
-            append_number(out, background[i], 6);
-            out += i < 2 ? "," : (transparent() ? ",1>}\n\n" : ">}\n\n");
-        }
-        if (!transparent())
-            out += sky_.statement;
-        append_camera(out, magnified(view_.camera, times), options_.antialiasing, problems_);
+        const Camera camera = magnified(view_.camera, times);
+        const SceneHead head{view_.pixel_error,    report_.occurrences, times,
+                             includes_.refracts(), transparent(),       camera.position};
+        std::string out = head_text(head, shading_, sky_);
+        append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights) {
                 if (plan.empty() || !quality::lamp(light))
@@ -481,10 +390,7 @@ private:
                 append_light(out, light, bound, {shading_.area_samples, thorough()}, problems_);
         }
         out += '\n';
-        for (const Include& include : includes_) {
-            if (include.drawn)
-                out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
-        }
+        out += includes_.statements();
         out += '\n';
         objects.insert(0, out);
         return objects;
@@ -497,10 +403,8 @@ private:
     Problems& problems_;
     const Job& job_;
     const Shading shading_;
-    PictureFolder pictures_;
+    IncludeFiles includes_;
     std::vector<Use> uses_;
-    std::vector<Include> includes_;
-    std::unordered_map<Hash, size_t> known_;  // by file_hash without texel
     ExportReport report_;
     Sky sky_;
 };

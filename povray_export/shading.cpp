@@ -12,6 +12,8 @@ constexpr int kMostDepth = 9;
 constexpr int kMostTraceDepth = 100;
 constexpr int kMostAreaSamples = 129;
 constexpr int kMostSkyLights = 1024;
+constexpr int kMostHandings = 8;
+constexpr int kMostBounceRays = 1600;
 
 int sky_lights_of(Antialiasing antialiasing) {
     switch (antialiasing) {
@@ -23,6 +25,22 @@ int sky_lights_of(Antialiasing antialiasing) {
             break;
     }
     return 64;
+}
+
+struct Gathering {
+    int rays;
+    double error;
+};
+Gathering gathering_of(Antialiasing antialiasing) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return {60, 1};
+        case Antialiasing::Final:
+            return {200, 0.6};
+        case Antialiasing::Reference:
+            break;
+    }
+    return {800, 0.4};
 }
 
 /// POV-Ray refines by halving.
@@ -45,6 +63,12 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
     out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
                                              : std::clamp(shading.sky_lights, 0, kMostSkyLights);
     out.shadow_error = shading.shadow_error > 0 ? shading.shadow_error : pixel_error;
+    const Gathering gathering = gathering_of(antialiasing);
+    out.bounces = std::clamp(shading.bounces, 0, kMostHandings);
+    out.bounce_rays =
+        shading.bounce_rays > 0 ? std::min(shading.bounce_rays, kMostBounceRays) : gathering.rays;
+    out.bounce_error =
+        shading.bounce_error > 0 ? std::clamp(shading.bounce_error, 0.01, 1.0) : gathering.error;
     out.reflection_error = std::clamp(shading.reflection_error, 1.0, 255.0);
     return out;
 }

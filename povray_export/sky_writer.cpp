@@ -29,9 +29,10 @@ const char* keyword_of(PictureFormat format) {
     return "exr";
 }
 
-std::string statement_of(const World& world, const std::string& file) {
+/// pigment{...} of a ball around the origin, or of a sky sphere.
+std::string pigment_of(const World& world, const std::string& file) {
     const Picture& picture = *world.environment;
-    std::string out = "sky_sphere{pigment{image_map{";
+    std::string out = "pigment{image_map{";
     out += keyword_of(picture.format);
     out += " \"" + file + '"';
     if (picture.format != PictureFormat::Exr)
@@ -46,9 +47,7 @@ std::string statement_of(const World& world, const std::string& file) {
             out += ',';
         }
     }
-    out += "0,0,0>\n    emission rgb ";
-    append_vector(out, world.environment_strength, 6);
-    return out + "}\n\n";
+    return out + "0,0,0>\n    ";
 }
 
 double largest_of(const glm::dvec3& color) {
@@ -96,8 +95,27 @@ Sky write_sky(const World& world, const SkySampling& sampling, const std::filesy
         write_file(path, picture.bytes);
         sky.written = true;
     }
-    sky.statement = statement_of(world, sky.file);
+    sky.pigment = pigment_of(world, sky.file);
+    sky.strength = world.environment_strength;
     return sky;
+}
+
+std::string sky_sphere(const Sky& sky) {
+    std::string out = "sky_sphere{" + sky.pigment + "emission rgb ";
+    append_vector(out, sky.strength, 6);
+    return out + "}\n\n";
+}
+
+std::string sky_ball(const Sky& sky, const glm::dvec3& eye) {
+    constexpr double kFar = 5e6;  // POV-Ray sees as far as 1e7
+    std::string out = "sphere{0,1 hollow no_shadow no_radiosity texture{" + sky.pigment +
+                      "finish{ambient 0 diffuse 0 emission rgb ";
+    append_vector(out, sky.strength, 6);
+    out += "}} scale ";
+    append_number(out, kFar);
+    out += " translate ";
+    append_vector(out, eye, 15);
+    return out + "}\n\n";
 }
 
 }  // namespace lodestone::povray

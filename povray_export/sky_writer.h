@@ -19,7 +19,8 @@ struct SkySampling {
 struct Sky {
     glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
     std::vector<Light> lights;  // suns for the rest of an environment
-    std::string statement;      // sky_sphere{...}, or nothing where the background does
+    std::string pigment;        // pigment{...} of an environment's picture; "" without
+    glm::dvec3 strength{1.0};   // of what it shows
     std::string file;           // of an environment, relative to the scene; "" without
     uint64_t bytes = 0;         // of that file
     bool written = false;       // false: it was there already
@@ -29,5 +30,11 @@ struct Sky {
 /// becomes a problem, and its world counts as its color. Without lights all of its light is uniform. Throws Error(Io).
 Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
               Problems& problems);
+
+/// An environment's picture behind everything.
+std::string sky_sphere(const Sky& sky);
+/// The same as a ball around the eye, for pictures with indirect light: gathering rays go through it
+/// and meet the background, as lights stand for most of the picture.
+std::string sky_ball(const Sky& sky, const glm::dvec3& eye);
 
 }  // namespace lodestone::povray

@@ -124,6 +124,7 @@ int run_povray(const Arguments& arguments) {
     options.program = program ? program->c_str() : nullptr;
     if (arguments.has("light-error"))
         options.light_error = arguments.number("light-error", 0, 0, 1e6);
+    options.bounces = static_cast<int32_t>(arguments.number("bounces", 0, 0, 8));
     const char* found = nullptr;
     check(lds_povray_find(options.program, &found));
 

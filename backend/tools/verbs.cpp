@@ -113,6 +113,7 @@ const std::vector<Verb>& verbs() {
           {"antialias", "HOW", "off, final (default) or reference"},
           {"light-error", "PX",
            "the same for lights alone (default: as pixel-error; 0 = all of them)"},
+          {"bounces", "N", "of light from surface to surface (default 0: direct light only)"},
           {"false-color", "", "paint by kind and level of detail"},
           {"scene", "DIR", "keep the files for POV-Ray in this folder"},
           {"program", "POVRAY", "the program (default: $LODESTONE_POVRAY, else on the PATH)"},

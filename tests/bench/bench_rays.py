@@ -25,10 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 NEAR = 3  # pixels from a contact
 GOAL = 5.0  # of the largest difference there
-RADIOSITY = (
-    "global_settings{radiosity{pretrace_start .08 pretrace_end .02 count 80 nearest_count 6 "
-    "error_bound .6 recursion_limit 2}}\n"
-)
+BOUNCES = 2  # of light, in the scene that is lit by what its walls hand on
 SHOWN = 8  # how many times the sheet's differences are enlarged
 MARGIN = 4  # pixels between its pictures
 
@@ -76,7 +73,11 @@ class Bench:
         native = self.native
         final = native.Antialias.FINAL if antialias is None else antialias
         options = native.PovrayOptions(
-            antialias=final, light_error=light_error, threads=threads, covered_only=covered_only
+            antialias=final,
+            light_error=light_error,
+            threads=threads,
+            covered_only=covered_only,
+            bounces=BOUNCES if self.scene.radiosity else 0,
         )
         modifiers = native.Modifiers(ray_classes=classes) if classes else None
         view = native.View(self.camera, *self.size, pixel_error, modifiers=modifiers)
@@ -87,9 +88,6 @@ class Bench:
             export_s = sum(os.times()[:2]) - start
             seen = cut.summary().triangles
             met = [cut.rays(one).triangles for one in native.Rays if one & classes]
-        if self.scene.radiosity and not covered_only:
-            with (out / "scene.pov").open("a", encoding="utf-8") as scene:
-                scene.write(RADIOSITY)
         ran = native.povray_run(str(out), "p.png", options)
         return {
             "export_cpu_s": export_s,

@@ -74,6 +74,16 @@ static void test_two_cubes_share_one_file(const char* folder) {
     EXPECT(report.bytes == bytes);
     options.struct_size = sizeof options;
     options.shadow_error = 0;
+    options.bounces = 2;
+    options.bounce_error = NAN;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) ==
+           LDS_ERROR_INVALID_ARGUMENT);
+    options.bounce_error = 0;
+    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
+    EXPECT(count_in(path, "radiosity") == 0); /* scene.ini */
+    snprintf(path, sizeof path, "%s/scene.pov", folder);
+    EXPECT(count_in(path, "radiosity{") == 1);
+    options.bounces = 0;
     options.trace_depth = 9;
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
     snprintf(path, sizeof path, "%s/scene.pov", folder);

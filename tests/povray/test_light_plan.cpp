@@ -167,7 +167,7 @@ TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
     View view = from_above(1);
     view.camera.position = {2, 2, 0.5};
     view.camera.direction = {0, 0, 0};
-    EXPECT_NO_THROW(plan_lights(builder.model, {}, view, 1, problems));
+    EXPECT_NO_THROW(plan_lights(builder.model, {}, view, 1, 0, problems));
 }
 
 TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall) {
@@ -196,6 +196,45 @@ TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall)
         EXPECT_GT(found[own], 1);
         EXPECT_EQ(found[2 - own], 0);  // of the neighbors' color
         EXPECT_NEAR(found[own], full[own], 0.02 * full[own]);
+    }
+}
+
+// One wall behind all storeys of a tower, of which slits as wide as a pixel show a little: most storeys
+// had no point of the wall, so no lamp of theirs, and were black.
+TEST_F(PovrayRenderLights, AWallPieceAcrossStoreysHasTheLampsOfEachStoreyThatIsSeen) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    constexpr int kStoreys = 24;
+    constexpr double kPixel = 0.1;
+    Builder builder;
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
+    builder.place(box, box_at({-13, 3, -1}, {13, 3.2, kStoreys + 1}), "wall");
+    builder.place(box, box_at({-13, -0.2, -1}, {0, 0, kStoreys + 1}), "left of the slits");
+    builder.place(box, box_at({kPixel, -0.2, -1}, {13, 0, kStoreys + 1}), "right of the slits");
+    for (int i = 0; i <= kStoreys; ++i) {
+        builder.place(box, box_at({-13, 0, i - 0.05}, {13, 3, i + 0.05}), "floor");
+        builder.place(box, box_at({0, -0.2, i - 0.3}, {kPixel, 0, i + 0.3}), "between slits");
+    }
+    for (int i = 0; i < kStoreys; ++i) {
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.power = 60;
+        lamp.position = {0, 1.5, i + 0.5};
+        builder.model.lights.push_back(lamp);
+    }
+    View view = from_above(1);
+    view.width = 260;
+    view.height = 10 * kStoreys;
+    view.camera.position = {0, -20, kStoreys / 2.0};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {kPixel * view.width, 0, 0};
+    view.camera.up = {0, 0, kPixel * view.height};
+    const ExportOptions options = into("tower");
+    const scenes::Image image = scenes::render(builder.finish(), view, options);
+    EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
+    for (int i = 0; i < kStoreys; ++i) {
+        for (const int y : {4, 5})
+            EXPECT_GT(image.at(view.width / 2, 10 * i + y).x, 0.3) << "storey " << i;
     }
 }
 

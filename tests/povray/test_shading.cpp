@@ -15,6 +15,11 @@ TEST(PovrayShading, NothingSaidIsWhatAntialiasingStandsFor) {
     EXPECT_EQ(final.sky_lights, 24);
     EXPECT_EQ(final.shadow_error, 2);
     EXPECT_EQ(final.reflection_error, 1);
+    EXPECT_EQ(final.bounces, 0);
+    EXPECT_EQ(final.bounce_rays, 200);
+    EXPECT_EQ(final.bounce_error, 0.6);
+    EXPECT_EQ(filled_up({}, Antialiasing::Off, 1).bounce_rays, 60);
+    EXPECT_EQ(filled_up({}, Antialiasing::Reference, 1).bounce_rays, 800);
     EXPECT_EQ(filled_up({}, Antialiasing::Off, 1).area_samples, 1);
     EXPECT_EQ(filled_up({}, Antialiasing::Off, 1).sky_lights, 12);
     EXPECT_EQ(filled_up({}, Antialiasing::Reference, 1).sky_lights, 64);
@@ -50,11 +55,19 @@ TEST(PovrayShading, AreaSamplesAreHalvings) {
 TEST(PovrayShading, NonsenseStaysWithinWhatPovrayTakes) {
     Shading said;
     said.depth = said.trace_depth = said.sky_lights = 1 << 30;
+    said.bounces = said.bounce_rays = 1 << 30;
+    said.bounce_error = 1e30;
     said.threshold = said.reflection_error = 1e30;
     const Shading out = filled_up(said, Antialiasing::Final, 1);
     EXPECT_LE(out.depth, 9);
     EXPECT_LE(out.trace_depth, 256);
     EXPECT_LE(out.sky_lights, 1024);
     EXPECT_LE(out.threshold, 3);
+    EXPECT_EQ(out.bounces, 8);
+    EXPECT_EQ(out.bounce_rays, 1600);
+    EXPECT_EQ(out.bounce_error, 1);
+    said.bounces = said.bounce_rays = -5;
+    EXPECT_EQ(filled_up(said, Antialiasing::Final, 1).bounces, 0);
+    EXPECT_EQ(filled_up(said, Antialiasing::Final, 1).bounce_rays, 200);
     EXPECT_LE(out.reflection_error, 255);
 }

@@ -48,10 +48,11 @@ class Usage(unittest.TestCase):
         self.assertIn(".png", self.refused("render", "a.blend", "--out", "a.jpg"))
 
     def test_overrides_and_a_budget_travel_to_blender(self):
-        own = ("--shadows=0.5", "--trace-depth=9", "--indirect=0", "--budget=50M")
+        own = ("--shadows=0.5", "--trace-depth=9", "--indirect=0", "--bounces=2", "--budget=50M")
         (job,) = parse("render", "a.blend", "--out", "a.png", "--antialias=automatic", *own)
         (picture,) = FileJob.load(job.dump()).pictures
-        self.assertEqual(picture.overrides, {"shadows": 0.5, "trace_depth": 9, "indirect": 0})
+        overrides = {"shadows": 0.5, "trace_depth": 9, "indirect": 0, "bounces": 2}
+        self.assertEqual(picture.overrides, overrides)
         self.assertEqual((picture.budget, picture.antialias), (50_000_000, "automatic"))
         (plain,) = parse("render", "a.blend", "--out", "a.png")
         self.assertEqual((plain.pictures[0].overrides, plain.pictures[0].budget), ({}, None))
@@ -89,6 +90,7 @@ class Usage(unittest.TestCase):
             ("--trace-depth", "0"),
             ("--area-samples", "1000"),
             ("--indirect", "many"),
+            ("--bounces", "9"),
         ):
             said = self.refused("render", "a.blend", "--out", "a.png", f"{option}={value}")
             self.assertIn(option, said)

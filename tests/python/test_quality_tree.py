@@ -42,6 +42,19 @@ class Inherited(unittest.TestCase):
             for key in ("area_samples", "indirect", "trace_depth", "antialias_depth"):
                 self.assertGreaterEqual(getattr(finer, key), getattr(coarser, key), key)
             self.assertLessEqual(finer.antialias_threshold, coarser.antialias_threshold)
+            self.assertGreaterEqual(finer.bounce_rays, coarser.bounce_rays)
+            self.assertLessEqual(finer.bounce_error, coarser.bounce_error)
+
+    def test_light_goes_from_surface_to_surface_only_where_asked_for(self):
+        for error in PRESETS:
+            self.assertEqual(quality(error).bounces, 0)
+            self.assertEqual(quality(error, {"bounces": 3}).povray()["bounces"], 3)
+
+    def test_a_rough_model_gathers_light_roughly(self):
+        found = [(one.bounce_rays, one.bounce_error) for one in map(quality, PRESETS)]
+        self.assertEqual(found, [(60, 1.0), (100, 0.848528), (200, 0.6), (200, 0.6)])
+        exact = quality(8.0, {"antialias": "REFERENCE"})
+        self.assertEqual((exact.bounce_rays, exact.bounce_error), (800, 0.4))
 
 
 class Overridden(unittest.TestCase):
@@ -76,12 +89,15 @@ class Overridden(unittest.TestCase):
     def test_every_override_reaches_what_povray_gets(self):
         plain = quality(1.0).povray()
         own = {"textures": 4.0, "shadows": 4.0, "reflections": 4.0, "trace_depth": 9, "lights": 4.0}
-        own |= {"area_samples": 3, "indirect": 0}
+        own |= {"area_samples": 3, "indirect": 0, "bounces": 2}
         changed = set()
         for key, value in own.items():
             found = quality(1.0, {key: value}).povray()
             changed |= {name for name in found if found[name] != plain[name]}
-        self.assertEqual(set(plain) - changed, {"antialias_threshold", "antialias_depth"})
+        gathering = {"bounce_rays", "bounce_error"}
+        self.assertEqual(
+            set(plain) - changed, {"antialias_threshold", "antialias_depth"} | gathering
+        )
         self.assertEqual(quality(1.0, {"indirect": 0}).povray()["sky_lights"], -1)
 
 

@@ -1077,6 +1077,10 @@ typedef struct lds_povray_options {
                            as many steps of an 8-bit display on average */
     double reflection_error; /* 255ths; rays that add less are not followed; usual 1 */
     double texture_error;    /* pixels; what image textures may be blurred by; usual 0 */
+    int32_t bounces;     /* of light from surface to surface, up to 8; usual 0: direct light only */
+    int32_t bounce_rays; /* that gather it; usual 200, with OFF 60, with REFERENCE 800 */
+    double bounce_error; /* how far what is gathered is used again (0 ... 1); usual .6, with OFF 1,
+                              with REFERENCE .4 */
 } lds_povray_options;
 LDS_API lds_povray_options lds_povray_options_default(void);
 

@@ -23,6 +23,9 @@ _SHADING = (
     "light_error",
     "reflection_error",
     "texture_error",
+    "bounces",
+    "bounce_rays",
+    "bounce_error",
 )
 
 
@@ -44,6 +47,9 @@ class PovrayOptions:
     light_error: float = -1.0
     reflection_error: float = 0.0
     texture_error: float = 0.0
+    bounces: int = 0
+    bounce_rays: int = 0
+    bounce_error: float = 0.0
 
     def struct(self) -> structs.PovrayOptions:
         out = library().lds_povray_options_default()

@@ -38,6 +38,9 @@ povray::Shading shading_of(const lds_povray_options& options) {
     out.shadow_error = error_of(options.shadow_error, "shadow_error");
     out.reflection_error = error_of(options.reflection_error, "reflection_error");
     out.texture_error = error_of(options.texture_error, "texture_error");
+    out.bounces = options.bounces;
+    out.bounce_rays = options.bounce_rays;
+    out.bounce_error = error_of(options.bounce_error, "bounce_error");
     return out;
 }
 

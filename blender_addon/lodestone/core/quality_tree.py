@@ -71,6 +71,24 @@ def _indirect(sampling: Sampling) -> int:
     return 12 if sampling.kind == OFF else max(12, 24 - 4 * _halvings(sampling.rough))
 
 
+def _bounces(sampling: Sampling) -> int:
+    """Only where asked for: it takes several times as long."""
+    return 0
+
+
+def _bounce_rays(sampling: Sampling) -> int:
+    if sampling.kind == REFERENCE:
+        return 800
+    return 60 if sampling.kind == OFF else max(60, round(200 / sampling.rough))
+
+
+def _bounce_error(sampling: Sampling) -> float:
+    """How far POV-Ray uses gathered light again."""
+    if sampling.kind == REFERENCE:
+        return 0.4
+    return 1.0 if sampling.kind == OFF else min(1.0, 0.6 * math.sqrt(sampling.rough))
+
+
 def _trace_depth(error: float) -> int:
     return max(2, 5 - _halvings(error))
 
@@ -114,6 +132,12 @@ CONTROLS = (
         "How many lights stand for the image around the scene: more give finer shadows of the sky. "
         "0: its light is the same everywhere, without shadows",
     ),
+    Control(
+        "bounces", "Bounces", "antialias", _bounces, "", 0, 8,
+        "How many times light goes from surface to surface before the camera sees it, as Diffuse "
+        "Bounces do in Cycles: a room behind a window is not black. It takes several times as "
+        "long. 0: direct light only",
+    ),
 )  # fmt: skip
 CONTROL = {control.key: control for control in CONTROLS}
 
@@ -132,6 +156,9 @@ class Quality(NamedTuple):
     antialias_depth: int
     area_samples: int
     indirect: int
+    bounces: int
+    bounce_rays: int
+    bounce_error: float
 
     def povray(self) -> dict[str, float]:
         """As fields of the library's PovrayOptions, but antialias, which is an enum there."""
@@ -145,6 +172,9 @@ class Quality(NamedTuple):
             "light_error": self.lights if self.antialias != REFERENCE else 0.0,
             "reflection_error": max(self.reflections, 1.0),
             "texture_error": self.textures,
+            "bounces": self.bounces,
+            "bounce_rays": self.bounce_rays,
+            "bounce_error": self.bounce_error,
         }
 
 
@@ -161,6 +191,8 @@ def quality(pixel_error: float, overrides: Mapping[str, Value] | None = None) ->
     return Quality(
         antialias_threshold=round(min(0.1 * sampling.rough, 1.0), 6),
         antialias_depth=3 if sampling.rough <= 1.0 else 2,
+        bounce_rays=_bounce_rays(sampling),
+        bounce_error=round(_bounce_error(sampling), 6),
         **found,
     )
 

@@ -23,6 +23,9 @@ class PovrayOptions(Sized):
         ("light_error", c_double),
         ("reflection_error", c_double),
         ("texture_error", c_double),
+        ("bounces", c_int32),
+        ("bounce_rays", c_int32),
+        ("bounce_error", c_double),
     ]
 
 
