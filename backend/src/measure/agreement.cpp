@@ -2,6 +2,8 @@
 #include "measure/agreement.h"
 
 #include "base/parallel.h"
+#include "measure/glass.h"
+#include "measure/misses.h"
 #include "measure/sobol.h"
 #include "measure/visible_sampler.h"
 
@@ -61,23 +63,6 @@ std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
             kUnit * static_cast<double>(bits & 0xffffffffu)};
 }
 
-/// Of a hit, towards the viewer.
-glm::dvec3 normal_at(const Mesh& mesh, const ray::Hit& hit, const glm::dvec3& viewer) {
-    const Triangle& t = mesh.triangles[hit.triangle];
-    glm::dvec3 flat = area_vector(mesh, hit.triangle);
-    if (glm::dot(flat, viewer) < 0)
-        flat = -flat;
-    glm::dvec3 normal = flat;
-    if (!mesh.normals.empty()) {
-        normal = (1 - hit.u - hit.v) * glm::dvec3(mesh.normals[t.x]) +
-                 hit.u * glm::dvec3(mesh.normals[t.y]) + hit.v * glm::dvec3(mesh.normals[t.z]);
-        if (glm::dot(normal, flat) < 0)
-            normal = -normal;
-    }
-    const double length = glm::length(normal);
-    return length > 0 && std::isfinite(length) ? normal / length : viewer;
-}
-
 /// Around all that a mesh has in a view, in half sides of the picture from its middle.
 struct Frame {
     glm::dvec2 low{std::numeric_limits<double>::infinity()};
@@ -98,147 +83,6 @@ struct Frame {
         return x >= low.x && x <= high.x && y >= low.y && y <= high.y;
     }
 };
-
-/// Follows rays through what refracts them.
-class Glass {
-public:
-    /// Keeps references.
-    Glass(const Mesh& mesh, const ray::SkinPtr& skin, const ray::Scene& scene, double lift)
-        : mesh_(mesh), skin_(skin), scene_(scene), lift_(lift) {
-        if (!skin || !skin->transmits())
-            return;
-        std::vector<uint8_t> keep(mesh.triangles.size(), 0);
-        for (uint32_t i = 0; i < keep.size(); ++i)
-            keep[i] = clear(i) ? 0 : 1;
-        if (std::find(keep.begin(), keep.end(), 0) != keep.end())
-            rest_.emplace(subset(mesh, keep), skin);
-    }
-
-    /// What throws shadows.
-    const ray::Scene& opaque() const { return rest_ ? *rest_ : scene_; }
-
-    /// The first thing that is met behind any glass; the ray ends as it gets there.
-    ray::Hit first_hit(glm::dvec3 from, glm::dvec3& along) const {
-        constexpr int kMostSurfaces = 8;
-        ray::Hit hit = scene_.first_hit(from, along);
-        for (int i = 0; rest_ && hit.hit && clear(hit.triangle); ++i) {
-            if (i == kMostSurfaces)
-                return {};
-            bend(hit, along);
-            from = hit.point + lift_ * along;
-            hit = scene_.first_hit(from, along);
-        }
-        return hit;
-    }
-
-private:
-    bool clear(uint32_t triangle) const {
-        constexpr double kClear = 0.5;
-        return skin_->opacity(mesh_, triangle, 1.0 / 3, 1.0 / 3) < kClear &&
-               skin_->material(mesh_.slot(triangle)).transmission > kClear;
-    }
-    void bend(const ray::Hit& hit, glm::dvec3& along) const {
-        const bool enters = glm::dot(area_vector(mesh_, hit.triangle), along) < 0;
-        const glm::dvec3 normal = normal_at(mesh_, hit, -along);
-        const double ior = std::max(skin_->material(mesh_.slot(hit.triangle)).ior, 0.1);
-        const glm::dvec3 inside = glm::refract(along, normal, enters ? 1 / ior : ior);
-        // Where nothing gets out all of it is reflected.
-        along = glm::dot(inside, inside) > 0.5 ? glm::normalize(inside)
-                                               : glm::normalize(glm::reflect(along, normal));
-    }
-
-    const Mesh& mesh_;
-    const ray::SkinPtr& skin_;
-    const ray::Scene& scene_;
-    double lift_;
-    std::optional<ray::Scene> rest_;  // without the glass; none where there is none
-};
-
-/// Differences between pixels of one size, with the noise of their samples and without.
-struct Difference {
-    double sum = 0;       // of magnitudes
-    double squares = 0;   // likewise
-    double products = 0;  // of the differences of both halves of the samples
-
-    void add(double first, double second) {
-        const double both = 0.5 * (first + second);
-        sum += std::abs(both);
-        squares += both * both;
-        products += first * second;
-    }
-    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent between
-    /// the halves, so their products know what it added to the squares.
-    double mean(double count) const {
-        const double real = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0;
-        return sum / count * std::sqrt(real);
-    }
-};
-
-/// What pixels of one size tell.
-struct Misses {
-    size_t covered = 0;  // pixels that either picture covers
-    Difference coverage;
-    Difference light;         // of three colors
-    double finest_light = 0;  // sum
-
-    /// Over what may be missed.
-    double worst() const {
-        if (covered == 0)
-            return 0;
-        const auto count = static_cast<double>(covered);
-        const double bright = finest_light / (3 * count);
-        return std::max(coverage.mean(count) / kMostCoverageOff,
-                        bright > 0 ? light.mean(3 * count) / bright / kMostLightOff : 0);
-    }
-};
-
-/// A pixel: means over every other sample, and over those between.
-struct Pixel {
-    std::array<glm::dvec4, 2> halves{glm::dvec4(0.0), glm::dvec4(0.0)};
-
-    Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
-        std::array<double, 2> counts{};
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
-                const size_t half = ((x + y) % 2 != 0) != odd ? 1 : 0;
-                halves[half] += glm::dvec4(corner[static_cast<ptrdiff_t>(y) * stride + x]);
-                ++counts[half];
-            }
-        }
-        for (size_t half = 0; half < 2; ++half)
-            halves[half] /= counts[half];
-    }
-};
-
-Misses compare(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, size_t views,
-               int side, int pixel) {
-    constexpr double kCovered = 1.0 / 255;
-    Misses out;
-    for (size_t view = 0; view < views; ++view) {
-        for (int row = 0; row < side; row += pixel) {
-            for (int column = 0; column < side; column += pixel) {
-                const size_t at = (view * static_cast<size_t>(side) + static_cast<size_t>(row)) *
-                                      static_cast<size_t>(side) +
-                                  static_cast<size_t>(column);
-                const bool odd = (row / pixel + column / pixel) % 2 != 0;
-                const Pixel first(&a[at], side, pixel, odd);
-                const Pixel second(&b[at], side, pixel, odd);
-                if (std::max(first.halves[0].w + first.halves[1].w,
-                             second.halves[0].w + second.halves[1].w) <= 2 * kCovered)
-                    continue;
-                ++out.covered;
-                const std::array<glm::dvec4, 2> off{first.halves[0] - second.halves[0],
-                                                    first.halves[1] - second.halves[1]};
-                out.coverage.add(off[0].w, off[1].w);
-                for (int i = 0; i < 3; ++i)
-                    out.light.add(off[0][i], off[1][i]);
-                for (const glm::dvec4& half : first.halves)
-                    out.finest_light += 0.5 * (half.x + half.y + half.z);
-            }
-        }
-    }
-    return out;
-}
 
 /// What a slot shows where nothing is looked up, and whether something is.
 struct Shows {
@@ -429,7 +273,7 @@ AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) 
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
             continue;
-        const double misses = compare(finest_, other, kViews, side_, pixel).worst();
+        const double misses = misses_of(finest_, other, kViews, side_, pixel).worst();
         if (misses > 1) {
             if (last > 0) {
                 const double part =

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/misses.h"
+
+#include <array>
+
+namespace lodestone::measure {
+namespace {
+
+/// A pixel: means over every other sample, and over those between.
+struct Pixel {
+    std::array<glm::dvec4, 2> halves{glm::dvec4(0.0), glm::dvec4(0.0)};
+
+    Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
+        std::array<double, 2> counts{};
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const size_t half = ((x + y) % 2 != 0) != odd ? 1 : 0;
+                halves[half] += glm::dvec4(corner[static_cast<ptrdiff_t>(y) * stride + x]);
+                ++counts[half];
+            }
+        }
+        for (size_t half = 0; half < 2; ++half)
+            halves[half] /= counts[half];
+    }
+};
+
+}  // namespace
+
+Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, size_t views,
+                 int side, int pixel) {
+    constexpr double kCovered = 1.0 / 255;
+    Misses out;
+    for (size_t view = 0; view < views; ++view) {
+        for (int row = 0; row < side; row += pixel) {
+            for (int column = 0; column < side; column += pixel) {
+                const size_t at = (view * static_cast<size_t>(side) + static_cast<size_t>(row)) *
+                                      static_cast<size_t>(side) +
+                                  static_cast<size_t>(column);
+                const bool odd = (row / pixel + column / pixel) % 2 != 0;
+                const Pixel first(&a[at], side, pixel, odd);
+                const Pixel second(&b[at], side, pixel, odd);
+                if (std::max(first.halves[0].w + first.halves[1].w,
+                             second.halves[0].w + second.halves[1].w) <= 2 * kCovered)
+                    continue;
+                ++out.covered;
+                const std::array<glm::dvec4, 2> off{first.halves[0] - second.halves[0],
+                                                    first.halves[1] - second.halves[1]};
+                out.coverage.add(off[0].w, off[1].w);
+                for (int i = 0; i < 3; ++i)
+                    out.light.add(off[0][i], off[1][i]);
+                for (const glm::dvec4& half : first.halves)
+                    out.finest_light += 0.5 * (half.x + half.y + half.z);
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace lodestone::measure
