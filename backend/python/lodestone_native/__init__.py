@@ -45,15 +45,13 @@ from .image import (
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
 from .measure import surface_inertia
-from .model import (
-    ANY_LEVEL,
+from .model import ANY_LEVEL, Model, texture
+from .options import (
     BuildOptions,
     LooseOptions,
     MeasureOptions,
-    Model,
     SimplifyOptions,
     StructureOptions,
-    texture,
 )
 from .povray import (
     PovrayOptions,

@@ -13,6 +13,13 @@ from .handle import Handle
 from .enums import Channel, Extension, Role
 from .job import Job
 from .library import check, library
+from .options import (
+    BuildOptions,
+    LooseOptions,
+    MeasureOptions,
+    StructureOptions,
+    changed,
+)
 from .structs import Object, record, text_in
 from .view import Camera, Light, Vector
 
@@ -41,51 +48,6 @@ def texture(
         scale=tuple(scale),
         offset=tuple(offset),
     )
-
-
-class StructureOptions(structs.StructureOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return _changed(library().lds_structure_options_default(), changes)
-
-
-class LooseOptions(structs.LooseOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return _changed(library().lds_loose_options_default(), changes)
-
-
-class MeasureOptions(structs.MeasureOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return _changed(library().lds_measure_options_default(), changes)
-
-
-class SimplifyOptions(structs.SimplifyOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return _changed(library().lds_simplify_options_default(), changes)
-
-
-class BuildOptions(structs.BuildOptions):
-    """`scope`: a sequence of Objects; only what is reachable from them is built. `poses`: Models of
-    the same scene in other frames, to be kept open for as long as the options are used. `view`: a
-    View; only what its picture gains most from is built, in `share` of the picture's time."""
-
-    def __new__(
-        cls,
-        scope: Sequence[Object] = (),
-        poses: "Sequence[Model]" = (),
-        view: Any = None,
-        **changes: Any,
-    ) -> Any:
-        options = _changed(library().lds_build_options_default(), changes)
-        if poses:
-            handles = (ctypes.c_void_p * len(poses))(*(pose.handle for pose in poses))
-            options.poses = handles
-            options.pose_count = len(poses)
-        if scope:
-            options.scope = (Object * len(scope))(*scope)  # ctypes keeps it alive with options
-            options.scope_count = len(scope)
-        if view is not None:
-            options.view = ctypes.pointer(view.struct())
-        return options
 
 
 class Model(Handle):
@@ -162,7 +124,7 @@ class Model(Handle):
     def add_material(self, name: str, **fields: Any) -> int:
         """`fields`: those of lodestone.h's lds_material, textures as texture() makes them; the
         rest keeps its default. Its index."""
-        made = _changed(library().lds_material_default(), {"name": text_in(name), **fields})
+        made = changed(library().lds_material_default(), {"name": text_in(name), **fields})
         index = ctypes.c_uint32()
         check(library().lds_model_add_material(self.handle, made, ctypes.byref(index)))
         return index.value
@@ -490,12 +452,3 @@ class Model(Handle):
 
 def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
     return structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms))
-
-
-def _changed(options: Any, changes: dict[str, Any]) -> Any:
-    names = {field[0] for field in options._fields_}
-    for name, value in changes.items():
-        if name not in names:
-            raise TypeError(f"{type(options).__name__} has no {name}")
-        setattr(options, name, value)
-    return options
