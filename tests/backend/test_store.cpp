@@ -8,10 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <thread>
 
 using namespace lodestone;
 namespace fs = std::filesystem;
@@ -361,43 +359,6 @@ TEST(Store, TilesHoldTheirChildrenAndErrorsFall) {
     EXPECT_EQ(tiles, 1u + 2u + 4u * 5u);
     EXPECT_GE(tileset.at("geometricError").get<double>(),
               tileset.at("root").at("geometricError").get<double>());
-}
-
-TEST(Store, TwoWritersOfOneStoreAreBothDone) {
-    const segment::Store store(scratch("locked"));
-    const Model model = rich_model();
-    store.write(models::row_of_balls(2), {});
-    std::thread second;
-    {
-        const FileLock lock(store.folder() / "lock");
-        second = std::thread([&] { store.write(model, {}); });
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        EXPECT_NE(store.read().objects[0].name, model.objects[0].name);  // readers never wait
-    }
-    second.join();
-    EXPECT_EQ(store.read().objects[0].name, model.objects[0].name);
-}
-
-TEST(Store, WaitingForAnotherWriterCanBeCancelled) {
-    const segment::Store store(scratch("waiting"));
-    store.write(models::row_of_balls(2), {});
-    const FileLock lock(store.folder() / "lock");
-    const int32_t cancel = 1;
-    try {
-        store.write(rich_model(), Job(&cancel, nullptr, nullptr));
-        ADD_FAILURE() << "written while another one writes";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.status, Status::Cancelled);
-    }
-}
-
-TEST(Store, CancelledWriteLeavesTheOldStore) {
-    const segment::Store store(scratch("cancelled"));
-    store.write(models::row_of_balls(2), {});
-    const auto before = read_file(store.folder() / "tileset.json");
-    const int32_t cancel = 1;
-    EXPECT_THROW(store.write(rich_model(), Job(&cancel, nullptr, nullptr)), Error);
-    EXPECT_EQ(read_file(store.folder() / "tileset.json"), before);
 }
 
 TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {

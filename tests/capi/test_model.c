@@ -1,42 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Guards what a C program does with a model: files, problems, cameras, measuring, simplifying,
+/* Guards what a C program does with a model: files, problems, cameras, measuring,
    occurrences and the choices of a cut, each against a known answer. */
 #include "cube.h"
-
-enum { CELLS = 16 };
-
-/* A flat square of 2 CELLS^2 triangles, alone in its model. */
-static lds_model* flat_grid(lds_object* grid) {
-    static float positions[(CELLS + 1) * (CELLS + 1)][3];
-    static uint32_t triangles[2 * CELLS * CELLS][3];
-    for (uint32_t j = 0; j <= CELLS; ++j) {
-        for (uint32_t i = 0; i <= CELLS; ++i) {
-            positions[j * (CELLS + 1) + i][0] = (float)i / CELLS;
-            positions[j * (CELLS + 1) + i][1] = (float)j / CELLS;
-        }
-    }
-    for (uint32_t j = 0; j < CELLS; ++j) {
-        for (uint32_t i = 0; i < CELLS; ++i) {
-            const uint32_t at = j * (CELLS + 1) + i;
-            uint32_t(*pair)[3] = &triangles[2 * (j * CELLS + i)];
-            pair[0][0] = pair[1][0] = at;
-            pair[0][1] = at + 1;
-            pair[0][2] = pair[1][1] = at + CELLS + 2;
-            pair[1][2] = at + CELLS + 1;
-        }
-    }
-    lds_mesh_view view = cube_view();
-    view.positions = &positions[0][0];
-    view.vertex_count = (CELLS + 1) * (CELLS + 1);
-    view.triangles = &triangles[0][0];
-    view.triangle_count = 2 * CELLS * CELLS;
-    lds_model* model = NULL;
-    EXPECT(lds_model_create(&model) == LDS_OK);
-    const lds_object_info info = info_of("grid", "Grid");
-    EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, grid) == LDS_OK);
-    EXPECT(lds_model_set_root(model, *grid) == LDS_OK);
-    return model;
-}
 
 static void test_files_keep_the_model(const char* path) {
     lds_object cube;
@@ -394,68 +359,6 @@ static void test_a_cube_is_seen_all_around(void) {
     lds_model_destroy(model);
 }
 
-static void test_simplifying_a_flat_grid_costs_no_shape(void) {
-    lds_object grid;
-    lds_model* model = flat_grid(&grid);
-    lds_simplify_options options = lds_simplify_options_default();
-    lds_simplify_report report;
-    memset(&report, 0, sizeof report);
-    report.struct_size = sizeof report;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    options.ratio = 0.25;
-    options.triangles = 10;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    EXPECT(report.triangles_before == 0);
-    options.triangles = 0;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-    EXPECT(report.triangles_before == 2 * CELLS * CELLS);
-    EXPECT(report.triangles <= CELLS * CELLS / 2 && report.triangles > CELLS * CELLS / 4);
-    EXPECT(report.error < 0 && report.max_error < 0); /* not asked for */
-    options.ratio = 0;
-    options.triangles = 8;
-    options.measure = 1;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-    EXPECT(report.triangles >= 2 && report.triangles <= 8);
-    EXPECT(report.error >= 0 && report.error < 1e-6 && report.max_error < 1e-6);
-    options.triangles = 0;
-    options.pixels = 1;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    options.height_px = 100;
-    options.mode = 3;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    for (options.mode = LDS_SIMPLIFY_CLUSTER; options.mode >= LDS_SIMPLIFY_FAST; --options.mode) {
-        EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-        EXPECT(report.triangles > 0 && report.error >= 0 && report.error <= 0.01);
-    }
-    options.keep_topology = 1;
-    options.mode = LDS_SIMPLIFY_CLUSTER;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    options.mode = LDS_SIMPLIFY_BEST;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-    lds_totals totals = {sizeof totals, 0, 0, 0, 0, 0};
-    EXPECT(lds_model_totals(model, &totals) == LDS_OK);
-    EXPECT(totals.triangles_placed == report.triangles);
-    lds_model_destroy(model);
-}
-
-static void test_simplify_options_of_version_1_go_on_working(void) {
-    lds_object grid;
-    lds_model* model = flat_grid(&grid);
-    lds_simplify_options options = lds_simplify_options_default();
-    lds_simplify_report report;
-    memset(&report, 0, sizeof report);
-    report.struct_size = sizeof report;
-    options.ratio = 0.25;
-    options.pixels = 3; /* behind the end of the older struct */
-    options.mode = 99;
-    options.struct_size = offsetof(lds_simplify_options, pixels);
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-    EXPECT(report.triangles > 0 && report.triangles <= CELLS * CELLS / 2);
-    options.struct_size -= 8;
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
-    lds_model_destroy(model);
-}
-
 static void test_choices_carry_the_path_of_placements(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -494,8 +397,6 @@ int main(void) {
         test_pictures_and_textures_are_checked();
         test_texture_coordinates_are_projected();
         test_a_cube_is_seen_all_around();
-        test_simplifying_a_flat_grid_costs_no_shape();
     }
-    test_simplify_options_of_version_1_go_on_working();
     return finish();
 }
