@@ -3,9 +3,12 @@
 
 import unittest
 
-from repository import CPP_ENDINGS, files_ending, run
+from repository import CPP_ENDINGS, files_ending, run, text_of
 
 FLAKE8 = ("flake8", "--isolated", "--max-line-length=100", "--extend-ignore=E203,W503,F722,F821")
+# Blender's properties are annotations that no type has the name of; elsewhere a name without a
+# meaning is an error that shows when it is used.
+NAMES = ("flake8", "--isolated", "--select=F821")
 
 
 class Formatting(unittest.TestCase):
@@ -25,6 +28,11 @@ class Formatting(unittest.TestCase):
 
     def test_flake8_finds_nothing(self):
         self.assert_silent(*FLAKE8, *files_ending(".py"))
+
+    def test_names_that_mean_nothing_were_found_by_blender_alone(self):
+        sources = [path for path in files_ending(".py") if "bpy.props" not in text_of(path)]
+        self.assertGreater(len(sources), 5)
+        self.assert_silent(*NAMES, *sources)
 
 
 if __name__ == "__main__":
