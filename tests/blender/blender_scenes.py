@@ -104,6 +104,12 @@ def sun(name="Sun", energy=3.0):
     return link(bpy.data.objects.new(name, data))
 
 
+def encoded(value):
+    """Linear light as an sRGB display shows it, 0 to 1."""
+    value = min(1.0, max(0.0, value))
+    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
 def extract(compare=True, cameras=()):
     """(extraction, differences to the depsgraph); close the extraction's model."""
     from lodestone import extract_engine

@@ -15,11 +15,6 @@ LIMIT = 5 / 255  # mean of display values
 BOUNCES = 2
 
 
-def encoded(value):
-    value = min(1.0, max(0.0, value))
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-
 class Bounces(unittest.TestCase):
     def setUp(self):
         """A box of 2 m, open to the camera, its left wall red, a block in it."""
@@ -63,7 +58,7 @@ class Bounces(unittest.TestCase):
         image = bpy.data.images.load(self.scene.render.filepath)
         pixels = list(image.pixels)
         bpy.data.images.remove(image)
-        return [encoded(value) for i, value in enumerate(pixels) if i % 4 < 3]
+        return [scenes.encoded(value) for i, value in enumerate(pixels) if i % 4 < 3]
 
     def differs(self, ours, theirs):
         return sum(abs(a - b) for a, b in zip(ours, theirs)) / len(theirs)

@@ -16,11 +16,6 @@ WIDTH, HEIGHT = 48, 32
 LIMIT = 3 / 255  # of display values, Standard
 
 
-def encoded(value):
-    value = min(1.0, max(0.0, value))
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-
 def lamp(kind, location, turn=(0, 0, 0), scale=(1, 1, 1), **values):
     data = bpy.data.lights.new("Lamp", kind)
     for name, value in values.items():
@@ -69,7 +64,7 @@ class Lights(unittest.TestCase):
         image = bpy.data.images.load(self.scene.render.filepath)
         pixels = list(image.pixels)
         bpy.data.images.remove(image)
-        values = [encoded(value) for value in pixels]
+        values = [scenes.encoded(value) for value in pixels]
         return [
             [values[4 * (y * WIDTH + x) : 4 * (y * WIDTH + x) + 3] for x in range(WIDTH)]
             for y in range(HEIGHT)

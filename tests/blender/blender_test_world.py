@@ -16,11 +16,6 @@ WIDTH, HEIGHT = 48, 32
 LIMIT = 3 / 255  # of display values, Standard
 
 
-def encoded(value):
-    value = min(1.0, max(0.0, value))
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-
 class World(unittest.TestCase):
     def setUp(self):
         self.scene = scenes.fresh()
@@ -234,7 +229,7 @@ class World(unittest.TestCase):
         image = bpy.data.images.load(self.scene.render.filepath)
         pixels = list(image.pixels)
         bpy.data.images.remove(image)
-        return [encoded(value) for i, value in enumerate(pixels) if i % 4 < 3]
+        return [scenes.encoded(value) for i, value in enumerate(pixels) if i % 4 < 3]
 
     def test_an_image_is_seen_and_lights_as_in_cycles(self):
         self.environment(self.sky(), (0.2, 0.1, 1.0))
