@@ -115,7 +115,7 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
                     const approximate::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
                     const Whole& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one that
-    // shows as much (of 340 levels a tenth came to .6 of its error or less, half to as much or more):
+    // shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or more):
     // the most solids that may pay are looked for among those.
     constexpr double kNearer = 0.7;
     constexpr uint32_t kFewRays = 1024;
