@@ -8,6 +8,8 @@
 #include "build/flatten.h"
 #include "build/followed.h"
 #include "build/layers.h"
+#include "build/palette.h"
+#include "build/shelf.h"
 #include "build/stand_ins.h"
 
 #include <algorithm>
@@ -24,56 +26,6 @@ constexpr const char* kNotFollowed =
     "drawn as it is: its faces, or what is painted on them, are not those of any frame that levels "
     "are made from";
 
-/// Finds stored objects by what they were built from.
-class Shelf {
-public:
-    Shelf(const segment::Store& store, bool ignore) {
-        if (ignore || !store.exists())
-            return;
-        try {
-            stored_ = store.read();
-        } catch (const Error&) {
-            return;  // unreadable or of another version: everything is built again
-        }
-        for (const Object& object : stored_.objects) {
-            if (object.build_hash != 0 && store.has_stand_ins(object))
-                by_hash_.try_emplace(object.build_hash, &object);
-        }
-    }
-
-    const Object* find(Hash build_hash) const {
-        const auto at = by_hash_.find(build_hash);
-        return at == by_hash_.end() ? nullptr : at->second;
-    }
-
-    const Model& stored() const { return stored_; }
-
-private:
-    Model stored_;
-    std::map<Hash, const Object*> by_hash_;
-};
-
-/// Adds materials once by content; names of the first stay.
-class Palette {
-public:
-    explicit Palette(Model& model) : model_(model) {
-        for (uint32_t i = 0; i < model.materials.size(); ++i)
-            by_hash_.try_emplace(hash_of(model.materials[i]), i);
-    }
-
-    uint32_t index_of(const Material& material) {
-        const auto [at, fresh] =
-            by_hash_.try_emplace(hash_of(material), static_cast<uint32_t>(model_.materials.size()));
-        if (fresh)
-            model_.materials.push_back(material);
-        return at->second;
-    }
-
-private:
-    Model& model_;
-    std::map<Hash, uint32_t> by_hash_;
-};
-
 /// `layers`: what layers_of tells of it.
 Hash build_hash_of(const Object& object, Hash settings, Hash layers) {
     const Hash hash = Hasher().value(object.source_hash).value(settings).result();
@@ -87,19 +39,6 @@ MeshSource mesh_source_of(const segment::Store& store) {
             return *held;
         return store.load_mesh(representation.summary.hash);
     };
-}
-
-/// Takes over a stored object's stand-ins; its finest representation stays ours.
-void adopt(Object& object, const Object& stored, const Model& shelf, Palette& palette) {
-    object.build_hash = stored.build_hash;
-    object.bind_hash = stored.bind_hash;
-    object.attributes = stored.attributes;
-    for (size_t lod = 1; lod < stored.representations.size(); ++lod) {
-        Representation representation = stored.representations[lod];
-        for (uint32_t& material : representation.materials)
-            material = palette.index_of(shelf.materials.at(material));
-        object.representations.push_back(std::move(representation));
-    }
 }
 
 void add(Object& object, std::vector<Candidate>&& made, Model& model, Palette& palette,
@@ -225,7 +164,7 @@ public:
             if (same != task_of.end()) {
                 tasks[same->second].copies.push_back(index);
             } else if (const Object* stored = shelf.find(wanted)) {
-                adopt(object, *stored, shelf.stored(), palette_);
+                shelf.adopt(object, *stored, palette_);
             } else if (inside[index]) {
                 task_of.emplace(wanted, tasks.size());
                 tasks.push_back({{index, {}}, wanted, std::move(bind)});
