@@ -12,7 +12,9 @@
 #include "scratch.h"
 #include "segment/json.h"
 
+#include <atomic>
 #include <gtest/gtest.h>
+#include <thread>
 
 using namespace lodestone;
 namespace fs = std::filesystem;
@@ -44,6 +46,44 @@ Model room() {
                                     {table, models::moved(1.5, 0, 0), "table right"},
                                     {wall, Affine{}, "wall"}});
     return model;
+}
+
+Model row_of_terrains(int count) {
+    Model model;
+    std::vector<Placement> row;
+    for (int i = 0; i < count; ++i) {
+        const std::string uid = std::to_string(i);
+        row.push_back({models::add_leaf(model, uid, shapes::terrain(static_cast<size_t>(24 + i))),
+                       models::moved(2.0 * i, 0, 0), uid});
+    }
+    model.root = models::add_group(model, "row", row);
+    return model;
+}
+
+/// Builds in an empty folder and stops as soon as a store is there; false when it was done before.
+bool stopped_when_something_is_kept(Model model, const fs::path& folder) {
+    const segment::Store store(folder);
+    build::Settings settings;
+    settings.keep_every_s = 0;
+    volatile int32_t cancel = 0;
+    std::atomic<bool> over{false};
+    std::thread watcher([&] {
+        while (!over && !store.exists())
+            std::this_thread::yield();
+        cancel = 1;
+    });
+    Problems problems;
+    bool stopped = false;
+    try {
+        build::build_hierarchy(model, store, settings, problems, Job(&cancel, nullptr, nullptr));
+    } catch (const Error& error) {
+        stopped = error.status == Status::Cancelled;
+    }
+    over = true;
+    watcher.join();
+    for (const Object& object : model.objects)
+        EXPECT_TRUE(!stopped || object.representations.size() == 1u);
+    return stopped;
 }
 
 ObjectIndex index_of(const Model& model, const std::string& uid) {
@@ -311,6 +351,39 @@ TEST_F(Hierarchy, CancelledBuildChangesNothing) {
     EXPECT_FALSE(segment::Store(folder).exists());
     for (const Object& object : model.objects)
         EXPECT_EQ(object.representations.size(), 1u);
+}
+
+TEST_F(Hierarchy, AStoppedBuildIsGoneOnWith) {
+    Model whole = row_of_terrains(12);
+    const uint64_t all = build_in(whole, scratch("whole")).built;
+    for (int attempt = 0; attempt < 5; ++attempt) {  // the thread that stops it may come too late
+        const fs::path folder = scratch("stopped");
+        if (!stopped_when_something_is_kept(row_of_terrains(12), folder))
+            continue;
+        Model model = row_of_terrains(12);
+        const uint64_t rest = build_in(model, folder).built;
+        EXPECT_GT(rest, 0u);
+        EXPECT_LT(rest, all);
+        expect_valid(model);
+        for (size_t i = 0; i < model.objects.size(); ++i)
+            EXPECT_EQ(model.objects[i].representations.size(),
+                      whole.objects[i].representations.size());
+        return;
+    }
+    FAIL() << "five builds were done before they could be stopped";
+}
+
+TEST_F(Hierarchy, HowOftenItIsKeptChangesNoResult) {
+    Model once = room();
+    Model often = room();
+    const fs::path by_once = scratch("once");
+    const fs::path by_often = scratch("often");
+    build_in(once, by_once);
+    build::Settings settings;
+    settings.keep_every_s = 0;
+    Problems problems;
+    build::build_hierarchy(often, segment::Store(by_often), settings, problems, {});
+    EXPECT_EQ(read_file(by_once / "tileset.json"), read_file(by_often / "tileset.json"));
 }
 
 TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {

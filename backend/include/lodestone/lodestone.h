@@ -756,8 +756,8 @@ LDS_API lds_status lds_model_build_estimate(lds_model* model, const char* store,
                                             const lds_build_options* options,
                                             lds_build_report* out_report);
 /* Gives every object its stand-ins: those of the store (a folder, made when missing) where the source
-   hash still fits, new ones elsewhere, and brings the store up to date. One writer at a time; a
-   killed build leaves the old store. */
+   hash still fits, new ones elsewhere, and brings the store up to date, about every 20 seconds: a build
+   that was cancelled or killed is gone on with. Then the model is as before. One writer at a time. */
 LDS_API lds_status lds_model_build(lds_model* model, const char* store,
                                    const lds_build_options* options, lds_job* job,
                                    lds_build_report* out_report);

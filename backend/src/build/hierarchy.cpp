@@ -18,6 +18,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 namespace lodestone::build {
 namespace {
@@ -198,7 +199,7 @@ public:
             build(objects, settings);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
-        report.bytes_written += store_.write(model_, job_.part(kBuildShare, 1));
+        report.bytes_written += kept_bytes_ + store_.write(model_, job_.part(kBuildShare, 1));
         for (const ObjectIndex index : order)
             report.representations += model_.objects[index].representations.size();
         report.wall_s = wall_seconds() - wall;
@@ -257,7 +258,18 @@ private:
         double before = done_.load();
         while (!done_.compare_exchange_weak(before, before + step)) {
         }
-        job_.progress(kBuildShare * (before + step) / std::max(1.0, total_));
+        job_.progress(share_done(before + step));
+    }
+
+    double share_done(double done) const { return kBuildShare * done / std::max(1.0, total_); }
+
+    /// Puts what is finished into the store when it is time to; the bar stays where it is.
+    void keep_when_due() {
+        if (wall_seconds() - kept_at_ < settings_.keep_every_s)
+            return;
+        const double share = share_done(done_.load());
+        kept_bytes_ += store_.write(model_, job_.part(share, share));
+        kept_at_ = wall_seconds();
     }
 
     /// What deforms: its levels are collapsed where that has not been done yet, and put where the
@@ -321,11 +333,32 @@ private:
             problems_.insert(problems_.end(), problems.begin(), problems.end());
     }
 
+    /// All objects of one height.
     void build(std::vector<ObjectIndex>& objects, Hash settings) {
         // Large ones first, so that the last core does not wait for one of them.
         std::stable_sort(objects.begin(), objects.end(), [&](ObjectIndex a, ObjectIndex b) {
             return weight(model_.objects[a]) > weight(model_.objects[b]);
         });
+        std::span<const ObjectIndex> left = objects;
+        while (!left.empty()) {
+            const size_t count = count_until_kept(left);
+            build_all(left.first(count), settings);
+            left = left.subspan(count);
+            keep_when_due();
+        }
+    }
+
+    /// How many are built before what is finished is kept: at least one.
+    size_t count_until_kept(std::span<const ObjectIndex> objects) const {
+        double seconds = settings_.keep_every_s * hardware_threads();
+        size_t count = 0;
+        do {
+            seconds -= seconds_to_build(model_.objects[objects[count++]], settings_);
+        } while (count < objects.size() && seconds > 0);
+        return count;
+    }
+
+    void build_all(std::span<const ObjectIndex> objects, Hash settings) {
         const MeshSource source = mesh_source();
         std::vector<std::optional<StandIns>> made(objects.size());
         std::vector<Problems> found(objects.size());
@@ -366,6 +399,8 @@ private:
     image::TexelCache texels_;
     double total_ = 0;
     std::atomic<double> done_{0};
+    double kept_at_ = wall_seconds();
+    uint64_t kept_bytes_ = 0;
 };
 
 }  // namespace

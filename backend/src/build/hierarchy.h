@@ -26,7 +26,8 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
 /// `model` has its finest representations resident, what else it has is replaced; afterwards every reachable object has its
 /// list and the store holds it. Objects are matched with the store's by source hash, so names and
 /// places may change freely. The same result on any number of threads.
-/// Throws Error(Cancelled): then the store and the model's lists are as before.
+/// Throws Error(Cancelled): then the model's lists are as before, and the store has what was finished by
+/// settings.keep_every_s before.
 /// A broken object gets a problem and only its finest level.
 Report build_hierarchy(Model& model, const segment::Store& store, const Settings& settings,
                        Problems& problems, const Job& job);
