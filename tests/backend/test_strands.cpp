@@ -69,7 +69,6 @@ TEST(Strands, MantleIsAsLargeAsTheRoundTubes) {
 
 TEST(Strands, TipWithoutRadiusIsAPoint) {
     const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 1}}, {0.1f, 0}, {2});
-    EXPECT_EQ(mesh.positions.size(), 4u);
     EXPECT_EQ(mesh.triangles.size(), 4u);
     EXPECT_TRUE(closed(mesh));
     EXPECT_GT(volume(mesh), 0);
@@ -77,6 +76,21 @@ TEST(Strands, TipWithoutRadiusIsAPoint) {
     EXPECT_EQ(both.triangles.size(), 6u);
     EXPECT_TRUE(closed(both));
     EXPECT_GT(volume(both), 0);
+}
+
+TEST(Strands, HairWasShadedAsIfItTurnedToItsTip) {
+    const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {0, 0.1f, 0}, {3});
+    for (const glm::vec3& normal : mesh.normals)
+        EXPECT_NEAR(normal.z, 0, 1e-6);
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {  // and stands in the middle of its side
+        const glm::dvec3 outward = glm::normalize(area_vector(mesh, t));
+        double turned = -1;
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 normal(mesh.normals[mesh.triangles[t][corner]]);
+            turned = std::max(turned, glm::dot(normal, outward));
+        }
+        EXPECT_GT(turned, 0.99);
+    }
 }
 
 TEST(Strands, StraightRunsCostOneSegmentAndBendsAreKept) {

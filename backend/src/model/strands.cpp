@@ -146,10 +146,10 @@ public:
             const double left = glm::length(side);
             side = left > 1e-6 ? side / left : any_normal_to(tangent);
             const bool end = i == 0 || i + 1 == keys.size();
-            const Ring ring = ring_at(keys[i], tangent, side, i == 0);
+            const Ring ring = ring_at(keys[i], tangent, side);
             if (i > 0)
                 join(before, ring, slot);
-            if (end && ring.count == kSides)
+            if (end && !ring.point)
                 cap(ring, i == 0, slot);
             before = ring;
         }
@@ -158,7 +158,7 @@ public:
 private:
     struct Ring {
         uint32_t first = 0;
-        uint32_t count = 0;  // 1 where the tube ends in a point
+        bool point = false;  // where the tube has no radius
     };
 
     static glm::dvec3 way(const Key& from, const Key& to) {
@@ -167,30 +167,30 @@ private:
         return length > 0 ? along / length : glm::dvec3(0.0);
     }
 
-    Ring ring_at(const Key& key, const glm::dvec3& tangent, const glm::dvec3& side, bool root) {
+    /// A point has a vertex for each side, with the normal of its middle: one that looked along the
+    /// tube would shade all of a straight strand as if it turned to its tip.
+    Ring ring_at(const Key& key, const glm::dvec3& tangent, const glm::dvec3& side) {
         const auto first = static_cast<uint32_t>(mesh_.positions.size());
-        if (!(key.radius > 0)) {
-            mesh_.positions.emplace_back(key.point);
-            mesh_.normals.emplace_back(root ? -tangent : tangent);
-            return {first, 1};
-        }
+        const bool point = !(key.radius > 0);
         const glm::dvec3 other = glm::cross(tangent, side);
         for (uint32_t i = 0; i < kSides; ++i) {
-            const double angle = 2 * std::numbers::pi * i / kSides;
+            const double angle = 2 * std::numbers::pi * (i + (point ? 0.5 : 0.0)) / kSides;
             const glm::dvec3 outward = std::cos(angle) * side + std::sin(angle) * other;
             mesh_.positions.emplace_back(key.point + kWiden * key.radius * outward);
             mesh_.normals.emplace_back(outward);
         }
-        return {first, kSides};
+        return {first, point};
     }
 
     void join(const Ring& from, const Ring& to, uint16_t slot) {
         for (uint32_t i = 0; i < kSides; ++i) {
             const uint32_t next = (i + 1) % kSides;
-            if (from.count == kSides)
-                add_triangle({from.first + i, from.first + next, to.first + i % to.count}, slot);
-            if (to.count == kSides)
-                add_triangle({from.first + next % from.count, to.first + next, to.first + i}, slot);
+            if (!from.point)
+                add_triangle({from.first + i, from.first + next, to.first + i}, slot);
+            if (!to.point) {
+                const uint32_t corner = from.first + (from.point ? i : next);
+                add_triangle({corner, to.first + next, to.first + i}, slot);
+            }
         }
     }
 
