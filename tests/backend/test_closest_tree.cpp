@@ -144,6 +144,17 @@ TEST(ClosestTree, TrianglesInOnePlaceAndInALineDoNotRunDeep) {
     expect_same(mesh, {{0.3, 0.1, 0.2}, {0, 0, 0}, {2, 2, 2}, {1e-9, 0, 0}});
 }
 
+TEST(ClosestTree, OneCornerAtTheEdgeOfWhatFloatsHoldCrashedIt) {
+    // Beside it all else is one place, but for differences whose inverse is infinite.
+    Mesh mesh = shapes::sphere(1);
+    mesh.positions[57].y = -1.7014118e38f;
+    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    const ray::Closest found = scene.closest_point({0, -1.7014118e38, 0});
+    EXPECT_LT(found.distance, 1e31);  // rounding, in the scene's own frame
+    const Triangle& triangle = mesh.triangles[found.triangle];
+    EXPECT_TRUE(triangle.x == 57 || triangle.y == 57 || triangle.z == 57);
+}
+
 TEST(ClosestTree, WhatIsNearEnoughEndsTheSearchAndNothingElseDoes) {
     const Mesh mesh = soup(600, 4);
     const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);

@@ -206,7 +206,8 @@ size_t ClosestTree::split(std::vector<Reference>& references, Range range) {
     const Four size = middles.high - middles.low;
     int axis = size[0] > size[1] ? 0 : 1;
     axis = size[2] > size[axis] ? 2 : axis;
-    if (!(size[axis] > 0))
+    const float scale = kBins / size[axis];
+    if (!std::isfinite(scale))  // one place but for rounding: what is far from all else makes it so
         return half;
     if (range.depth >= kMostUneven) {
         std::nth_element(begin, references.begin() + static_cast<ptrdiff_t>(half), end,
@@ -220,7 +221,6 @@ size_t ClosestTree::split(std::vector<Reference>& references, Range range) {
     using Bin = Around<Four>;
     std::array<Bin, kBins> bins;
     const float low = middles.low[axis];
-    const float scale = kBins / size[axis];
     const auto bin_of = [&](const Reference& reference) {
         const float along = (reference.low[axis] + reference.high[axis] - low) * scale;
         return std::min(static_cast<int>(along), kBins - 1);
