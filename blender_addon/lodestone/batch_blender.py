@@ -21,7 +21,7 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, motion, poses, quality  # noqa: E402
+from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, compare_plan, comparing  # noqa: E402
 from lodestone.core import file_names  # noqa: E402
@@ -194,9 +194,8 @@ class FileRun:
             self.result.setdefault("model", report.model_part(totals))
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)
-            if totals.occurrences == 0:
-                text = "nothing to draw: no object with faces is visible in renders"
-                raise Failed(ExitCode.FAILED, text)
+            if totals.occurrences == 0 and not requirements.something(scene, self.problems):
+                raise Failed(ExitCode.FAILED, requirements.NOTHING)
             self.clock.tail = f"{progress.count(totals.triangles_placed)} triangles"
             store = store_path.store_folder(self.job.file, self.job.store)
             self.result["store"] = str(store)

@@ -150,7 +150,8 @@ class _Run:
         with contextlib.ExitStack() as stack:
             model = stack.enter_context(extraction.model)
             totals = model.totals()
-            if totals.occurrences == 0:
+            shown = self.depsgraph.scene
+            if totals.occurrences == 0 and not requirements.something(shown, self.problems):
                 raise Refused("nothing_to_render", requirements.NOTHING)
             triangles = progress.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"

@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.core import last_render
+from lodestone.core import last_check, last_render
 
 
 class Engine(unittest.TestCase):
@@ -200,6 +200,36 @@ class Engine(unittest.TestCase):
 
     def test_without_objects_nothing_is_written(self):
         self.refused("Nothing to render")
+
+    def test_an_animation_stopped_at_a_frame_that_shows_no_object(self):
+        cube = scenes.cube()
+        for frame, hidden in ((1, True), (2, False)):
+            cube.hide_render = hidden
+            cube.keyframe_insert("hide_render", frame=frame)
+        self.scene.frame_end = 2
+        self.scene.render.filepath = str(self.folder / "frame_")
+        bpy.ops.render.render(animation=True)
+        alphas = []
+        for number in (1, 2):
+            image = bpy.data.images.load(str(self.folder / f"frame_{number:04}.png"))
+            alphas.append(max(list(image.pixels)[3::4]))
+            bpy.data.images.remove(image)
+        self.assertEqual(alphas, [0.0, 1.0])
+
+    def test_a_view_layer_that_shows_no_object_kept_the_others_from_their_picture(self):
+        held = scenes.collection("Held", self.scene.collection)
+        scenes.cube(collection=held)
+        second = self.scene.view_layers.new("Second")
+        second.layer_collection.children["Held"].exclude = True
+        self.assertEqual(max(pixel[3] for row in self.render() for pixel in row), 1.0)
+        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        self.assertIn("nothing_shown", codes)
+
+    def test_settings_of_a_newer_version_are_their_defaults_here(self):
+        scenes.cube()
+        words = ("off_screen", "deforming", "build_on_render", "structure", "antialias")
+        self.scene["lodestone"] = {word: 99 for word in words}
+        self.render()
 
     def test_a_killed_povray_is_a_sentence(self):
         scenes.cube()

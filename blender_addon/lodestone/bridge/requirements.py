@@ -8,11 +8,13 @@ from typing import Any
 
 from ..core import store_path
 from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, INFO, Problems
+from ..core.problems import ERROR, INFO, WARNING, Problems
 from .ids import name_of
+from .leaves import DRAWN
 
 NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 NOTHING = "Nothing to render: no object with faces is visible in renders"
+NOTHING_HERE = "A picture shows the world alone: no object with faces is visible in it"
 
 
 def camera(scene: Any, problems: Problems) -> Any | None:
@@ -22,6 +24,16 @@ def camera(scene: Any, problems: Problems) -> Any | None:
         problems.add("", ERROR, "no_camera", NO_CAMERA.format(name_of(scene)))
         return None
     return found
+
+
+def something(scene: Any, problems: Problems) -> bool:
+    """For a view layer's frame that shows nothing: whether a picture of the world alone may be
+    meant, since objects of the scene could be seen in another frame or layer. Either is told."""
+    if any(item.type in DRAWN or item.instance_type != "NONE" for item in scene.objects):
+        problems.add("", WARNING, "nothing_shown", NOTHING_HERE)
+        return True
+    problems.add("", ERROR, "nothing_to_render", NOTHING)
+    return False
 
 
 def povray(program: str, problems: Problems) -> None:

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ..core.last_check import Check
-from ..core.problems import ERROR, Problems
+from ..core.problems import Problems
 from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
 from .ids import name_of
@@ -44,7 +44,7 @@ def check(
     walk = scene.walked(depsgraph, glances, problems, tick, None, shown)
     scene.surroundings(recorder, evaluated, walk.found, problems, heads)
     if walk.found.shown == 0:
-        problems.add("", ERROR, "nothing_to_render", requirements.NOTHING)
+        requirements.something(original, problems)
     eye = requirements.camera(evaluated, problems)
     if eye is not None:
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
