@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards what decisions about one placement amount to together."""
 
+import math
 import unittest
 
 import addon_path  # noqa: F401
@@ -28,6 +29,10 @@ class Decisions(unittest.TestCase):
         self.assertEqual(Decision(32.0).inside(Decision(32.0)).importance, 64.0)
         self.assertEqual(Decision(1 / 32).inside(Decision(1 / 32)).importance, 1 / 64)
         self.assertEqual(decision("AUTOMATIC", 1, 1e30).importance, 64.0)
+
+    def test_an_importance_that_is_no_number_kept_a_scene_from_rendering(self):
+        self.assertIs(decision("AUTOMATIC", 1, math.nan), UNDECIDED)
+        self.assertEqual(decision("LIMIT", 2, math.nan), Decision(1.0, 2, False))
 
     def test_any_level_is_the_librarys(self):
         self.assertEqual(ANY_LEVEL, NATIVE_ANY_LEVEL)

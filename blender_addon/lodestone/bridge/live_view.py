@@ -14,6 +14,7 @@ from ..core.picture import Settings
 from ..core.problems import Problems
 from . import camera as cameras
 from . import lenses, preview_scene, quality, viewport_view
+from .settings import SceneSettings
 
 _chooser = view_statistics.Chooser()
 
@@ -90,7 +91,7 @@ _pinned = _Pinned()
 
 def settings_of(scene: Any, model: Any) -> Settings:
     """As F12 has them, but for motion, which takes another frame to see."""
-    own = scene.lodestone
+    own = SceneSettings(scene)
     parts_of = lenses.parts_stored(model)
     detail = lenses.detail(lens_objects(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark

@@ -7,7 +7,8 @@ from . import ids
 
 
 class SceneSettings:
-    """Reads the attributes of `scene.lodestone` without making Blender store an empty group."""
+    """Reads the attributes of `scene.lodestone` without making Blender store an empty group. A word
+    that this version does not know, from a file of another one, is the default, too."""
 
     def __init__(self, scene: Any) -> None:
         self._stored = ids.settings_of(scene)
@@ -15,7 +16,9 @@ class SceneSettings:
 
     def __getattr__(self, name: str) -> Any:
         if self._stored is not None:
-            return getattr(self._stored, name)
+            value = getattr(self._stored, name)
+            if value != "" or self._known[name].type != "ENUM":
+                return value
         if name not in self._known:
             raise AttributeError(name)
         return self._known[name].default

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the designer decided about how finely one placement is drawn."""
 
+import math
 from typing import NamedTuple
 
 ANY_LEVEL = 0xFFFFFFFF
@@ -38,6 +39,8 @@ def decision(use: str, coarsest: int, importance: float, pin: int = -1) -> Decis
     """Of the settings of an object or collection, as properties.py names them; pin: the LOD number
     it is always drawn with, below 0: none. UNDECIDED itself where they ask for nothing."""
     limits = {"ORIGINAL": 0, "EXCLUDE": 0, "LIMIT": coarsest}
+    if math.isnan(importance):  # Blender lets scripts and drivers set it so
+        importance = 1.0
     importance = min(max(importance, 1.0 / _MOST_IMPORTANCE), _MOST_IMPORTANCE)
     limit = pin if pin >= 0 else limits.get(use, ANY_LEVEL)
     made = Decision(importance, limit, use == "EXCLUDE", pin >= 0)
