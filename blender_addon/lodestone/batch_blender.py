@@ -140,6 +140,8 @@ class FileRun:
         scene = bpy.context.scene
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
+        if self.job.verb in ("render", "compare"):
+            requirements.post_processing(scene, self.problems)
         if self.job.frames:
             # The same frames whichever part of the scene's range this process renders
             self._sample(scene, min(first, scene.frame_start), max(last, scene.frame_end))

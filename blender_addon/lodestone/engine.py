@@ -160,7 +160,7 @@ class _Run:
                 closing = self._read_shutter(extraction, model, frame)
                 camera_object = self._required()
             view = camera.extract(camera_object, frame, self.problems)
-            camera.report_render(self.scene.render, name_of(self.scene), self.problems)
+            camera.report_render(self.scene, self.problems)
             size = (frame.width, frame.height)
             left, bottom, *part = picture.border(self.scene.render, *size)
             border = (left, size[1] - bottom - part[1], *part)

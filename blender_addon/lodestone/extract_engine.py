@@ -100,7 +100,7 @@ def _frame(depsgraph, name, size, problems):
     frame = camera.Frame.of(evaluated.render)
     if size is not None:
         frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
-    camera.report_render(evaluated.render, name_of(evaluated), problems)
+    camera.report_render(evaluated, problems)
     return camera.extract(found, frame, problems), (frame.width, frame.height)
 
 

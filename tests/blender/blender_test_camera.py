@@ -144,6 +144,12 @@ class Camera(unittest.TestCase):
         codes = {problem.code for problem in extraction.problems}
         self.assertLessEqual({"camera_panoramic", "motion_blur", "stereo"}, codes)
 
+    def test_a_camera_that_clips_was_silent(self):
+        self.camera.data.clip_start = 3.0
+        extraction, _ = blender_scenes.extract(False, [("", None)])
+        extraction.model.close()
+        self.assertIn("clip_start", {problem.code for problem in extraction.problems})
+
     def test_a_missing_camera_is_named(self):
         with self.assertRaisesRegex(Exception, 'no camera "Near"'):
             blender_scenes.extract(False, [("Near", None)])

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
+from lodestone.core import last_check
 
 
 def png_text(path):
@@ -21,10 +22,6 @@ def png_text(path):
             found[keyword.decode("latin-1")] = text.decode("latin-1")
         at += 12 + size
     return found
-
-
-def encoded(value):
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
 
 
 class Output(unittest.TestCase):
@@ -127,9 +124,25 @@ class Output(unittest.TestCase):
             worst = max(abs(a - b) for a, b in zip(ours, blenders))
             self.assertLessEqual(worst, 1.01 / 255, transform)
             if transform == "Standard":
-                green = [min(1.0, encoded(value)) for value in linear[1::4]]
+                green = [scenes.encoded(value) for value in linear[1::4]]
                 worst = max(abs(a - b) for a, b in zip(ours[1::4], green))
                 self.assertLess(worst, 1.01 / 255)
+
+    def test_a_compositor_that_reads_another_pass_got_black_without_a_word(self):
+        self.scene.use_nodes = True
+        tree = self.scene.node_tree
+        bpy.context.view_layer.use_pass_z = True
+        layer, composite = tree.nodes["Render Layers"], tree.nodes["Composite"]
+        self.render()
+        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        self.assertNotIn("empty_pass", codes)
+        tree.links.new(layer.outputs["Depth"], composite.inputs["Image"])
+        self.render()
+        found = [p for p in last_check.get(self.scene.name).problems if p.code == "empty_pass"]
+        self.assertRegex(found[0].message, '"Depth"')
+        bpy.ops.lodestone.check_scene()
+        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        self.assertIn("empty_pass", codes)
 
     def test_the_file_says_how_it_was_made(self):
         self.scene.lodestone.pixel_error_render = 2.5

@@ -10,6 +10,9 @@ from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
 from .ids import name_of
 
+_CLIP_START = 0.101  # metres; new cameras have .1, so who has more wants something cut away
+_PICTURE = {"Image", "Alpha"}  # of what the compositor can read of a view layer
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -58,6 +61,9 @@ def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
     if data.type == "PANO":
         text = f'Camera "{name_of(camera)}" is panoramic; it is drawn as a perspective camera'
         problems.add(name_of(camera), WARNING, "camera_panoramic", text)
+    if data.clip_start > _CLIP_START:
+        text = f'Camera "{name_of(camera)}" clips nothing: what is nearer than its start is drawn'
+        problems.add(name_of(camera), WARNING, "clip_start", text)
     focus_distance, aperture = depth_of_field(camera, problems)
     matrix = camera.matrix_world.normalized()
     turn, place = matrix.to_3x3(), matrix.translation
@@ -109,11 +115,28 @@ def _focus_place(dof: Any) -> Vector:
     return (item.matrix_world @ bone.matrix if bone else item.matrix_world).translation
 
 
-def report_render(render: Any, name: str, problems: Problems) -> None:
-    """What the scene's render settings ask for and pictures lack."""
+def report_render(scene: Any, problems: Problems) -> None:
+    """What the settings of an evaluated scene ask for and pictures lack."""
+    render, name = scene.render, name_of(scene)
     if render.use_motion_blur:
         text = f'Motion blur of scene "{name}" is left out'
         problems.add(name, WARNING, "motion_blur", text)
     if render.use_multiview:
         text = f'Scene "{name}" is stereoscopic; every eye gets the same picture'
         problems.add(name, WARNING, "stereo", text)
+    if render.use_compositing and scene.use_nodes and scene.node_tree is not None:
+        for passed in _passes_read(scene.node_tree):
+            text = f'Compositor of scene "{name}": pass "{passed}" is empty'
+            problems.add(name, WARNING, "empty_pass", text)
+
+
+def _passes_read(tree: Any) -> list[str]:
+    """Passes besides the picture that the compositor reads of rendered layers."""
+    found = {
+        name_of(socket)
+        for node in tree.nodes
+        if node.type == "R_LAYERS" and not node.mute
+        for socket in node.outputs
+        if socket.is_linked
+    }
+    return sorted(found - _PICTURE)

@@ -36,6 +36,17 @@ def something(scene: Any, problems: Problems) -> bool:
     return False
 
 
+def post_processing(scene: Any, problems: Problems) -> None:
+    """What Blender does to a finished picture, and nobody does to those of batch jobs."""
+    render, name = scene.render, name_of(scene)
+    if render.use_compositing and scene.use_nodes:
+        text = f'The compositor of scene "{name}" is left out: it works in F12 alone'
+        problems.add(name, WARNING, "compositor", text)
+    if render.use_sequencer and scene.sequence_editor and scene.sequence_editor.sequences:
+        text = f'The sequencer of scene "{name}" is left out: it works in F12 alone'
+        problems.add(name, WARNING, "sequencer", text)
+
+
 def povray(program: str, problems: Problems) -> None:
     """`program` as in the preferences."""
     try:

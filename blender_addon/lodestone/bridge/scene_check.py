@@ -48,7 +48,7 @@ def check(
     eye = requirements.camera(evaluated, problems)
     if eye is not None:
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
-    camera.report_render(evaluated.render, name_of(evaluated), problems)
+    camera.report_render(evaluated, problems)
     problems.keep(walk.users.concerns)
     lenses.detail(evaluated.objects, lambda collection: (), problems)
     return Check(tuple(problems), walk.users.found())
