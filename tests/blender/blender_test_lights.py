@@ -8,9 +8,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
 import blender_scenes as scenes
+from lodestone.bridge import lights
+from lodestone.core.native import lodestone_native as native
+from lodestone.core.problems import Problems
 
 WIDTH, HEIGHT = 48, 32
 LIMIT = 3 / 255  # of display values, Standard
@@ -105,6 +108,42 @@ class Lights(unittest.TestCase):
         lamp("POINT", (0.3, -0.5, 1.6), energy=90.0, shadow_soft_size=0.5, color=(1, 0.8, 0.6))
         self.same_as_cycles()
 
+    def test_colors_and_strengths_of_a_lamps_nodes_were_left_out(self):
+        shone = lamp("POINT", (0.3, -0.5, 1.6), energy=45.0, shadow_soft_size=0.5).data
+        shone.use_nodes = True
+        tree = shone.node_tree
+        emission = tree.nodes["Emission"]
+        emission.inputs["Strength"].default_value = 2.0
+        warm = tree.nodes.new("ShaderNodeBlackbody")
+        warm.inputs["Temperature"].default_value = 4500.0
+        tree.links.new(warm.outputs[0], emission.inputs["Color"])
+        self.same_as_cycles()
+
+    def test_nodes_of_lamps_that_are_not_the_same_everywhere_are_named(self):
+        found = {}
+        for kind in (None, "ShaderNodeTexNoise", "ShaderNodeLightFalloff"):
+            shone = lamp("POINT", (0.3, -0.5, 1.6), energy=45.0).data
+            shone.use_nodes = True
+            if kind is not None:
+                given = shone.node_tree.nodes.new(kind).outputs[0]
+                shone.node_tree.links.new(
+                    given, shone.node_tree.nodes["Emission"].inputs["Strength"]
+                )
+            problems = Problems()
+            lights.add(native.Model(), shone, Matrix(), "Lamp", problems)
+            found[kind] = [problem.code for problem in problems]
+        named = ["light_nodes"]
+        expected = {"ShaderNodeTexNoise": named, "ShaderNodeLightFalloff": named, None: []}
+        self.assertEqual(found, expected)
+
+    def test_a_lamp_whose_nodes_have_no_shader_shone_all_the_same(self):
+        shone = lamp("POINT", (0.3, -0.5, 1.6), energy=90.0).data
+        shone.use_nodes = True
+        shone.node_tree.nodes.clear()
+        self.assertEqual(
+            max(max(pixel) for row in self.render("LODESTONE_POVRAY") for pixel in row), 0
+        )
+
     def test_a_soft_spot(self):
         lamp(
             "SPOT",
@@ -142,7 +181,6 @@ class Lights(unittest.TestCase):
         self.same_as_cycles()
 
     def test_an_area_that_its_parent_shears_is_named_and_shines_square_to_its_edges(self):
-        from lodestone.bridge import lights
         from lodestone.core.problems import Problems
 
         area = lamp("AREA", (0.0, 0.0, 4.0), (0.5, 0.3, 0.0), energy=15.0)

@@ -9,6 +9,9 @@ from mathutils import Matrix, Vector
 
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
+from .graph import feed
+from .images import ImageMeans
+from .node_values import NodeValues
 
 _KINDS = {
     "SUN": native.LightKind.SUN,
@@ -20,13 +23,16 @@ _KINDS = {
 
 def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -> None:
     """Adds an evaluated light datablock as placed by matrix; what is not exact is a problem."""
-    if light.use_nodes and light.node_tree and _has_own_nodes(light.node_tree):
+    emission = _emission(light)
+    if emission is None:
+        emission = (1.0, 1.0, 1.0)
         text = f'Nodes of light "{name}" are left out; its color and power are used'
         problems.add(name, WARNING, "light_nodes", text)
     cycles = getattr(light, "cycles", None)  # Cycles' own settings, where it is enabled
     if light.type == "AREA" and getattr(cycles, "is_portal", False):
         return  # a hint for Cycles' sampling, which gives no light
-    values = [*matrix.translation, *light.color, light.energy]
+    color = tuple(own * times for own, times in zip(light.color, emission))
+    values = [*matrix.translation, *color, light.energy]
     if not all(math.isfinite(value) for row in (values, *matrix) for value in row):
         text = f'Light "{name}" is left out: its place or its power is not a number'
         problems.add(name, WARNING, "bad_light", text)
@@ -34,7 +40,7 @@ def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -
     given = native.Light(
         name=name,
         kind=_KINDS[light.type],
-        color=tuple(light.color),
+        color=color,
         power=light.energy,
         position=tuple(matrix.translation),
         direction=_direction(matrix),
@@ -117,16 +123,19 @@ def _shape(light: Any, matrix: Matrix) -> dict[str, Any]:
     }
 
 
-def _has_own_nodes(tree: Any) -> bool:
-    """More than the emission node a light starts with."""
-    for node in tree.nodes:
-        if node.type == "EMISSION":
-            color, strength = node.inputs["Color"], node.inputs["Strength"]
-            plain = not (color.is_linked or strength.is_linked)
-            if plain and tuple(color.default_value[:3]) == (1.0, 1.0, 1.0):
-                if strength.default_value == 1.0:
-                    continue
-            return True
-        if node.type not in {"OUTPUT_LIGHT", "FRAME", "REROUTE"}:
-            return True
-    return False
+def _emission(light: Any) -> tuple[float, ...] | None:
+    """What the light's nodes multiply its color by: all black without a shader, as in Cycles; None
+    when it is not the same everywhere."""
+    if not light.use_nodes or light.node_tree is None:
+        return (1.0, 1.0, 1.0)
+    output = light.node_tree.get_output_node("CYCLES")
+    behind = None if output is None else feed(output.inputs["Surface"])
+    if behind is None or behind.node is None:
+        return (0.0, 0.0, 0.0)
+    if behind.node.type != "EMISSION":
+        return None
+    inexact: list[str] = []
+    values = NodeValues(ImageMeans(), lambda code, text: inexact.append(code))
+    color = values.color(behind.node.inputs["Color"], behind.groups)
+    strength = values.number(behind.node.inputs["Strength"], behind.groups)
+    return None if inexact else tuple(strength * value for value in color[:3])
