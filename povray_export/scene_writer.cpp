@@ -174,14 +174,19 @@ private:
         }
     }
 
+    /// The path of its placements. The root has none and is called as its object is.
+    std::string called(uint32_t node) const {
+        const std::string path = quality::path_of(model_, cut_, node);
+        return path.empty() ? model_.objects.at(cut_.nodes[node].object).name : path;
+    }
+
     /// Of a representation of its node, in its file.
     void add_use(Use use, bool textures) {
         const quality::Node& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
         if (!make_invertible(use.world)) {
-            problems_.push_back({quality::path_of(model_, cut_, use.node), Severity::Warning,
-                                 "singular_transform",
+            problems_.push_back({called(use.node), Severity::Warning, "singular_transform",
                                  "is scaled to nothing or to a line, so it is not drawn"});
             return;
         }
@@ -237,8 +242,7 @@ private:
         for (const Use& use : uses_) {
             if (!includes_.at(use.file).bumps_left_out || named[use.file]++ != 0)
                 continue;
-            problems_.push_back({quality::path_of(model_, cut_, use.node), Severity::Warning,
-                                 "bump_not_flat",
+            problems_.push_back({called(use.node), Severity::Warning, "bump_not_flat",
                                  "is shown without its bumps: POV-Ray shows them on flat faces"});
         }
     }

@@ -50,6 +50,10 @@ std::string shown(std::string_view text, size_t most) {
     return out;
 }
 
+std::string in_brackets(std::string_view text) {
+    return text.empty() ? std::string() : " (" + shown(text) + ")";
+}
+
 std::string temporary_beside(const std::string& path) {
     std::filesystem::path out(path);  // short whatever the path's own name is
     out.replace_filename(".lodestone-" + std::to_string(getpid()) + ".tmp");

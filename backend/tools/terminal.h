@@ -11,6 +11,9 @@ namespace lodestone::tools {
 /// of reading; of at most that many bytes, cut between characters.
 std::string shown(std::string_view text, size_t most = std::string_view::npos);
 
+/// " (text)" as shown() shows it; nothing for no text.
+std::string in_brackets(std::string_view text);
+
 /// A name of a file that is written beside `path` and then renamed to it.
 std::string temporary_beside(const std::string& path);
 

@@ -163,10 +163,10 @@ int run_povray(const Arguments& arguments) {
     stamp(picture.string(), view);
     deliver(picture, *out);
 
-    std::printf("%s: %d x %d, camera %s; %llu triangles, largest error %.3f px (%s)\n%.1f s\n",
+    std::printf("%s: %d x %d, camera %s; %llu triangles, largest error %.3f px%s\n%.1f s\n",
                 out->c_str(), view.width, view.height, shown(camera).c_str(),
                 static_cast<unsigned long long>(summary.triangles), summary.largest_error_px,
-                shown(largest).c_str(), rendered.wall_s);
+                in_brackets(largest).c_str(), rendered.wall_s);
     Fields report = report_of("povray", input);
     report.push_back({"picture", *out});
     report.push_back({"pixel_error", view.pixel_error});

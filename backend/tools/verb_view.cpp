@@ -23,7 +23,7 @@ int run_cut(const Arguments& arguments) {
     std::printf(
         "%llu occurrences (%llu originals): %llu meshes, %llu boxes, %llu ellipsoids, "
         "%llu composites; "
-        "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px (%s); threshold %g\n",
+        "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px%s; threshold %g\n",
         static_cast<unsigned long long>(summary.occurrences),
         static_cast<unsigned long long>(summary.originals),
         static_cast<unsigned long long>(summary.mesh), static_cast<unsigned long long>(summary.box),
@@ -31,7 +31,7 @@ int run_cut(const Arguments& arguments) {
         static_cast<unsigned long long>(summary.composite),
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
-        shown(summary.largest_error_name).c_str(), view.pixel_error);
+        in_brackets(summary.largest_error_name).c_str(), view.pixel_error);
     Fields report = report_of("cut", input);
     report.push_back({"pixel_error", view.pixel_error});
     choosing.report(report);

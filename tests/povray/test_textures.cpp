@@ -350,7 +350,8 @@ TEST(PovrayTextures, BumpsOnACurvedSurfaceAreLeftOutAndNamed) {
     material.bump_texture = checker();
     material.bump_distance = 0.1;
     const uint32_t index = builder.material(material);
-    builder.place(builder.mesh(ball, {index}), {}, "ball");
+    const uint32_t round = builder.mesh(ball, {index});
+    builder.place(round, {}, "ball");
     Mesh cube = shapes::cube();
     for (size_t i = 0; i < cube.positions.size(); ++i)
         cube.uvs.emplace_back((i % 4) % 3 != 0, (i % 4) / 2);
@@ -364,6 +365,13 @@ TEST(PovrayTextures, BumpsOnACurvedSurfaceAreLeftOutAndNamed) {
         EXPECT_EQ(problems[0].object, "ball");
         EXPECT_EQ(problems[0].code, "bump_not_flat");
     }
+    // A model of one mesh was told about without a name.
+    builder.model.objects[round].name = "lonely";
+    builder.model.root = round;
+    Problems problems;
+    scenes::write(builder.model, above(), options, problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].object, "lonely");
 }
 
 TEST(PovrayTextures, GlassBendsWhatIsBehindItAndTintsItTwice) {
