@@ -105,6 +105,16 @@ class Camera(unittest.TestCase):
             with extraction.model as model:
                 self.assertEqual([c.name for c in model.cameras()], ["Camera", "Second"])
 
+    def test_the_first_camera_of_a_store_was_not_the_scenes_own(self):
+        for name in ("Before", "Zoo"):  # the scene's own is "Camera"
+            blender_scenes.link(bpy.data.objects.new(name, bpy.data.cameras.new(name)))
+        for own, others in (("Camera", ["Before", "Zoo"]), ("Zoo", ["Before", "Camera"])):
+            bpy.context.scene.camera = bpy.data.objects[own]
+            extraction, _ = blender_scenes.extract(False)
+            with extraction.model as model:
+                found = [c.name for c in model.cameras()]
+            self.assertEqual(found, [own, *others])
+
     def test_scaled_and_sheared_parents_do_not_change_the_view(self):
         parent = blender_scenes.link(bpy.data.objects.new("Parent", None))
         parent.scale, parent.rotation_euler = (3.0, 0.5, 1.0), (0.3, 0.2, 0.1)

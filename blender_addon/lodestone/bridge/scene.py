@@ -9,6 +9,8 @@ import gc
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import compress
+from operator import attrgetter
 from typing import Any
 
 from ..core.native import lodestone_native as native
@@ -23,6 +25,8 @@ from .motion import Motion, Still
 from .shutter import Moving
 from .users import Users
 from .visibility import Visibility
+
+_TYPE = attrgetter("type")
 
 
 @dataclass
@@ -87,7 +91,7 @@ def _extract(
         for name in tree.unplaced:
             report_outside(problems, name)
         surroundings(model, scene, walk.found, problems)
-        _add_cameras(model, scene)
+        _add_cameras(model, depsgraph)
         problems.keep(walk.users.concerns)
     except BaseException:
         model.close()
@@ -180,13 +184,16 @@ def surroundings(
     )
 
 
-def _add_cameras(model: Any, scene: Any) -> None:
+def _add_cameras(model: Any, depsgraph: Any) -> None:
     """All of the scene, its own one first, for programs that render the store. What is not exact
     about one is told when it is used."""
-    frame = camera.Frame.of(scene.render)
-    items = [item for item in scene.objects if item.type == "CAMERA"]
+    scene = depsgraph.scene  # the original: an evaluated scene's objects are originals as well
+    frame = camera.Frame.of(depsgraph.scene_eval.render)
+    objects = scene.objects[:]
+    items = list(compress(objects, map("CAMERA".__eq__, map(_TYPE, objects))))
     items.sort(key=lambda item: (item != scene.camera, name_of(item)))
     for item in items:
+        item = item.evaluated_get(depsgraph)
         matrix = item.matrix_world
         if all(math.isfinite(value) for row in matrix for value in row):
             with contextlib.suppress(native.LodestoneError):  # such as one of no size
