@@ -7,9 +7,10 @@ takes.
 """
 
 from array import array
-from collections.abc import Callable
-from itertools import compress, count, repeat
-from operator import attrgetter
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain, compress, count, repeat
+from operator import attrgetter, is_, not_
 from typing import Any
 
 import bpy
@@ -37,6 +38,8 @@ _ASKED = attrgetter(
 _PLAIN = (None, None, "NONE", False, False, True, True, True, True, True)
 _LOOSE = (None, None, *_PLAIN)
 _DATA, _NAME, _ORIGINAL = attrgetter("data"), attrgetter("name"), attrgetter("original")
+_MODIFIERS, _CONSTRAINTS = attrgetter("modifiers"), attrgetter("constraints")
+_SLOTS, _ACTIVE_MATERIAL = attrgetter("material_slots"), attrgetter("active_material")
 
 
 class Plain:
@@ -66,8 +69,7 @@ def find(listed: Listed, environment: set[Any], motion: Motion, tick: Callable[[
     """Meshes without modifiers (so without particles) that nothing moves, seen by all rays,
     instancing nothing, local, not decided upon. `environment`: originals of what is Environment."""
     found = Plain()
-    first: dict[tuple, int] = {}  # rows, by what they are made of
-    alike: list[int] = []  # the first row that is made of the same
+    kinds: defaultdict[tuple, list[int]] = defaultdict(list)  # rows, by what they are made of
     numbers, objects = listed.objects()
     try:
         for start in range(0, len(objects), _BATCH):
@@ -80,16 +82,12 @@ def find(listed: Listed, environment: set[Any], motion: Motion, tick: Callable[[
             found.names += _names(batch)
             originals = list(map(_ORIGINAL, batch))
             found.originals += originals
-            made_of = _made_of(batch, list(compress(meshes, plain)))
-            if environment:
-                made_of = list(zip(made_of, map(environment.__contains__, originals)))
-            alike += map(first.setdefault, made_of, count(at))
+            marked = map(environment.__contains__, originals) if environment else repeat(False)
+            for made_of, rows in _made_of(batch, zip(compress(meshes, plain), marked)):
+                kinds[made_of] += map(at.__add__, rows)
     except AttributeError:  # another Blender
         return Plain()
     found.keys = list(zip(repeat("object"), repeat(""), found.names))
-    kinds: dict[int, list[int]] = {row: [] for row in first.values()}
-    for row, kind in enumerate(alike):
-        kinds[kind].append(row)
     found.kinds = list(kinds.values())
     found.places = gathered(listed.places, found.numbers)
     found.shows = [None] * len(found.numbers)
@@ -97,15 +95,30 @@ def find(listed: Listed, environment: set[Any], motion: Motion, tick: Callable[[
 
 
 def _plain(objects: list[Any], data: list[Any], motion: Motion) -> list[bool]:
-    decided, moves = ids.have_settings(objects), motion.moves
-    return [
-        (answer == _LOOSE or answer[2:] == _PLAIN)
-        and kind is bpy.types.Mesh
-        and not own
-        and not item.modifiers
-        and (answer == _LOOSE and not item.constraints or not moves(item))
-        for item, kind, answer, own in zip(objects, map(type, data), map(_ASKED, objects), decided)
-    ]
+    """What nearly all plain objects have in common is asked in columns; the rest one by one."""
+    asked, own = list(map(_ASKED, objects)), ids.have_settings(objects)
+    plain = list(
+        map(
+            all,
+            zip(
+                map(is_, map(type, data), repeat(bpy.types.Mesh)),
+                map(not_, own),
+                map(not_, map(_MODIFIERS, objects)),
+                map(_LOOSE.__eq__, asked),
+                map(not_, map(_CONSTRAINTS, objects)),
+            ),
+        )
+    )
+    for at in list(compress(count(), map(not_, plain))):
+        item = objects[at]
+        plain[at] = (
+            asked[at][2:] == _PLAIN
+            and type(data[at]) is bpy.types.Mesh
+            and not own[at]
+            and not item.modifiers
+            and not motion.moves(item)
+        )
+    return plain
 
 
 def _names(objects: list[Any]) -> list[str]:
@@ -115,13 +128,29 @@ def _names(objects: list[Any]) -> list[str]:
         return list(map(ids.name_of, objects))
 
 
-def _made_of(objects: list[Any], meshes: list[Any]) -> list[tuple]:
-    """Their meshes and materials. Where there is one slot (there are as many as the mesh has) its
-    material is the active one, and no list of slots is made."""
-    single = {mesh for mesh in set(meshes) if len(mesh.materials) == 1}
-    return [
-        (mesh, material)
-        if mesh in single and (material := item.active_material) is not None
-        else (mesh, *map(MATERIAL, item.material_slots))
-        for item, mesh in zip(objects, meshes)
-    ]
+def _made_of(
+    objects: list[Any], looks: Iterable[tuple[Any, bool]]
+) -> Iterator[tuple[tuple, Iterable[int]]]:
+    """(mesh, whether marked, materials) of objects whose meshes and marks are `looks`, and the
+    positions of those that are made of these."""
+    alike: defaultdict[tuple, list[int]] = defaultdict(list)
+    for position, look in enumerate(looks):
+        alike[look].append(position)
+    for look, positions in alike.items():
+        width = len(look[0].materials)  # as many slots has each object
+        materials = _materials(list(map(objects.__getitem__, positions)), width)
+        if materials == materials[:width] * len(positions):
+            yield (*look, *materials[:width]), positions
+        else:
+            for position in positions:
+                yield (*look, *map(MATERIAL, objects[position].material_slots)), (position,)
+
+
+def _materials(objects: list[Any], width: int) -> list[Any]:
+    """Of all their slots, `width` each. Where there is one, its material is the active one, and no
+    list of slots is made."""
+    if width == 1:
+        materials = list(map(_ACTIVE_MATERIAL, objects))
+        if None not in materials:
+            return materials
+    return list(map(MATERIAL, chain.from_iterable(map(_SLOTS, objects))))
