@@ -2,9 +2,8 @@
 """What every struct has: its size, ids of objects, and the ways in and out of it."""
 
 import ctypes
-from collections import namedtuple
 from ctypes import Structure, c_uint32
-from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 
@@ -46,16 +45,10 @@ def text_out(data: bytes | None) -> str:
     return "" if data is None else data.decode("utf-8", "replace")
 
 
-@lru_cache(maxsize=None)
-def _record_type(struct: type[Structure]) -> Any:
-    names = [field[0] for field in struct._fields_ if field[0] != "struct_size"]
-    return namedtuple(struct.__name__, names)
-
-
 def record(struct: Structure) -> Any:
-    """The struct's values as a named tuple that stays valid: strings and arrays are copied."""
-    kind = _record_type(type(struct))
-    return kind(*(_plain(getattr(struct, name)) for name in kind._fields))
+    """The struct's values by name, which stay valid: strings and arrays are copied."""
+    names = (field[0] for field in struct._fields_ if field[0] != "struct_size")
+    return SimpleNamespace(**{name: _plain(getattr(struct, name)) for name in names})
 
 
 def _plain(value: Any) -> Any:
