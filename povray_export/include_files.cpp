@@ -11,6 +11,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <optional>
 
 namespace lodestone::povray {
 namespace {
@@ -24,6 +25,11 @@ std::string beginning_of(const std::filesystem::path& path) {
     text.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
     return text;
 }
+
+/// What a file takes beside its triangles, as many of them as take as long.
+constexpr uint64_t kTrianglesOfFile = 1000;
+/// Below so many (3 ms) one thread writes them: waking others takes .3 ms.
+constexpr uint64_t kFewTriangles = 50'000;
 
 int exponent_of(double texel) {
     constexpr int kMost = 60;
@@ -75,6 +81,12 @@ bool IncludeFiles::pictured(const Include& include) const {
 }
 
 void IncludeFiles::write(const Job& job) {
+    uint64_t triangles = kTrianglesOfFile * files_.size();
+    for (const Include& include : files_)
+        triangles += include.representation->summary.cost.triangles;
+    std::optional<ThreadLimit> alone;
+    if (triangles < kFewTriangles)
+        alone.emplace(1);
     std::atomic<size_t> done{0};
     parallel_for(files_.size(), [&](size_t i) {
         job.check();
