@@ -230,22 +230,14 @@ class PlainObjects(Case):
 
     # ---- What the columns rest upon ----
 
-    def test_objects_are_listed_in_the_order_of_their_instances(self):
-        _, listed, _, _ = bridge()
-        self.everything()
-        told = []
+    def in_render(self, look):
+        """Calls look(depsgraph) where a picture would be rendered."""
 
         class Engine(bpy.types.RenderEngine):
             bl_idname, bl_label = "LODESTONE_TEST_ORDER", "Order"
 
             def render(self, depsgraph):
-                numbers, objects = listed.Listed(depsgraph).objects()
-                names = dict(zip(numbers, (item.name for item in objects)))
-                del objects
-                for number, instance in enumerate(depsgraph.object_instances):
-                    if not instance.is_instance:
-                        told.append((names.pop(number, None), instance.object.name))
-                told.append((names, {}))
+                look(depsgraph)
 
         bpy.utils.register_class(Engine)
         try:
@@ -253,9 +245,58 @@ class PlainObjects(Case):
             bpy.ops.render.render()
         finally:
             bpy.utils.unregister_class(Engine)
+
+    def test_objects_are_listed_in_the_order_of_their_instances(self):
+        _, listed, _, _ = bridge()
+        self.everything()
+        told = []
+
+        def look(depsgraph):
+            numbers, objects = listed.Listed(depsgraph).objects()
+            names = dict(zip(numbers, (item.name for item in objects)))
+            del objects
+            for number, instance in enumerate(depsgraph.object_instances):
+                if not instance.is_instance:
+                    told.append((names.pop(number, None), instance.object.name))
+            told.append((names, {}))
+
+        self.in_render(look)
         self.assertGreater(len(told), 20)
         for ours, blenders in told:
             self.assertEqual(ours, blenders)
+
+    def test_what_is_listed_is_what_blender_lists(self):
+        _, listed, _, _ = bridge()
+        told = []
+
+        def about(number, instance):
+            rows = [tuple(row) for row in instance.matrix_world]
+            shown = (instance.is_instance, instance.show_self, instance.show_particles)
+            return (number, instance.object.name, *shown, rows)
+
+        def look(depsgraph):
+            ours = [about(*item) for item in listed.Listed(depsgraph)]
+            blenders = [about(*item) for item in enumerate(depsgraph.object_instances)]
+            told.append((ours, blenders))
+
+        for i in range(3):
+            scenes.cube(f"Cube {i}", (i, 2, 3)).rotation_euler = (i, 1, 2)
+        self.in_render(look)  # nothing emits
+        instancer = scenes.cube("Instancer")
+        instancer.instance_type, instancer.show_instancer_for_render = "VERTS", False
+        self.in_render(look)  # nothing is instanced, but not all is shown
+        emitter = scenes.cube("Emitter")
+        emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+        emitter.show_instancer_for_render = False
+        self.in_render(look)
+        scenes.cube("Instance").parent = instancer
+        self.in_render(look)
+        self.assertEqual(len(told), 4)
+        for ours, blenders in told:
+            self.assertGreaterEqual(len(blenders), 3)
+            self.assertEqual(ours, blenders)
+        hidden = [name for _, name, _, shown, _, _ in told[2][0] if not shown]
+        self.assertEqual(hidden, ["Emitter"])
 
     def test_a_check_of_the_scene_finds_the_same_one_by_one(self):
         from lodestone.operators.check_scene import check_scene

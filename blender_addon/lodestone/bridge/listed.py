@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import compress
 from operator import not_
+from types import SimpleNamespace
 from typing import Any
 
 from . import compat
@@ -18,6 +19,7 @@ class Listed:
 
     def __init__(self, depsgraph: Any) -> None:
         self._depsgraph = depsgraph
+        self._objects = list(depsgraph.objects)  # until all is iterated
         instances = depsgraph.object_instances
         count = len(instances)
         columns = compat.buffer("f", 16 * count)
@@ -29,6 +31,12 @@ class Listed:
         self._wanted = bytearray(b"\1") * count
 
     def __iter__(self) -> Iterator[tuple[int, Any]]:
+        objects, self._objects = self._objects, []
+        count = len(self._wanted)
+        if len(objects) == count and not any(map(_emits, compress(objects, self._wanted))):
+            wanted = compress(range(count), self._wanted)
+            return ((number, by_itself(objects[number])) for number in wanted)
+        del objects
         return compress(enumerate(self._depsgraph.object_instances), self._wanted)
 
     def want(self, numbers: Iterable[int], wanted: bool) -> None:
@@ -40,11 +48,11 @@ class Listed:
         """Evaluated objects that are shown by themselves, at transforms that are numbers, and their
         numbers, in order. Do not keep them while iterating: as long as anybody in Python knows an
         evaluated object, its instances are handed out as that object itself."""
-        depsgraph, count = self._depsgraph, len(self._wanted)
-        objects, numbers = list(depsgraph.objects), range(count)
+        count = len(self._wanted)
+        objects, numbers = self._objects, range(count)
         if len(objects) != count:
             instanced = [False] * count
-            depsgraph.object_instances.foreach_get("is_instance", instanced)
+            self._depsgraph.object_instances.foreach_get("is_instance", instanced)
             numbers = list(compress(numbers, map(not_, instanced)))
         if len(objects) != len(numbers):
             return (), []
@@ -57,6 +65,22 @@ class Listed:
         """From the instance's own frame to the world; None: it is not made of numbers."""
         rows = self.places[12 * number : 12 * number + 12]
         return rows if self._finite or math.isfinite(sum(rows)) else None
+
+
+def by_itself(item: Any) -> Any:
+    """As the instance that shows an evaluated object, which emits nothing, by itself."""
+    return SimpleNamespace(
+        object=item,
+        is_instance=False,
+        show_self=True,
+        show_particles=False,
+        matrix_world=item.matrix_world,
+    )
+
+
+def _emits(item: Any) -> bool:
+    """Whether it may show something else than itself, or nothing."""
+    return item.is_instancer or len(item.particle_systems) > 0
 
 
 def gathered(places: Rows, numbers: Sequence[int]) -> Rows:

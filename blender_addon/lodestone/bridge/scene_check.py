@@ -11,17 +11,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
 from operator import attrgetter
-from types import SimpleNamespace
 from typing import Any
 
 from ..core.last_check import Check
 from ..core.problems import Problems
 from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
-from .ids import name_of
 from .images import ImageHeads
 from .leaves import material_slots, override_of
-from .listed import Listed, Rows, rows
+from .listed import Listed, Rows, by_itself, rows
 from .materials import Materials
 
 _ORIGINAL = attrgetter("original")
@@ -180,23 +178,13 @@ class Shown(Listed):
 def _as_stored(item: Any, seen: set[int]) -> Iterator[Any]:
     """Instances of an object that only renders show, from its stored data: without modifiers. Each
     collection once, in however many places it is: `seen` holds those that were."""
-    yield _instance(item)
+    yield by_itself(item)
     collection = item.instance_collection if item.instance_type == "COLLECTION" else None
     if collection is not None and collection.as_pointer() not in seen:
         seen.add(collection.as_pointer())
         for member in collection.all_objects:
             if not member.hide_render:
                 yield from _as_stored(member, seen)
-
-
-def _instance(item: Any) -> Any:
-    return SimpleNamespace(
-        object=item,
-        is_instance=False,
-        show_self=True,
-        show_particles=False,
-        matrix_world=item.matrix_world,
-    )
 
 
 def rendered_layers(original: Any, view_layer: Any) -> list[Any]:
