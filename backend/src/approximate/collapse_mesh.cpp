@@ -116,17 +116,20 @@ void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<ui
     mesh.live = count;
 }
 
-/// Vertices have the input's numbers as ids, copies those after them.
-void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, size_t inputs) {
+/// Vertices have the input's numbers as ids, copies those after them. Of the input's vertices at one
+/// position all are the first one (by `first`).
+void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<uint32_t> first) {
+    const auto inputs = static_cast<std::ptrdiff_t>(first.size());
+    const auto welded = static_cast<std::ptrdiff_t>(order.size());
     const auto next = static_cast<uint32_t>(inputs);
     mesh.ids = order;
     mesh.ids.resize(mesh.points.size());
-    std::iota(mesh.ids.begin() + static_cast<std::ptrdiff_t>(order.size()), mesh.ids.end(), next);
-    mesh.merged.resize(inputs + mesh.points.size() - order.size());
-    std::iota(mesh.merged.begin(), mesh.merged.end(), 0u);
+    std::iota(mesh.ids.begin() + welded, mesh.ids.end(), next);
+    mesh.merged = std::move(first);
     std::vector<uint32_t> sources = mesh.merged;
-    std::copy(mesh.sources.begin() + static_cast<std::ptrdiff_t>(order.size()), mesh.sources.end(),
-              sources.begin() + static_cast<std::ptrdiff_t>(inputs));
+    sources.insert(sources.end(), mesh.sources.begin() + welded, mesh.sources.end());
+    mesh.merged.resize(sources.size());
+    std::iota(mesh.merged.begin() + inputs, mesh.merged.end(), next);
     mesh.sources = std::move(sources);
 }
 
@@ -150,8 +153,8 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     // A power of two: points that never move come back with the bits they had.
     mesh.scale = reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 1;
     std::vector<uint32_t> order;
+    std::vector<uint32_t> first;
     {
-        std::vector<uint32_t> first;
         order = along_curve(source.positions, first);
         std::vector<uint32_t> place(first.size(), kNone);
         for (uint32_t i = 0; i < order.size(); ++i)
@@ -185,7 +188,7 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
         for (const Triangle& t : mesh.triangles)
             other.facets.emplace_back(CollapseMesh::facet_of(other.points, t));
     }
-    number(mesh, order, source.positions.size());
+    number(mesh, order, std::move(first));
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();

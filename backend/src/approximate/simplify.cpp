@@ -62,7 +62,10 @@ TracedLevel traced(CollapseMesh& mesh) {
         if (place_of[root] != kNone)
             level.origins.emplace_back(place_of[root], mesh.sources[id]);
     }
+    // Vertices at one position came from the same one.
     std::sort(level.origins.begin(), level.origins.end());
+    level.origins.erase(std::unique(level.origins.begin(), level.origins.end()),
+                        level.origins.end());
     return level;
 }
 

@@ -71,14 +71,14 @@ void Strays::find_rings() {
     source_first_.assign(source.positions.size() + 2, 0);
     for (const Triangle& t : source.triangles) {
         for (int k = 0; k < 3; ++k)
-            ++source_first_[t[k] + 2];
+            ++source_first_[welded(t[k]) + 2];
     }
     for (size_t v = 2; v < source_first_.size(); ++v)
         source_first_[v] += source_first_[v - 1];
     source_order_.resize(source_first_.back());
     for (uint32_t i = 0; i < source.triangles.size(); ++i) {
         for (int k = 0; k < 3; ++k)
-            source_order_[source_first_[source.triangles[i][k] + 1]++] = i;
+            source_order_[source_first_[welded(source.triangles[i][k]) + 1]++] = i;
     }
 }
 
@@ -91,7 +91,7 @@ void Strays::look_from_original(const Job& job) {
         for (size_t v = chunk * kSearched; v < last; ++v) {
             const auto vertex = static_cast<uint32_t>(v);
             const uint32_t from = places_.place(vertex);
-            if (from == kNone)
+            if (from == kNone || welded(vertex) != vertex)
                 continue;
             const Spot spot = find(places_.original(vertex), from);
             nearest_[v] = {spot.square, spot.triangle};
@@ -125,7 +125,7 @@ Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
         const float before = best.square;
         const glm::vec3& w = best.weights;
         const int corner = nearest_corner(w);
-        const uint32_t hub = places_.source().triangles[best.triangle][corner];
+        const uint32_t hub = welded(places_.source().triangles[best.triangle][corner]);
         const size_t last =
             std::min<size_t>(source_first_[hub + 1], source_first_[hub] + kMostRing);
         for (size_t i = source_first_[hub]; i < last; ++i) {

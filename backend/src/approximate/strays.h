@@ -70,6 +70,8 @@ private:
     }
     /// There in the beginning.
     bool known(uint32_t vertex) const { return vertex + 1 < adjacency_.first.size(); }
+    /// The first of the original's vertices at that position.
+    uint32_t welded(uint32_t vertex) const { return mesh_.sources[vertex]; }
     void find_rings();
     void look_from_original(const Job& job);
     Spot find(const glm::vec3& point, uint32_t from) const;
@@ -88,7 +90,7 @@ private:
         nearest_;                         // of the original's vertices: square, triangle
     std::vector<uint32_t> first_;         // of each triangle, in:
     std::vector<uint32_t> order_;         // the original's vertices, by triangle
-    std::vector<uint32_t> source_first_;  // of each of the original's vertices, in:
+    std::vector<uint32_t> source_first_;  // of each of the original's welded vertices, in:
     std::vector<uint32_t> source_order_;  // its triangles
 };
 

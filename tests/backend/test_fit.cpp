@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the fit: what it measures a simplified mesh against is all of the original.
+#include "approximate/fit_sample.h"
+#include "approximate/pass.h"
+#include "backend/grids.h"
+#include "backend/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using namespace lodestone::approximate;
+
+namespace {
+
+Mesh hills(uint32_t n) {
+    Mesh mesh = shapes::grid(n);
+    for (glm::vec3& p : mesh.positions)
+        p.z = 0.05f * std::sin(9 * p.x) * std::cos(7 * p.y);
+    return mesh;
+}
+
+/// Every triangle has vertices of its own, as flat-shaded models and soups of triangles do.
+Mesh separate(const Mesh& mesh) {
+    Mesh out;
+    for (const Triangle& t : mesh.triangles) {
+        const auto first = static_cast<uint32_t>(out.positions.size());
+        for (int k = 0; k < 3; ++k) {
+            out.positions.push_back(mesh.positions[t[k]]);
+            if (!mesh.uvs.empty())
+                out.uvs.push_back(mesh.uvs[t[k]]);
+        }
+        out.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return out;
+}
+
+std::vector<glm::vec3> corners_of(const Mesh& mesh) {
+    std::vector<glm::vec3> corners;
+    for (const Triangle& t : mesh.triangles) {
+        for (int k = 0; k < 3; ++k)
+            corners.push_back(mesh.positions[t[k]]);
+    }
+    return corners;
+}
+
+}  // namespace
+
+// They were met by no sample, so what was fitted was drawn to a third of the surface.
+TEST(Fit, TrianglesWithVerticesOfTheirOwnAreFittedLikeWeldedOnes) {
+    const Mesh welded = hills(80);
+    for (const SimplifyMode mode : {SimplifyMode::Fast, SimplifyMode::Best}) {
+        SimplifyOptions options;
+        options.mode = mode;
+        const Mesh one = simplify(welded, 1200, options);
+        const Mesh other = simplify(separate(welded), 1200, options);
+        EXPECT_EQ(corners_of(one), corners_of(other)) << static_cast<int>(mode);
+    }
+}
+
+TEST(Fit, BothSidesOfATextureSeamHaveTheirPlace) {
+    const Mesh mesh = shapes::seamed_cylinder(64, 40);
+    CollapseMesh working = open(mesh, {});
+    Reducer(working, {}).reduce(800, {}, [] {});
+    const FitPlaces places(working, mesh);
+    const std::vector<uint32_t> welded = weld(mesh);
+    size_t copies = 0;
+    for (uint32_t v = 0; v < welded.size(); ++v) {
+        ASSERT_NE(places.place(v), kNone) << v;
+        EXPECT_EQ(places.place(v), places.place(welded[v])) << v;
+        copies += welded[v] != v;
+    }
+    EXPECT_EQ(copies, 41u);
+    Adjacency adjacency;
+    adjacency.build(working);
+    FitSamples samples;
+    sample_surface(places, adjacency, mesh.triangles.size(), 0, {}, samples);
+    std::vector<uint8_t> sampled(mesh.triangles.size(), 0);
+    for (const FitSample& sample : samples)
+        sampled[sample.source] = 1;
+    EXPECT_GE(std::count(sampled.begin(), sampled.end(), 1),
+              static_cast<std::ptrdiff_t>(mesh.triangles.size() * 99 / 100));
+}
