@@ -44,7 +44,7 @@ struct Reduced {
     double worst() const {
         const Strays strays(*places, adjacency, samples, {});
         float most = 0;
-        for (Stray stray : strays.list({})) {
+        for (Stray stray : strays.list(mesh.triangles.size(), {})) {
             if (strays.confirm(stray))
                 most = std::max(most, stray.square);
         }
@@ -91,6 +91,20 @@ TEST(Insert, WhatMissesMostMissesLessAfterwards) {
         EXPECT_LE(reduced.mesh.triangles.size(), triangles + 80);
         EXPECT_GT(reduced.mesh.triangles.size(), triangles);
         EXPECT_EQ(reduced.mesh.live, reduced.mesh.triangles.size());
+    }
+}
+
+TEST(Insert, TheWorstAreTheSameWhenOnlyTheseAreLookedFor) {
+    const Reduced reduced(ridges(120), 700);
+    const Strays strays(*reduced.places, reduced.adjacency, reduced.samples, {});
+    const std::vector<Stray> all = strays.list(reduced.mesh.triangles.size(), {});
+    for (const size_t most : {1u, 20u, 300u}) {
+        const std::vector<Stray> some = strays.list(most, {});
+        ASSERT_GE(some.size(), most);
+        for (size_t i = 0; i < most; ++i) {
+            EXPECT_EQ(some[i].square, all[i].square) << most << ' ' << i;
+            EXPECT_EQ(some[i].triangle, all[i].triangle) << most << ' ' << i;
+        }
     }
 }
 

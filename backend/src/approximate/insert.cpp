@@ -281,10 +281,11 @@ bool Inserter::split_edge(const Stray& stray, int corner) {
 }
 
 size_t Inserter::insert(size_t most, const Job& job) {
-    std::vector<Stray> strays = strays_.list(job);
+    const size_t tried = kTried * most;
+    std::vector<Stray> strays = strays_.list(tried, job);
     size_t moved = 0;
     size_t inserted = 0;
-    for (size_t i = 0; i < strays.size() && inserted < most && i < kTried * most; ++i) {
+    for (size_t i = 0; i < strays.size() && inserted < most && i < tried; ++i) {
         Stray& stray = strays[i];
         if (touched_[stray.triangle] != 0 || !strays_.confirm(stray) ||
             touched_[stray.triangle] != 0)

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace lodestone::approximate {
 namespace {
@@ -140,9 +141,17 @@ Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
 }
 
 /// How far a place of the mesh is from the original, beginning where a sample of that is nearest.
+/// What is below `least` or the worst so far is left as soon as it is known to be.
 void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
-                  std::span<const uint32_t> hubs, Stray& worst) const {
-    float least = 1e30f;
+                  std::span<const uint32_t> hubs, float least, Stray& worst) const {
+    const float enough = std::max(least, worst.square);
+    const std::span<const uint32_t> own = by_triangle_.on(triangle);
+    for (const uint32_t index : own.first(std::min(own.size(), kMostStarts))) {
+        const uint32_t source = samples_[index].source;
+        if (source != kNone && nearest_on(original(source), place).square < enough)
+            return;
+    }
+    float nearest = 1e30f;
     uint32_t from = kNone;
     for (const uint32_t hub : hubs) {
         for (const uint32_t t : ring(hub)) {
@@ -155,8 +164,8 @@ void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& we
                                       sample.weights[2] * c[2] + sample.miss * sample.toward -
                                       place;
                 const float square = glm::dot(off, off);
-                if (square < least) {
-                    least = square;
+                if (square < nearest) {
+                    nearest = square;
                     from = sample.source;
                 }
             }
@@ -173,7 +182,7 @@ void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& we
              kNone,       spot.triangle};
 }
 
-void Strays::look_from_mesh(std::vector<Stray>& worst_of, const Job& job) const {
+void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job& job) const {
     const size_t count = mesh_.triangles.size();
     parallel_for((count + kLooked - 1) / kLooked, [&](size_t chunk) {
         job.check();
@@ -184,20 +193,20 @@ void Strays::look_from_mesh(std::vector<Stray>& worst_of, const Job& job) const 
             const TrianglePoints at = corners(t);
             Stray& worst = worst_of[t];
             const std::array<uint32_t, 3> all{c.x, c.y, c.z};
-            look((at[0] + at[1] + at[2]) * (1.0f / 3), t, glm::vec3(1.0f / 3), all, worst);
+            look((at[0] + at[1] + at[2]) * (1.0f / 3), t, glm::vec3(1.0f / 3), all, least, worst);
             for (int k = 0; k < 3; ++k) {
                 const int next = (k + 1) % 3;
                 if (all[k] < all[next]) {
                     const std::array<uint32_t, 2> ends{all[k], all[next]};
                     glm::vec3 weights(0.0f);
                     weights[k] = weights[next] = 0.5f;
-                    look(0.5f * (at[k] + at[next]), t, weights, ends, worst);
+                    look(0.5f * (at[k] + at[next]), t, weights, ends, least, worst);
                 }
                 if (adjacency_.around(all[k]).front() == t) {
                     glm::vec3 weights(0.0f);
                     weights[k] = 1;
                     look(at[k], t, weights, std::span(all).subspan(static_cast<size_t>(k), 1),
-                         worst);
+                         least, worst);
                 }
             }
         }
@@ -254,7 +263,7 @@ bool Strays::confirm(Stray& stray) const {
     return stray.square >= kConfirmed * before;
 }
 
-std::vector<Stray> Strays::list(const Job& job) const {
+std::vector<Stray> Strays::list(size_t most, const Job& job) const {
     std::vector<Stray> worst(mesh_.triangles.size());
     for (uint32_t t = 0; t < worst.size(); ++t) {
         Stray& stray = worst[t];
@@ -271,7 +280,16 @@ std::vector<Stray> Strays::list(const Job& job) const {
         stray.weights = nearest_on(corners(t), stray.point).weights;
         stray.source = source_order_[source_first_[stray.vertex]];
     }
-    look_from_mesh(worst, job);
+    float least = 0;  // as many are that far off already
+    if (most > 0 && most < worst.size()) {
+        std::vector<float> squares(worst.size());
+        std::transform(worst.begin(), worst.end(), squares.begin(),
+                       [](const Stray& stray) { return stray.square; });
+        const auto nth = squares.begin() + static_cast<std::ptrdiff_t>(most - 1);
+        std::nth_element(squares.begin(), nth, squares.end(), std::greater<>());
+        least = *nth;
+    }
+    look_from_mesh(worst, least, job);
     std::erase_if(worst, [](const Stray& stray) { return stray.triangle == kNone; });
     std::stable_sort(worst.begin(), worst.end(),
                      [](const Stray& x, const Stray& y) { return x.square > y.square; });

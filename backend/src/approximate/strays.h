@@ -40,8 +40,9 @@ public:
     Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
            const Job& job);
 
-    /// Of each triangle the worst, worst first.
-    std::vector<Stray> list(const Job& job) const;
+    /// Of each triangle the worst, worst first. Right as far as the first `most`: what cannot be one
+    /// of them is not looked for.
+    std::vector<Stray> list(size_t most, const Job& job) const;
     /// Looks from other sides, too: for the original's vertex from where its neighbors went, from a
     /// place of the mesh to all that is sampled around it. False: it is not far off after all.
     bool confirm(Stray& stray) const;
@@ -76,9 +77,9 @@ private:
     void look_from_original(const Job& job);
     Spot find(const glm::vec3& point, uint32_t from) const;
     void look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
-              std::span<const uint32_t> hubs, Stray& worst) const;
+              std::span<const uint32_t> hubs, float least, Stray& worst) const;
     void confirm_from_mesh(Stray& stray) const;
-    void look_from_mesh(std::vector<Stray>& worst, const Job& job) const;
+    void look_from_mesh(std::vector<Stray>& worst, float least, const Job& job) const;
 
     const FitPlaces& places_;
     const CollapseMesh& mesh_;
