@@ -33,7 +33,7 @@ struct Reduced {
         SimplifyOptions options;
         options.mode = SimplifyMode::Best;
         Reducer(mesh, options).reduce(target, {}, [] {});
-        fit(mesh, source, adjacency, {20, 1, 1, 3, false}, {});
+        fit(mesh, source, adjacency, {20, 1, 1, 1, 3, false}, {});
         refresh();
     }
     void refresh() {

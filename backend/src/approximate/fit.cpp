@@ -14,6 +14,8 @@ namespace {
 constexpr size_t kFewSamples = 1000;
 /// On a triangle, for flips to be worth their time.
 constexpr size_t kSamplesToFlip = 3;
+/// Sweeps, times the square root of the original's triangles for each vertex.
+constexpr double kSweeps = 0.7;
 
 /// As far as no triangle turns over.
 void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::vec3>& moves) {
@@ -59,15 +61,19 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
     FitPlaces places(mesh, source);
     const double want = std::min(options.samples * static_cast<double>(mesh.points.size()),
                                  options.share * static_cast<double>(source.triangles.size()));
+    const double coarse =
+        static_cast<double>(source.triangles.size()) / static_cast<double>(mesh.points.size());
+    const int sweeps = std::clamp(static_cast<int>(std::lround(kSweeps * std::sqrt(coarse))),
+                                  options.least_sweeps, options.most_sweeps);
     FitSamples samples;
     std::vector<glm::vec3> moves;
-    for (int sweep = 0; sweep < options.sweeps; ++sweep) {
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
         const size_t more = 2 * mesh.outline.size() + (options.careful ? mesh.points.size() : 0);
         sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kFewSamples), more,
                        job, samples);
         const bool dense = samples.size() >= kSamplesToFlip * mesh.triangles.size();
         // The last sweep only moves: what was flipped then fits, too.
-        if (options.careful && dense && sweep + 1 < options.sweeps &&
+        if (options.careful && dense && sweep + 1 < sweeps &&
             flip_edges(places, adjacency, job, samples) > 0)
             adjacency.build(mesh);
         if (options.careful)

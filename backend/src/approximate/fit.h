@@ -9,7 +9,10 @@ namespace lodestone::approximate {
 struct FitOptions {
     double samples = 8;  // of the original's triangles, for each vertex of the simplified mesh
     double share = 1;    // of the original's triangles, at most
-    int sweeps = 1;      // how often each sample looks for what it is nearest to
+    /// How often each sample looks for what it is nearest to: the coarser the mesh, the more often
+    /// it pays, and the less time it takes.
+    int least_sweeps = 1;
+    int most_sweeps = 1;
     int iterations = 3;  // of the solver in each sweep
     /// Flips edges before solving and draws back vertices that stick out. Takes many samples.
     bool careful = false;
