@@ -111,3 +111,13 @@ TEST(Fit, ACoarseLevelIsNearerAfterMoreSweeps) {
     std::cout << few << " -> " << many << '\n';
     EXPECT_LT(many, 0.99 * few);
 }
+
+TEST(Fit, CreasesDoNotDrawWhatLiesBesideThemAway) {
+    Mesh mesh = shapes::grid(160);
+    for (glm::vec3& p : mesh.positions)
+        p.z = 0.1f * std::abs(std::sin(7 * p.x + 3 * p.y)) + 0.02f * std::sin(4 * p.y);
+    const double squares = mean_after(mesh, 1200, {20, 1, 1, 1, 5, false});
+    const double distances = mean_after(mesh, 1200, {20, 1, 1, 1, 5, true});
+    std::cout << squares << " -> " << distances << '\n';
+    EXPECT_LT(distances, 0.98 * squares);
+}

@@ -17,6 +17,26 @@ constexpr size_t kSamplesToFlip = 3;
 /// Sweeps, times the square root of the original's triangles for each vertex.
 constexpr double kSweeps = 0.7;
 
+/// What misses by more than the mean of its kind (surface, outline) counts in proportion to the
+/// distance, not to its square: least squares of reweighted samples. What fits already is then not
+/// moved for the sake of what cannot fit. source: Huber 1964 (robust estimation).
+void weigh_by_distance(FitSamples& samples) {
+    double misses[2] = {0, 0};
+    double areas[2] = {0, 0};
+    for (const FitSample& s : samples) {
+        misses[s.source == kNone] += double{s.area} * std::abs(s.miss);
+        areas[s.source == kNone] += s.area;
+    }
+    float means[2] = {0, 0};
+    for (int kind = 0; kind < 2; ++kind)
+        means[kind] = areas[kind] > 0 ? static_cast<float>(misses[kind] / areas[kind]) : 0;
+    for (FitSample& s : samples) {
+        const float mean = means[s.source == kNone];
+        if (std::abs(s.miss) > mean)
+            s.area *= mean / std::abs(s.miss);
+    }
+}
+
 /// As far as no triangle turns over.
 void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::vec3>& moves) {
     CollapseMesh& mesh = places.mesh();
@@ -79,6 +99,8 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         if (options.careful)
             sample_vertices(places, adjacency, samples);
         sample_outline(places, adjacency, job, samples);
+        if (options.careful)
+            weigh_by_distance(samples);
         solve_fit(mesh, samples, options.iterations, moves);
         move(places, adjacency, moves);
     }
