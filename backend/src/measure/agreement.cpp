@@ -264,6 +264,7 @@ Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& ski
 
 AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) const {
     const double sample = 2 * radius_ / side_;
+    const std::vector<Part> parts = parts_of(finest_, other, kViews, side_);
     // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
     // power of the size, nearly. Pictures of a pixel each are few: by chance they may differ alone.
     double last_misses = 0;
@@ -273,7 +274,7 @@ AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) 
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
             continue;
-        const double misses = misses_of(finest_, other, kViews, side_, pixel).worst();
+        const double misses = misses_of(finest_, other, parts, side_, pixel).worst();
         if (misses > 1) {
             if (last > 0) {
                 const double part =

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/misses.h"
 
+#include <glm/common.hpp>
+
 #include <array>
 
 namespace lodestone::measure {
@@ -26,13 +28,32 @@ struct Pixel {
 
 }  // namespace
 
-Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, size_t views,
-                 int side, int pixel) {
+std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                           size_t views, int side) {
+    std::vector<Part> out(views, {glm::ivec2(side), glm::ivec2(0)});
+    size_t at = 0;
+    for (Part& part : out) {
+        for (int row = 0; row < side; ++row) {
+            for (int column = 0; column < side; ++column, ++at) {
+                if (!(a[at].w > 0 || b[at].w > 0))
+                    continue;
+                const glm::ivec2 here(column, row);
+                part.low = glm::min(part.low, here);
+                part.high = glm::max(part.high, here + 1);
+            }
+        }
+    }
+    return out;
+}
+
+Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                 const std::vector<Part>& parts, int side, int pixel) {
     constexpr double kCovered = 1.0 / 255;
     Misses out;
-    for (size_t view = 0; view < views; ++view) {
-        for (int row = 0; row < side; row += pixel) {
-            for (int column = 0; column < side; column += pixel) {
+    for (size_t view = 0; view < parts.size(); ++view) {
+        const glm::ivec2 low = parts[view].low / pixel * pixel;
+        for (int row = low.y; row < parts[view].high.y; row += pixel) {
+            for (int column = low.x; column < parts[view].high.x; column += pixel) {
                 const size_t at = (view * static_cast<size_t>(side) + static_cast<size_t>(row)) *
                                       static_cast<size_t>(side) +
                                   static_cast<size_t>(column);

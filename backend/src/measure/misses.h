@@ -4,6 +4,8 @@
 
 #include "measure/agreement.h"
 
+#include <glm/vec2.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -48,9 +50,19 @@ struct Misses {
     }
 };
 
-/// Of pictures of `side` by `side` samples (light, coverage), one a view, in pixels of `pixel` by `pixel`
-/// samples, which divides the side. `a` is the finest's.
-Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, size_t views,
-                 int side, int pixel);
+/// The part of a picture where either shows something: from `low` to below `high` (column, row).
+struct Part {
+    glm::ivec2 low{0};
+    glm::ivec2 high{0};
+};
+
+/// Of each view of pictures of `side` by `side` samples (light, coverage), one a view.
+std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                           size_t views, int side);
+
+/// Of such pictures, in pixels of `pixel` by `pixel` samples, which divides the side. `a` is the
+/// finest's; `parts` are theirs.
+Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                 const std::vector<Part>& parts, int side, int pixel);
 
 }  // namespace lodestone::measure
