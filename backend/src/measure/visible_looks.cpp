@@ -10,10 +10,15 @@
 namespace lodestone::measure {
 namespace {
 
+/// Whether it is known which side of a place is seen; then it is a unit vector.
+bool is_sided(const glm::dvec3& side) {
+    constexpr double kUnknown = 0.5;  // square of a length
+    return !(glm::dot(side, side) < kUnknown);
+}
+
 /// Whether two places can be seen at once: not the grass from above and the road from below.
 bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
-    constexpr double kUnknown = 0.5;  // square of a length; sides are unit vectors
-    return glm::dot(a, a) < kUnknown || glm::dot(b, b) < kUnknown || glm::dot(a, b) > 0;
+    return !is_sided(a) || !is_sided(b) || glm::dot(a, b) > 0;
 }
 
 std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Looks* palette) {
@@ -66,7 +71,7 @@ VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const Look
         const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
         if (visible[i].look != kAnyLook)
             mixed_.push_back({visible[i].point, visible[i].side, Looks::light_of(visible[i].color),
-                              visible[i].look});
+                              is_sided(visible[i].side)});
     }
 }
 
@@ -95,15 +100,20 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
                                    double most) const {
     constexpr size_t kFirst = 16;
     // A square and the number of what is so near: bits of floats that are not negative are in order.
-    std::vector<uint64_t> near;
-    near.reserve(mixed_.size());
+    // Nobody can guess which are, so all are written, and the next one over what is not.
+    std::vector<uint64_t> near(mixed_.size());
+    const bool sided = is_sided(from.side);
+    size_t count = 0;
     for (uint32_t i = 0; i < mixed_.size(); ++i) {
-        const glm::dvec3 arm = mixed_[i].point - from.point;
+        const Mixed& next = mixed_[i];
+        const glm::dvec3 arm = next.point - from.point;
         const double square = glm::dot(arm, arm);
-        if (square < most * most && face_alike(mixed_[i].side, from.side))
-            near.push_back(uint64_t{std::bit_cast<uint32_t>(static_cast<float>(square))} << 32u |
-                           i);
+        near[count] = uint64_t{std::bit_cast<uint32_t>(static_cast<float>(square))} << 32u | i;
+        const bool turned = !(glm::dot(next.side, from.side) > 0);
+        const bool reached = square < most * most;
+        count += static_cast<size_t>(reached & !(sided & next.sided & turned));
     }
+    near.resize(count);
     const Looks::Lights wanted = Looks::lights_alike(color);
     glm::dvec3 sum(0.0);
     // Mostly the nearest few are enough: the rest is not sorted.

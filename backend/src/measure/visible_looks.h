@@ -51,7 +51,7 @@ private:
         glm::dvec3 point;
         glm::dvec3 side;
         glm::dvec3 light;
-        uint16_t look;
+        bool sided;
     };
 
     std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const;
