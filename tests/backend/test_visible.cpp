@@ -7,6 +7,7 @@
 #include "measure/sobol.h"
 #include "measure/strata.h"
 #include "measure/surface_inertia.h"
+#include "measure/surface_samples.h"
 #include "measure/visible.h"
 #include "measure/visible_sampler.h"
 
@@ -432,4 +433,31 @@ TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {
     EXPECT_EQ(once.moments, again.moments);
     EXPECT_EQ(measure::seen_from_outside(mesh, scene, sampler.sides(), 4, 9),
               measure::seen_from_outside(mesh, scene, 4, 9));
+}
+
+TEST(Visible, RaysThatWereCastBeforeAreNotCastAgain) {
+    const Mesh mesh = clutter();
+    const ray::Scene scene(mesh);
+    VisibleOptions options;
+    options.seed = 9;
+    const measure::VisibleSampler sampler(mesh, scene, options.seed);
+    std::vector<measure::SurfaceSample> samples;
+    std::vector<measure::Cast> known =
+        measure::add_visible_points(mesh, sampler, {}, 1500, {}, samples);
+    EXPECT_GE(known.size(), 750u);
+    EXPECT_LE(known.size(), 3000u);
+    const Attributes cast = measure_visible(mesh, sampler, nullptr, options).attributes;
+    const Attributes told = measure_visible(mesh, sampler, nullptr, options, {}, known).attributes;
+    EXPECT_EQ(told.visible_area, cast.visible_area);
+    EXPECT_EQ(told.moments, cast.moments);
+    EXPECT_EQ(told.centroid, cast.centroid);
+    // What is told is believed.
+    for (measure::Cast& ray : known)
+        ray.count = 0;
+    const Attributes less = measure_visible(mesh, sampler, nullptr, options, {}, known).attributes;
+    EXPECT_LT(less.visible_area, 0.9 * cast.visible_area);
+    // More than there are rays.
+    options.rays = 100;
+    EXPECT_EQ(measure_visible(mesh, sampler, nullptr, options, {}, known).attributes.visible_area,
+              0);
 }

@@ -83,8 +83,10 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     measure::VisibleOptions options;
     options.rays = rays_;
     options.seed = seed_;
-    attributes_ =
-        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, job).attributes;
+    // The reference was made with the same rays.
+    attributes_ = measure::measure_visible(finest, reference_.sampler(), skin_, options, {},
+                                           reference_.take_cast(), job)
+                      .attributes;
 }
 
 bool is_flat(double across, double through) {

@@ -210,7 +210,7 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
       diameter_(2 * radius_of(finest)) {
     std::vector<Sample>& points = seen_.points;
     if (!sampler_.empty()) {
-        add_visible_points(finest, sampler_, surface, options.samples, job, points);
+        cast_ = add_visible_points(finest, sampler_, surface, options.samples, job, points);
         const std::vector<WeightedVertex> vertices =
             weighted_vertices(finest, options.most_vertices, options.seed);
         if (surface.skin && surface.skin->transmits())

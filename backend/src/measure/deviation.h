@@ -71,6 +71,8 @@ public:
     const ray::Scene& scene() const { return scenes_.whole(); }
     /// Likewise; of the mesh it was made from, which must still be there.
     const VisibleSampler& sampler() const { return sampler_; }
+    /// What the first rays of sampler() found, once.
+    std::vector<Cast> take_cast() { return std::move(cast_); }
 
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return seen_.points.size(); }
@@ -91,6 +93,7 @@ private:
     DeviationOptions options_;
     LookScenes scenes_;
     VisibleSampler sampler_;
+    std::vector<Cast> cast_;
     const Looks* palette_;
     Seen seen_;
     Seen few_;  // half of them

@@ -168,20 +168,18 @@ void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
     }
 }
 
-void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const Surface& surface,
-                        uint32_t count, const Job& job, std::vector<SurfaceSample>& out) {
+std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
+                                     const Surface& surface, uint32_t count, const Job& job,
+                                     std::vector<SurfaceSample>& out) {
     const uint64_t most = uint64_t{count} * kMostRaysPerSample;
-    struct Found {
-        std::array<VisiblePoint, 2> points;
-        int count = 0;
-    };
-    std::vector<Found> found;
+    std::vector<Cast> found;
+    std::vector<Cast> first;
     std::vector<VisiblePoint> points;
     uint64_t rays = 0;
     uint64_t hits = 0;
     // Behind glass everything can be seen.
     const bool through = surface.skin && surface.skin->transmits();
-    const auto cast = [&](uint32_t ray, Found& out_of_ray) {
+    const auto cast = [&](uint32_t ray, Cast& out_of_ray) {
         if (!through) {
             out_of_ray.count = sampler.cast(ray, out_of_ray.points);
             return;
@@ -198,15 +196,17 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
             for (size_t i = block * kBlock; i < std::min(batch, (block + 1) * kBlock); ++i)
                 cast(static_cast<uint32_t>(rays + i), found[i]);
         });
-        for (const Found& ray : found) {
+        for (const Cast& ray : found) {
             hits += ray.count > 0 ? 1 : 0;
             for (int i = 0; i < ray.count; ++i)
                 points.push_back(ray.points[static_cast<size_t>(i)]);
+            if (!through && first.size() < 2 * size_t{count})
+                first.push_back(ray);
         }
         rays += batch;
     }
     if (points.empty())
-        return;
+        return first;
     const double visible = (through ? sampler.possible_area() : sampler.reference_area()) *
                            static_cast<double>(hits) / static_cast<double>(rays);
     if (points.size() > count)
@@ -221,6 +221,7 @@ void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const S
     for (const VisiblePoint& point : points)
         out.push_back(
             shown_at(mesh, surface, point, (sides.both(point.triangle) ? 0.5 : 1) * weight));
+    return first;
 }
 
 void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,

@@ -56,9 +56,11 @@ void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
                         std::vector<SurfaceSample>& out);
 
 /// Points that rays from outside hit, sharing the visible area of one side equally. Of something
-/// with glass all points: rays end at glass, but eyes do not.
-void add_visible_points(const Mesh& mesh, const VisibleSampler& sampler, const Surface& surface,
-                        uint32_t count, const Job& job, std::vector<SurfaceSample>& out);
+/// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found, up to
+/// twice as many as points were wanted; with glass none.
+std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
+                                     const Surface& surface, uint32_t count, const Job& job,
+                                     std::vector<SurfaceSample>& out);
 
 /// Vertices from beside which some ray sees infinity.
 void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,

@@ -103,30 +103,30 @@ struct Tally {
 };
 
 /// Casts rays 0 ... count - 1 of a sequence on all threads and adds what they found in their order.
+/// The first of them are `known`.
 template <typename Numbers>
 void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& numbers,
-          uint64_t count, bool with_points, Tally& tally, const Job& job) {
-    struct Found {
-        std::array<VisiblePoint, 2> points;
-        int count = 0;
-    };
-    std::vector<Found> found(with_points ? count : 0);
+          uint64_t count, bool with_points, std::span<const Cast> known, Tally& tally,
+          const Job& job) {
+    std::vector<Cast> found(with_points ? count : 0);
     std::vector<uint8_t> hit(count, 0);
     parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         const ray::Burst burst;
         const uint64_t end = std::min<uint64_t>(count, (block + 1) * kBlock);
         for (uint64_t i = block * kBlock; i < end; ++i) {
-            const std::array<double, 4> u = numbers(static_cast<uint32_t>(i));
-            if (with_points) {
-                found[i].count = sampler.cast(u, found[i].points);
-                hit[i] = found[i].count > 0 ? 1 : 0;
-            } else {
-                hit[i] = sampler.hits(u) ? 1 : 0;
+            if (!with_points) {
+                hit[i] = sampler.hits(numbers(static_cast<uint32_t>(i))) ? 1 : 0;
+                continue;
             }
+            if (i < known.size())
+                found[i] = known[i];
+            else
+                found[i].count = sampler.cast(numbers(static_cast<uint32_t>(i)), found[i].points);
+            hit[i] = found[i].count > 0 ? 1 : 0;
         }
     });
-    for (const Found& ray : found) {
+    for (const Cast& ray : found) {
         for (int i = 0; i < ray.count; ++i) {
             tally.add(ray.points[static_cast<size_t>(i)]);
             varied.add(ray.points[static_cast<size_t>(i)], tally.varied);
@@ -141,13 +141,15 @@ void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& nu
 
 /// A fixed number of rays, as even as can be.
 void sample_evenly(const VisibleSampler& sampler, const Varied& varied,
-                   const VisibleOptions& options, Tally& tally, const Job& job) {
+                   const VisibleOptions& options, std::span<const Cast> known, Tally& tally,
+                   const Job& job) {
     const Sobol sobol(options.seed);
     const uint64_t most = std::min<uint64_t>(options.rays, ~0u);
     while (tally.rays < most) {
         const auto first = static_cast<uint32_t>(tally.rays);
         const auto numbers = [&](uint32_t i) { return sobol.point(first + i); };
-        cast(sampler, varied, numbers, std::min(kBatch, most - first), true, tally, job);
+        cast(sampler, varied, numbers, std::min(kBatch, most - first), true,
+             known.subspan(std::min<size_t>(first, known.size())), tally, job);
         job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
     }
 }
@@ -163,7 +165,7 @@ void sample_until_sure(const VisibleSampler& sampler, const Varied& varied,
         const Strata strata(scramble(options.seed) + batch, static_cast<uint32_t>(next));
         const auto numbers = [&](uint32_t i) { return strata.point(i); };
         const bool with_points = sampler.from_surface() || tally.rays < kMostLinesWithPoints;
-        cast(sampler, varied, numbers, next, with_points, tally, job);
+        cast(sampler, varied, numbers, next, with_points, {}, tally, job);
         job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
         const double off = tally.paired_error() / options.relative_error;
         if (tally.hits >= kFewestHits && off <= 1)
@@ -234,12 +236,12 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
                         const Job& job) {
     return measure_visible(
         mesh, VisibleSampler(mesh, scene, options.seed, options.casting, options.relative_error),
-        skin, options, tags, job);
+        skin, options, tags, {}, job);
 }
 
 Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
                         const VisibleOptions& options, std::span<const uint32_t> tags,
-                        const Job& job) {
+                        std::span<const Cast> known, const Job& job) {
     if (!tags.empty() && tags.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, tags.size(), " tags for ", mesh.triangles.size(),
              " triangles");
@@ -265,7 +267,7 @@ Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const r
     else if (until_sure)
         sample_until_sure(sampler, varied, options, tally, job);
     else
-        sample_evenly(sampler, varied, options, tally, job);
+        sample_evenly(sampler, varied, options, known, tally, job);
     out.pilot_rays = sampler.pilot_rays();
     attributes.rays = tally.rays;
     if (sampler.shows_all())

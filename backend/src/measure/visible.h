@@ -43,10 +43,11 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         const Job& job = {});
 
-/// The same with a sampler of it made before, of this seed, casting and relative error.
+/// The same with a sampler of it made before, of this seed, casting and relative error. `known` is what
+/// its first rays found, if somebody has cast them.
 Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
-                        const Job& job = {});
+                        std::span<const Cast> known = {}, const Job& job = {});
 
 /// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
 /// dropped before simplifying. What touches nothing that is seen by half of its rays has no others.

@@ -19,6 +19,12 @@ struct VisiblePoint {
     double v = 0;
 };
 
+/// What one ray found: 0...2 points, all with equal weight.
+struct Cast {
+    std::array<VisiblePoint, 2> points;
+    int count = 0;
+};
+
 /// Which rays a VisibleSampler casts: those that a pilot of both found to be surer for their cost,
 /// or for checks always the same ones.
 enum class Casting : uint8_t { Best, FromBound, FromSurface };
@@ -52,7 +58,7 @@ public:
     /// What the choice between the two kinds has cost.
     uint64_t pilot_rays() const { return pilot_rays_; }
 
-    /// Casts the ray of four numbers in [0, 1): 0...2 visible points, all with equal weight.
+    /// Casts the ray of four numbers in [0, 1).
     int cast(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
     /// Casts ray number `ray` of an even sequence.
     int cast(uint32_t ray, std::array<VisiblePoint, 2>& points) const {
