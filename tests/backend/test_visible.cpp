@@ -435,6 +435,21 @@ TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {
               measure::seen_from_outside(mesh, scene, 4, 9));
 }
 
+TEST(Visible, AreaAloneIsWhatAllAttributesTell) {
+    std::vector<Mesh> meshes{clutter(), shapes::cube(), shapes::book(8), Mesh{}};
+    meshes.push_back(shapes::sphere(0.1, 1));
+    append(meshes.back(), meshes[0], {glm::dmat3(1.0), {40, 0, 0}});
+    for (const Mesh& mesh : meshes) {
+        const ray::Scene scene(mesh);
+        VisibleOptions options;
+        options.rays = 1000;
+        options.seed = 4;
+        const measure::VisibleSampler sampler(mesh, scene, options.seed);
+        EXPECT_EQ(measure::visible_area(sampler, options.rays),
+                  measure_visible(mesh, scene, nullptr, options).attributes.visible_area);
+    }
+}
+
 TEST(Visible, RaysThatWereCastBeforeAreNotCastAgain) {
     const Mesh mesh = clutter();
     const ray::Scene scene(mesh);

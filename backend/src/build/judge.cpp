@@ -113,13 +113,10 @@ bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
     // Few rays tell what is nearly alike or far from it.
     constexpr double kUnsure = 0.15;
     const ray::Scene scene(level, skin_);
-    measure::VisibleOptions options;
-    options.seed = seed_;
+    const measure::VisibleSampler sampler(level, scene, seed_);
     double change = 0;
     for (const uint64_t share : {8, 2}) {
-        options.rays = rays_ / share;
-        const double visible =
-            measure::measure_visible(level, scene, skin_, options, {}, job).attributes.visible_area;
+        const double visible = measure::visible_area(sampler, rays_ / share, job);
         change = std::abs(visible / attributes_.visible_area - 1);
         if (std::abs(change - kMostAreaChange) > kUnsure)
             break;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace lodestone::measure {
@@ -300,6 +301,25 @@ Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const r
     for (size_t tag = 0; tag < out.hits_by_tag.size(); ++tag)
         out.hits_by_tag[tag] = static_cast<uint64_t>(std::llround(out.share_by_tag[tag] * hits));
     return out;
+}
+
+double visible_area(const VisibleSampler& sampler, uint64_t rays, const Job& job) {
+    if (sampler.empty() || rays == 0)
+        return 0;
+    if (sampler.shows_all())
+        return sampler.possible_area();
+    const uint64_t count = std::min<uint64_t>(rays, ~0u);
+    std::atomic<uint64_t> hits{0};
+    parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
+        job.check();
+        const ray::Burst burst;
+        const uint64_t end = std::min<uint64_t>(count, (block + 1) * kBlock);
+        uint64_t own = 0;
+        for (uint64_t i = block * kBlock; i < end; ++i)
+            own += sampler.hits(static_cast<uint32_t>(i)) ? 1 : 0;
+        hits += own;
+    });
+    return sampler.reference_area() * static_cast<double>(hits) / static_cast<double>(count);
 }
 
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,

@@ -66,6 +66,7 @@ public:
     }
     /// As cast(), without the points: whether there are any.
     bool hits(const std::array<double, 4>& u) const;
+    bool hits(uint32_t ray) const { return hits(numbers_.point(ray)); }
     /// A point uniform in possible_area(), seen or not.
     VisiblePoint on_surface(const std::array<double, 4>& u) const;
     VisiblePoint on_surface(uint32_t ray) const { return on_surface(numbers_.point(ray)); }
