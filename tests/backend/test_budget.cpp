@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards budgets: the finest cut that costs no more, and what is said where there is none.
-#include "backend/bent.h"
+#include "backend/forest.h"
 #include "quality/budget.h"
+#include "quality/criterion.h"
 
 #include <gtest/gtest.h>
 
@@ -86,6 +87,82 @@ TEST(Budget, IsNeverExceededAndMoreNeverMeansCoarser) {
         }
         EXPECT_EQ(last, 0);
     }
+}
+
+TEST(Budget, NothingFinerFitsWhateverBendsQuality) {
+    int found = 0;
+    for (uint32_t seed = 0; seed < 60; ++seed) {
+        forest::Forest forest(seed);
+        View view = forest.view();
+        Modifiers& modifiers = view.modifiers;
+        view.pixel_error = seed % 3 == 0 ? 0.3 * forest.any() : 0;
+        modifiers.lenses = {bent::lens(100 * forest.any(), 300 * forest.any(), 5),
+                            bent::lens(-100 * forest.any(), 300 * forest.any(), 0.3)};
+        modifiers.lenses[0].filter = LensFilter(seed % 3);
+        modifiers.lenses[0].objects = {1, 5};
+        if (seed % 5 == 1)
+            modifiers.screen_lenses = {bent::screen_lens(320, 180, 200, 3)};
+        if (seed % 5 == 2)
+            modifiers.depth = 1.5;
+        if (seed % 5 == 3)
+            modifiers.criterion = Criterion::Area;
+        if (seed % 5 == 4)
+            modifiers.criterion = Criterion::Feature;
+        modifiers.when_moving = seed % 4 == 1;
+        modifiers.when_dark = seed % 4 == 2;
+        modifiers.off_screen = seed % 4 == 3 ? OffScreen::Shadows : OffScreen::Full;
+        const auto table = quality::Table::whole(forest.model, forest.model.root, view.kinds);
+        const quality::Cut finest = quality::choose(table, view);
+        for (const double share : {0.02, 0.3, 0.9, 1.0}) {
+            const auto part = [&](uint64_t all) {
+                return 1 + static_cast<uint64_t>(share * static_cast<double>(all));
+            };
+            const quality::Budget budget{seed % 2 == 0 ? part(finest.triangles) : 0,
+                                         seed % 2 == 0 ? 0 : part(finest.bytes)};
+            const quality::Budgeted made = quality::choose_within(table, view, budget);
+            EXPECT_LE(made.cuts, 3u);
+            EXPECT_EQ(made.fits, budget.fits(made.cut));
+            View other = view;
+            other.pixel_error = made.pixel_error;
+            forest::expect_same(quality::choose(table, other), made.cut);
+            if (made.pixel_error == view.pixel_error || !made.fits)
+                continue;
+            ++found;
+            for (int i = 0; i < 60; ++i) {
+                other.pixel_error = std::nextafter(made.pixel_error, 0) * std::exp2(-0.2 * i);
+                EXPECT_FALSE(other.pixel_error >= view.pixel_error &&
+                             budget.fits(quality::choose(table, other)))
+                    << other.pixel_error << " fits, too, not only " << made.pixel_error;
+            }
+            if (testing::Test::HasFailure()) {
+                ADD_FAILURE() << "with seed " << seed << ", " << share;
+                return;
+            }
+        }
+    }
+    EXPECT_GT(found, 60);
+}
+
+TEST(Budget, ThresholdsAreExactToTheLastBit) {
+    for (const Criterion criterion : {Criterion::Resolution, Criterion::Feature, Criterion::Area}) {
+        forest::Forest any(5);
+        for (int i = 0; i < 200; ++i) {
+            View view = any.view();
+            view.modifiers.criterion = criterion;
+            const double error = std::exp2(200 * any.any() - 100);
+            quality::Sight sight{100 * any.any(), any.any(), 2 * any.any(), 3 * any.any(),
+                                 any.any()};
+            const double least = quality::least_threshold(view, sight, error, 1, 3);
+            view.pixel_error = least;
+            EXPECT_TRUE(quality::good_enough(view, sight, error, 1, 3));
+            view.pixel_error = std::nextafter(least, 0);
+            EXPECT_FALSE(quality::good_enough(view, sight, error, 1, 3));
+        }
+    }
+    View view = from(300);
+    EXPECT_EQ(quality::least_threshold(view, {300, 0.5, 1, 1, 0}, 0, 0, 1), 0);
+    EXPECT_EQ(quality::least_threshold(view, {300, 0.5, 1, kInfinity, 0}, 1, 1, 2), kInfinity);
+    EXPECT_EQ(quality::least_threshold(view, {0, 0, 1, 1, 0}, 1, 1, 2), kInfinity);
 }
 
 TEST(Budget, OneThingThatIsTooDearDoesNotFit) {

@@ -171,13 +171,12 @@ TEST(Table, NoChoiceAsksForMoreThanThePixelError) {
             quality::Table::whole(forest.model, forest.model.root, kAllKinds);
         View view = forest.view();
         for (view.pixel_error = 0.1; view.pixel_error < 64; view.pixel_error *= 1.5) {
-            double least = -1;
-            const auto cut = quality::choose_within_budget(table, view, {}, least);
-            EXPECT_LE(least, view.pixel_error * (1 + 1e-12));
-            EXPECT_GE(least, 0);
-            View exact = view;
-            exact.pixel_error = least * (1 + 1e-12);
-            expect_same(cut.value(), quality::choose(table, exact));
+            const quality::Cut cut = quality::choose(table, view);
+            for (const uint32_t node : cut.chosen) {
+                const quality::Reason reason = quality::why(forest.model, view, cut, node);
+                EXPECT_LE(reason.chosen.error_px * reason.chosen.total,
+                          view.pixel_error * (1 + 1e-12));
+            }
         }
     }
 }

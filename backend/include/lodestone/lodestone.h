@@ -876,7 +876,7 @@ typedef struct lds_budget_report {
     uint32_t struct_size;
     int32_t fits;       /* 0: even the coarsest cut costs more; it is the one made */
     double pixel_error; /* the least threshold, not below the view's, whose cut fits */
-    uint64_t cuts;      /* that were tried */
+    uint64_t cuts;      /* how often the model was gone through: at most 3 */
 } lds_budget_report;
 /* The finest cut within the budget. A larger budget never gives a larger threshold. */
 LDS_API lds_status lds_cut_create_within(lds_model* model, const lds_view* view,

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/budget.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "quality/cost_sweep.h"
 
 namespace lodestone::quality {
 namespace {
-
-constexpr int kFinestPower = -10;  // 1/1024 px: below it the eye, and POV-Ray, see nothing
-constexpr int kCoarsestPower = 40;
-constexpr double kClose = 1 + 1e-9;  // thresholds nearer than this are one
-constexpr int kMostSteps = 64;
 
 class Search {
 public:
@@ -19,76 +12,38 @@ public:
         : table_(table), view_(view), budget_(budget), job_(job) {}
 
     Budgeted run() {
-        double fails = view_.pixel_error;
-        if (try_at(fails))
-            return std::move(best_);
-        const int first =
-            std::max(kFinestPower,
-                     fails > 0 ? static_cast<int>(std::floor(std::log2(fails))) + 1 : kFinestPower);
-        bool found = false;
-        for (int power = first; power <= kCoarsestPower && !found; ++power) {
-            found = try_at(std::ldexp(1, power));
-            if (!found)
-                fails = std::ldexp(1, power);
-        }
-        if (!found && !try_at(std::numeric_limits<double>::infinity())) {
-            best_.cut = cut_at(std::numeric_limits<double>::infinity(), {}).value();
-            best_.pixel_error = least_;
-            return std::move(best_);
-        }
-        bisect(fails);
-        snap(fails);
-        return std::move(best_);
+        if (try_at(view_.pixel_error, budget_))
+            return std::move(found_);
+        ++found_.cuts;
+        CostSweep sweep(table_, view_, job_);
+        const std::optional<double> least =
+            sweep.least_that_fits(table_.find(table_.model().root), budget_);
+        if (!try_at(least.value_or(sweep.coarsest()), least ? budget_ : Budget{}))
+            fail(Status::Internal, "a Pixel Error of ", least.value_or(0),
+                 " does not fit the budget");
+        found_.fits = least.has_value();
+        return std::move(found_);
     }
 
 private:
-    std::optional<Cut> cut_at(double threshold, const Budget& budget) {
-        job_.check();
-        view_.pixel_error = threshold;
-        return choose_within_budget(table_, view_, budget, least_, job_);
-    }
-
-    bool try_at(double threshold) {
-        std::optional<Cut> cut = cut_at(threshold, budget_);
-        ++best_.cuts;
+    bool try_at(double threshold, const Budget& budget) {
+        View view = view_;
+        view.pixel_error = threshold;
+        std::optional<Cut> cut = choose_within_budget(table_, view, budget, job_);
+        ++found_.cuts;
         if (!cut)
             return false;
-        best_.cut = std::move(*cut);
-        best_.pixel_error = threshold;
-        best_.fits = true;
+        found_.cut = std::move(*cut);
+        found_.pixel_error = threshold;
+        found_.fits = true;
         return true;
     }
 
-    /// Leaves in best_ the finest that fits, in `fails` the threshold just below that does not.
-    void bisect(double& fails) {
-        for (int step = 0; step < kMostSteps; ++step) {
-            const double least = fails > 0 ? fails : std::ldexp(1, kFinestPower - kMostSteps);
-            const double most = std::isinf(best_.pixel_error) ? std::ldexp(1, 2 * kCoarsestPower)
-                                                              : best_.pixel_error;
-            if (most <= least * kClose)
-                return;
-            const double middle = std::sqrt(least * most);
-            if (!try_at(middle))
-                fails = middle;
-        }
-    }
-
-    /// The least threshold that gives the cut found, to the last bit.
-    void snap(double fails) {
-        double exact = least_;
-        for (int step = 0; step < 4 && exact > fails && exact < best_.pixel_error; ++step) {
-            if (try_at(exact))
-                return;
-            exact = std::nextafter(exact, std::numeric_limits<double>::infinity());
-        }
-    }
-
     const Table& table_;
-    View view_;
+    const View& view_;
     const Budget& budget_;
     const Job& job_;
-    Budgeted best_;
-    double least_ = 0;  // threshold of the cut found last
+    Budgeted found_;
 };
 
 }  // namespace

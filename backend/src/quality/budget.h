@@ -10,14 +10,13 @@ struct Budgeted {
     Cut cut;
     double pixel_error = 0;  // the threshold it was chosen with
     bool fits = false;       // false: the coarsest cut, which costs more than the budget
-    uint32_t cuts = 0;       // that were tried
+    uint32_t cuts = 0;       // passes over the model
 };
 
-/// The cut of the least threshold not below view.pixel_error whose cost fits. A larger budget never
-/// gives a coarser threshold. Memory may rise while the threshold does, where a mesh is then used at two
-/// levels instead of one: finer thresholds that fit behind such a hump are found where a power of two is
-/// among them. Throws Error(InvalidArgument) for Criterion::Distance.
-/// cost: up to some 100 cuts, each given up when it is known not to fit
+/// The cut of the least threshold not below view.pixel_error whose cost fits. So a larger budget never
+/// gives a coarser threshold, also where memory rises with it, as a mesh is then used at two levels
+/// instead of one. Throws Error(InvalidArgument) for Criterion::Distance.
+/// cost: the view's own cut, given up when it is known not to fit, a CostSweep, and the cut found
 Budgeted choose_within(const Model& model, const View& view, const Budget& budget,
                        const Job& job = {});
 /// The same with a whole table of the model for the view's kinds.

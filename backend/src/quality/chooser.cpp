@@ -65,6 +65,36 @@ bool see(const View& view, FactorField& field, const Node& node, bool group, con
     return true;
 }
 
+bool place(const Table& table, const Node& group, const TableChild& placed, Node& node,
+           double& enlarge, double& demand) {
+    node.object = placed.object;
+    node.hidden = group.hidden;
+    node.importance = group.importance;
+    demand = 1;
+    if (placed.wish != 0) {
+        const TableWish& wish = table.wish(placed.wish);
+        node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
+        if (node.hidden == kAllRays)
+            return false;
+        node.importance = group.importance * wish.importance;
+        node.coarsest = wish.coarsest;
+        node.finest = wish.finest;
+        demand = wish.demand;
+    }
+    if (group.coarsest == 0) {
+        node.coarsest = 0;
+        node.finest = 0;
+    }
+    node.world.offset = group.world.linear * placed.offset + group.world.offset;
+    if (placed.linear == kUnturned) {
+        node.world.linear = group.world.linear;
+    } else {
+        node.world.linear = group.world.linear * table.linear(placed.linear);
+        enlarge = stretch(node.world);
+    }
+    return true;
+}
+
 /// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
 /// costs fall from finest to coarsest.
 Decision decide(const Table& table, const View& view, uint32_t index, const Node& node,
@@ -180,34 +210,12 @@ void Chooser::visit_child(const Entry& entry) {
     const Node& group = (*nodes_)[entry.parent];
     const Frame& above = frames_[entry.depth - 1];
     Node node;
-    node.object = placed.object;
     node.parent = entry.parent;
     node.placement = entry.position;
-    node.hidden = group.hidden;
-    node.importance = group.importance;
-    double demand = 1;
-    if (placed.wish != 0) {
-        const TableWish& wish = table_.wish(placed.wish);
-        node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
-        if (node.hidden == kAllRays)  // nothing would show it
-            return;
-        node.importance = group.importance * wish.importance;
-        node.coarsest = wish.coarsest;
-        node.finest = wish.finest;
-        demand = wish.demand;
-    }
-    if (group.coarsest == 0) {
-        node.coarsest = 0;
-        node.finest = 0;
-    }
     double enlarge = above.stretch;
-    node.world.offset = group.world.linear * placed.offset + group.world.offset;
-    if (placed.linear == kUnturned) {
-        node.world.linear = group.world.linear;
-    } else {
-        node.world.linear = group.world.linear * table_.linear(placed.linear);
-        enlarge = stretch(node.world);
-    }
+    double demand = 1;
+    if (!place(table_, group, placed, node, enlarge, demand))
+        return;
     path_.lenses = above.path.lenses;
     if (view_.modifiers.when_moving)
         path_ = field_.below(above.path, group.world,
@@ -244,9 +252,6 @@ void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField:
     const auto index = static_cast<uint32_t>(nodes_->size());
     if (made.opened) {
         node.opened = true;
-        if (made.cheaper)
-            least_ = std::max(least_, threshold_for(view_, sight, made.level->opens_from,
-                                                    made.level->lod, levels_of(known.row)));
         nodes_->push_back(node);
         if (seen_ != nullptr)
             seen_->push_back({known.row, 0, enlarge, sight.total});
@@ -262,13 +267,7 @@ void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField:
             {known.row, static_cast<uint32_t>(&level - &table_.level(0)), enlarge, sight.total});
     if (cut_ == nullptr)
         return;
-    const double error_px = error_on_screen(sight, level.error);
-    if (made.good)
-        least_ = std::max(least_, view_.modifiers.criterion == Criterion::Resolution
-                                      ? error_px * sight.total
-                                      : threshold_for(view_, sight, level.error, level.lod,
-                                                      levels_of(known.row)));
-    take(index, level, error_px / factors.off_screen);
+    take(index, level, error_on_screen(sight, level.error) / factors.off_screen);
 }
 
 void Chooser::push_children(const Known& known, uint32_t index, double enlarge,

@@ -24,6 +24,11 @@ void refuse_nonsense(const View& view);
 bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
          double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors);
 
+/// What a group, opened, places: the node, where it is and by whom it is seen, its stretch (from the
+/// group's) and its object's demand. False: nothing would show it.
+bool place(const Table& table, const Node& group, const TableChild& placed, Node& node,
+           double& enlarge, double& demand);
+
 /// Whether levels are judged by their errors.
 inline bool by_error(const View& view) {
     return view.modifiers.criterion == Criterion::Resolution ||
@@ -61,8 +66,6 @@ public:
 
     /// All of a cut, but its kinds and sums where `budget` was exceeded, or with one `most`: false.
     bool run(uint32_t root, const Budget& budget, Cut& cut);
-    /// The least threshold that gives the same (of Criterion::Distance: the greatest).
-    double least() const { return least_; }
 
     /// Appends the nodes alone, and what is kept of each.
     void run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& seen);
@@ -102,7 +105,6 @@ private:
     void push_children(const Known& known, uint32_t index, double enlarge,
                        const FactorField::Path& path, uint32_t depth);
     Known known(uint32_t row) const;
-    size_t levels_of(uint32_t row) const { return table_.object(row).all_levels; }
     void take(uint32_t index, const TableLevel& level, double shown_px);
     bool too_dear() const;
     void visit_all();
@@ -122,7 +124,6 @@ private:
     std::vector<Frame> frames_;  // by depth
     std::vector<bool> drawn_;    // by TableLevel::distinct
     std::array<uint64_t, kKinds> kinds_{};
-    double least_ = 0;
     size_t visits_ = 0;
 };
 

@@ -68,8 +68,9 @@ inline bool good_enough(const View& view, const Sight& sight, double error, size
            error * sight.stretch * sight.total <= view.pixel_error * sight.pixel;
 }
 
-/// The least threshold that this is good enough for (of Criterion::Distance: the greatest).
-double threshold_for(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+/// The least threshold that this is good enough for, to the last bit as good_enough() finds it;
+/// infinite: there is none. Not of Criterion::Distance. The view's own threshold is lost.
+double least_threshold(View& view, const Sight& sight, double error, size_t lod, size_t levels);
 
 /// Square metres that the whole picture covers at distance z.
 double picture_area(const View& view, double z);

@@ -34,7 +34,7 @@ Cut choose_below(const Model& model, ObjectIndex root, const View& view, const J
 }
 
 std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
-                                        double& least, const Job& job) {
+                                        const Job& job) {
     refuse_nonsense(view);
     if (table.kinds() != view.kinds)
         fail(Status::Internal, "the table was made for other kinds");
@@ -43,13 +43,11 @@ std::optional<Cut> choose_within_budget(const Table& table, const View& view, co
     Cut cut;
     if (!chooser.run(table.find(root_of(table.model())), budget, cut))
         return std::nullopt;
-    least = chooser.least();
     return cut;
 }
 
 Cut choose(const Table& table, const View& view, const Job& job) {
-    double least = 0;
-    return choose_within_budget(table, view, {}, least, job).value();
+    return choose_within_budget(table, view, {}, job).value();
 }
 
 double error_on_screen(const Table& table, const View& view, const Node& node) {

@@ -63,10 +63,9 @@ Cut choose(const Model& model, const View& view, const Job& job = {});
 /// The same with a whole table of the model for the view's kinds: without making one.
 Cut choose(const Table& table, const View& view, const Job& job = {});
 
-/// The same; nothing, and sooner, when it costs more than the budget. `least`: of all thresholds, the
-/// one that gives the same cut (of Criterion::Distance: the greatest).
+/// The same; nothing, and sooner, when it costs more than the budget.
 std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
-                                        double& least, const Job& job = {});
+                                        const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});

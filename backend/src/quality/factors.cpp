@@ -95,10 +95,10 @@ double coarser_by_darkness(double shown) {
     return std::max(1.0, kMiddleShown / std::max(shown, kLeastShown));
 }
 
-FactorField::FactorField(const Model& model, const View& view)
+FactorField::FactorField(const Model& model, const View& view, bool in_any_order)
     : model_(model),
       view_(view),
-      lenses_(model, view.modifiers.lenses),
+      lenses_(model, view.modifiers.lenses, in_any_order),
       frame_(view.camera, view.width, view.height) {
     const Modifiers& modifiers = view.modifiers;
     refuse_nonsense(modifiers);

@@ -36,7 +36,8 @@ double coarser_by_darkness(double shown);
 class FactorField {
 public:
     /// Throws Error(InvalidArgument) for modifiers that make no sense.
-    FactorField(const Model& model, const View& view);
+    /// `in_any_order`: paths stay valid, whatever was visited since.
+    FactorField(const Model& model, const View& view, bool in_any_order = false);
     FactorField(const FactorField&) = delete;
     FactorField& operator=(const FactorField&) = delete;
 
@@ -58,7 +59,7 @@ public:
         bool open = false;
         bool gone = false;
     };
-    /// Occurrences in depth-first order. `path` becomes that of what is below it.
+    /// Occurrences in depth-first order, or in any where that was asked for. `path` becomes that of what is below it.
     Effect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
               const Bound& bound, double z, Path& path);
 

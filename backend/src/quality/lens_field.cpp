@@ -88,7 +88,8 @@ LensReach reach(const DetailLens& lens, const Bound& world) {
     return LensField::reach(LensField::prepared(lens), world);
 }
 
-LensField::LensField(const Model& model, const std::vector<DetailLens>& lenses) {
+LensField::LensField(const Model& model, const std::vector<DetailLens>& lenses, bool in_any_order)
+    : in_any_order_(in_any_order) {
     if (lenses.size() > kMostLenses)
         fail(Status::InvalidArgument, lenses.size(), " detail lenses; at most ", kMostLenses);
     uint64_t lists = 0;
@@ -134,8 +135,10 @@ LensField::Path LensField::root() {
 LensField::Effect LensField::at(ObjectIndex object, bool group, const Bound& world,
                                 const Path& above) {
     Effect effect;
-    touching_.resize(above.end);  // all that was visited below an earlier one is done
-    effect.below = {above.end, above.end, above.lists};
+    if (!in_any_order_)
+        touching_.resize(above.end);  // all that was visited below an earlier one is done
+    const auto first = static_cast<uint32_t>(touching_.size());
+    effect.below = {first, first, above.lists};
     if (!in_list_.empty())
         effect.below.lists |= in_list_[object];
     if (world.empty())
@@ -173,6 +176,12 @@ LensField::Effect LensField::at(ObjectIndex object, bool group, const Bound& wor
         }
     }
     effect.below.end = static_cast<uint32_t>(touching_.size());
+    if (in_any_order_ &&
+        effect.below.end - first == above.end - above.begin) {  // all that touch it
+        touching_.resize(first);
+        effect.below.begin = above.begin;
+        effect.below.end = above.end;
+    }
     return effect;
 }
 

@@ -24,7 +24,8 @@ LensReach reach(const DetailLens& lens, const Bound& world);
 class LensField {
 public:
     /// Throws Error(InvalidArgument) naming a lens that makes no sense.
-    LensField(const Model& model, const std::vector<DetailLens>& lenses);
+    /// `in_any_order`: paths stay valid, whatever was visited since; it takes more memory.
+    LensField(const Model& model, const std::vector<DetailLens>& lenses, bool in_any_order = false);
 
     bool empty() const { return lenses_.empty(); }
 
@@ -42,7 +43,8 @@ public:
         bool gone = false;  // hidden by a lens
         Path below;         // for what it places
     };
-    /// Occurrences in depth-first order: what is below one before the next beside it.
+    /// Occurrences in depth-first order, what is below one before the next beside it, or in any in
+    /// which groups come before what they place.
     Effect at(ObjectIndex object, bool group, const Bound& world, const Path& above);
 
 private:
@@ -67,7 +69,8 @@ private:
     std::vector<Lens> lenses_;
     std::vector<uint64_t> in_list_;     // by object; empty without filters
     std::vector<uint64_t> holds_list_;  // by object: lists that hold it or something below it
-    std::vector<uint32_t> touching_;    // lenses, a stack
+    std::vector<uint32_t> touching_;    // lenses; a stack, or all that was ever found
+    const bool in_any_order_;
 };
 
 }  // namespace lodestone::quality

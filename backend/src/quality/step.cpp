@@ -81,7 +81,7 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     for (size_t i = 0; i < made.nodes.size(); ++i) {
         if (!made.nodes[i].opened)
             made.chosen.push_back(static_cast<uint32_t>(i));
-        tally_.count(*table_, made.nodes[i], fresh_.seen[i], true, made);
+        count(made.nodes[i], fresh_.seen[i], true, made);
     }
     made.kinds = named(tally_.kinds());
     kept_.seen.swap(fresh_.seen);
@@ -197,14 +197,19 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
     }
 }
 
+void Stepper::count(const Node& node, const Seen& seen, bool more, Cut& cut) {
+    if (!node.opened)
+        tally_.count(table_->level(seen.level), more, cut);
+}
+
 void Stepper::commit(Cut& cut) {
     splicer_.reserve(edits_, fresh_, cut, kept_);  // what may fail comes first
     const auto kinds = tally_.kinds();
     for (const Edit& edit : edits_) {
         for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)
-            tally_.count(*table_, cut.nodes[i], kept_.seen[i], false, cut);
+            count(cut.nodes[i], kept_.seen[i], false, cut);
         for (uint32_t i = edit.begin; i < edit.end; ++i)
-            tally_.count(*table_, fresh_.nodes[i], fresh_.seen[i], true, cut);
+            count(fresh_.nodes[i], fresh_.seen[i], true, cut);
     }
     splicer_.replace(edits_, fresh_, cut, kept_);
     if (kinds != tally_.kinds())

@@ -36,6 +36,7 @@ private:
     void look_at_fresh(size_t begin);
     FactorField::Path path_below(const Cut& cut, uint32_t node);
     void find_edits(const Cut& cut, const Job& job);
+    void count(const Node& node, const Seen& seen, bool more, Cut& cut);
     void commit(Cut& cut);
 
     std::shared_ptr<const Table> table_;

@@ -135,7 +135,7 @@ void Table::expand(uint32_t row) {
         set_openings(made);
 }
 
-/// Tells all placements where their objects' children are.
+/// Tells all placements where their objects' children are, and rows whether they last.
 void Table::link() {
     for (TableChild& child : children_) {
         child.first_child = objects_[child.row].first_child;
@@ -144,6 +144,19 @@ void Table::link() {
             continue;
         child.first_row = children_[child.first_child].row;
         child.first_level = rows_[child.first_row].first_level;
+    }
+    for (TableRow& row : rows_)
+        row.lasting = row.drawable && !row.group && row.level_count > 0;
+    for (auto row = static_cast<uint32_t>(rows_.size());
+         row-- > 0;) {  // most groups precede theirs
+        const TableObject& object = objects_[row];
+        bool lasting = rows_[row].lasting;
+        for (uint32_t i = 0; !lasting && i < object.child_count; ++i) {
+            const TableChild& child = children_[object.first_child + i];
+            const TableWish& wish = wishes_[child.wish];
+            lasting = rows_[child.row].lasting && wish.hidden == 0 && wish.coarsest == kAnyLevel;
+        }
+        rows_[row].lasting = lasting && rows_[row].drawable;
     }
 }
 

@@ -60,6 +60,9 @@ struct alignas(64) TableRow {
     bool group : 1 = false;
     bool drawable : 1 = false;  // it has representations
     bool centered : 1 = false;  // its bound's center is its box's
+    /// However it is seen, it or something in it is drawn, where a placement forbids no level. Of a
+    /// whole table alone; false: it may be so.
+    bool lasting : 1 = false;
 };
 
 /// The rest of it.

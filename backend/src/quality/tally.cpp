@@ -8,10 +8,7 @@ void Tally::clear(const Table& table) {
     kinds_.fill(0);
 }
 
-void Tally::count(const Table& table, const Node& node, const Seen& seen, bool more, Cut& cut) {
-    if (node.opened)
-        return;
-    const TableLevel& level = table.level(seen.level);
+void Tally::count(const TableLevel& level, bool more, Cut& cut) {
     uint32_t& uses = uses_[level.distinct];
     // A composite is copied for each occurrence.
     const bool own = level.kind == Kind::Composite || uses == (more ? 0u : 1u);

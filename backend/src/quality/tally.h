@@ -10,8 +10,8 @@ class Tally {
 public:
     /// Of nothing.
     void clear(const Table& table);
-    /// Adds a node's costs to the cut's sums, or takes them away.
-    void count(const Table& table, const Node& node, const Seen& seen, bool more, Cut& cut);
+    /// Adds what something costs that is drawn by a level to the cut's sums, or takes it away.
+    void count(const TableLevel& level, bool more, Cut& cut);
     const std::array<uint64_t, kKinds>& kinds() const { return kinds_; }
 
 private:
