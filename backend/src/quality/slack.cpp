@@ -15,8 +15,22 @@ constexpr double kTurned = 1e-9;  // by so much pixels may differ and count as t
 constexpr double kRounding = 1e-8;
 constexpr double kOfPlaces = 1e-11;
 constexpr double kOfTravel = 1e-12;
-constexpr double kFarthest = 1e9;  // metres of travel
-constexpr size_t kBlock = 16;      // nodes that are skipped together
+constexpr double kFarthest = 1e9;    // metres of travel
+constexpr size_t kBlock = 32;        // nodes that are skipped together
+constexpr double kSingle = 0x1p-22;  // rounding of single precision, and more
+constexpr float kExpired = -std::numeric_limits<float>::infinity();
+constexpr double kLargestSingle = std::numeric_limits<float>::max();
+
+/// In single precision, and no more than it is.
+float below(double value) {
+    const double less = value * (value > 0 ? 1 - kSingle : 1 + kSingle);
+    return less < -kLargestSingle ? kExpired : static_cast<float>(std::min(less, kLargestSingle));
+}
+
+/// And no less; no number where that is too much.
+float above(double value) {
+    return value < kLargestSingle ? -below(-value) : std::numeric_limits<float>::quiet_NaN();
+}
 
 }  // namespace
 
@@ -61,7 +75,7 @@ void Slack::resize(size_t count) {
 }
 
 void Slack::grow(size_t most) {
-    for (std::vector<double>* one : {&expires_, &sizes_, &places_}) {
+    for (std::vector<float>* one : {&expires_, &sizes_, &places_}) {
         if (one->capacity() < most)
             one->reserve(most + most / 4);
     }
@@ -109,9 +123,9 @@ void Slack::set(size_t index, const Walk& walk, const Node& node, const Seen& se
     const double farther = high * (1 - kRounding) - z;
     const double slack = std::min(nearer, farther);
     const double off = walk.margin(node, seen, z);
-    expires_[index] = numbers && slack > 0 ? walk.travel + slack - off : -kInfinity;
-    sizes_[index] = made.opened ? -1 : made.level->error * seen.stretch / walk.frame;
-    places_[index] = z + walk.travel - off;
+    expires_[index] = numbers && slack > 0 ? below(walk.travel + slack - off) : kExpired;
+    sizes_[index] = made.opened ? -1 : above(made.level->error * seen.stretch / walk.frame);
+    places_[index] = below(z + walk.travel - off);
 }
 
 void Slack::copy(const Slack& from, size_t index, size_t to) {
@@ -121,23 +135,24 @@ void Slack::copy(const Slack& from, size_t index, size_t to) {
 }
 
 void Slack::move(size_t begin, size_t end, size_t to) {
-    for (std::vector<double>* one : {&expires_, &sizes_, &places_})
-        std::memmove(one->data() + to, one->data() + begin, (end - begin) * sizeof(double));
+    for (std::vector<float>* one : {&expires_, &sizes_, &places_})
+        std::memmove(one->data() + to, one->data() + begin, (end - begin) * sizeof(float));
 }
 
 void Slack::find_expired(double travel, std::vector<uint32_t>& expired) const {
     expired.clear();
     const size_t count = size();
-    const double* expires = expires_.data();
+    const float* expires = expires_.data();
+    const float gone = above(travel);
     for (size_t begin = 0; begin < count; begin += kBlock) {
         const size_t end = std::min(begin + kBlock, count);
         int any = 0;
         for (size_t i = begin; i < end; ++i)
-            any |= static_cast<int>(!(expires[i] > travel));
+            any |= static_cast<int>(!(expires[i] > gone));
         if (any == 0)
             continue;
         for (size_t i = begin; i < end; ++i) {
-            if (!(expires[i] > travel))
+            if (!(expires[i] > gone))
                 expired.push_back(static_cast<uint32_t>(i));
         }
     }
@@ -153,7 +168,7 @@ void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen, Cut& c
             return;
         const Sight sight = walk.sight_of(node, seen[index]);
         const double z = sight.z;
-        places_[index] = z + walk.travel - walk.margin(node, seen[index], z);
+        places_[index] = below(z + walk.travel - walk.margin(node, seen[index], z));
         const TableLevel& level = walk.table.level(seen[index].level);
         const double error = error_on_screen(sight, level.error);
         if (error > cut.largest_error_px ||
@@ -165,20 +180,22 @@ void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen, Cut& c
     if (guess != kNoParent)
         consider(guess);
     const size_t count = size();
-    const double* sizes = sizes_.data();
-    const double* places = places_.data();
-    const double near = walk.view.camera.near_clip;
+    const float* sizes = sizes_.data();
+    const float* places = places_.data();
+    const float gone = above(walk.travel);
+    const float near = below(walk.view.camera.near_clip);
+    // The sum and the product are rounded, too.
+    const auto least = [&] { return below(cut.largest_error_px * (1 - 4 * kSingle)); };
     for (size_t begin = 0; begin < count; begin += kBlock) {
         const size_t end = std::min(begin + kBlock, count);
-        const double best = cut.largest_error_px * (1 - 2 * kRounding);
+        const float best = least();
         int any = 0;
         for (size_t i = begin; i < end; ++i)
-            any |= static_cast<int>(!(sizes[i] <= best * std::max(places[i] - walk.travel, near)));
+            any |= static_cast<int>(!(sizes[i] <= best * std::max(places[i] - gone, near)));
         if (any == 0)
             continue;
         for (size_t i = begin; i < end; ++i) {
-            const double least = cut.largest_error_px * (1 - 2 * kRounding);
-            if (!(sizes[i] <= least * std::max(places[i] - walk.travel, near)))
+            if (!(sizes[i] <= least() * std::max(places[i] - gone, near)))
                 consider(i);
         }
     }

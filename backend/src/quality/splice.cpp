@@ -82,10 +82,19 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
         if (run.shift != 0)
             kept.slack.move(run.begin, run.end, run.begin + run.shift);
         one(cut.nodes.data());
+        uint32_t before = kNoParent;  // siblings in a run have a parent before it, or in it
+        uint32_t now = kNoParent;
         for (uint32_t i = run.begin + run.shift; run.begin > 0 && i < run.end + run.shift; ++i) {
             uint32_t& parent = cut.nodes[i].parent;
-            parent =
-                parent >= run.begin && parent != kNoParent ? parent + run.shift : moved(parent);
+            if (parent >= run.begin) {
+                parent += run.shift;
+                continue;
+            }
+            if (parent != before) {
+                before = parent;
+                now = moved(parent);
+            }
+            parent = now;
         }
     };
     // What moves down overwrites only what has moved down before it, or is gone; then, from the end,
@@ -104,12 +113,20 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
     kept.slack.resize(wanted);
     spare_chosen_.clear();
     auto chosen = cut.chosen.begin();
+    // The first of those chosen next, of so many nodes, that is not before a node.
+    const auto chosen_from = [&](uint32_t node, uint32_t nodes) {
+        const auto rest = static_cast<uint32_t>(cut.chosen.end() - chosen);
+        return std::lower_bound(chosen, chosen + std::min(nodes, rest), node);
+    };
     for (size_t k = 0; k < runs_.size(); ++k) {
         const Run& run = runs_[k];
-        chosen = std::lower_bound(chosen, cut.chosen.end(), run.begin);
-        const auto end = std::lower_bound(chosen, cut.chosen.end(), run.end);
+        if (k > 0)
+            chosen = chosen_from(run.begin, edits[k - 1].removed);
+        const auto end = chosen_from(run.end, run.end - run.begin);
+        size_t to = spare_chosen_.size();
+        spare_chosen_.resize(to + static_cast<size_t>(end - chosen));
         for (; chosen != end; ++chosen)
-            spare_chosen_.push_back(*chosen + run.shift);
+            spare_chosen_[to++] = *chosen + run.shift;
         if (k < edits.size())
             insert(edits[k], run.end + run.shift, moved(fresh.nodes[edits[k].begin].parent), fresh,
                    cut, kept);
