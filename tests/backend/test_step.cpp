@@ -3,6 +3,7 @@
 #include "backend/forest.h"
 #include "quality/step.h"
 
+#include <functional>
 #include <limits>
 
 using namespace lodestone;
@@ -24,9 +25,10 @@ void turn(View& view, double angle) {
     view.camera.up = {0, 0, glm::length(view.camera.up)};
 }
 
-/// Walks over a forest, most steps short, some far, and compares every cut. Returns the share of nodes
-/// that was looked at in steps from a known cut.
-double walk(Forest& forest, View view, int steps) {
+/// Walks over a forest, most steps short, some far, and compares every cut. `change`: what else becomes
+/// of the view between steps. Returns the share of nodes that was looked at in steps from a known cut.
+double walk(
+    Forest& forest, View view, int steps, const std::function<void(View&)>& change = [](View&) {}) {
     const auto table = table_of(forest.model);
     quality::Stepper stepper(table);
     quality::Cut cut;
@@ -46,6 +48,7 @@ double walk(Forest& forest, View view, int steps) {
             view.camera.position[axis] += far * (forest.any() - 0.5);
         if (forest.any() < 0.3)
             turn(view, 6 * forest.any());
+        change(view);
     }
     return looked / all;
 }
@@ -112,6 +115,89 @@ TEST(Step, IsTheCutMadeAnewAmongLenses) {
         view.modifiers.lenses[2].objects = {0, 4};
         walk(forest, view, 30);
     }
+}
+
+TEST(Step, IsTheCutMadeAnewWhileLensesMove) {
+    double most = 0;
+    for (uint32_t seed = 200; seed < 230; ++seed) {
+        Forest forest(seed);
+        View view = forest.view();
+        view.camera.orthographic = false;
+        view.modifiers.lenses = {bent::lens(0, 100, 5), bent::lens(50, 60, 0.3),
+                                 bent::lens(-50, 80, 2)};
+        view.modifiers.lenses[1].shape = LensShape::Box;
+        view.modifiers.lenses[2].filter = LensFilter::Refine;
+        view.modifiers.lenses[2].objects = {0, 4};
+        const double looked = walk(forest, view, 40, [&](View& next) {
+            std::vector<DetailLens>& lenses = next.modifiers.lenses;
+            const double what = forest.any();
+            if (what < 0.1 && lenses.size() > 3)
+                lenses.pop_back();
+            else if (what < 0.2 && lenses.size() < 6)
+                lenses.push_back(bent::lens(300 * forest.any() - 150, 90 * forest.any(), 3));
+            else if (what < 0.3)
+                lenses[1].strength = 0.2 + 4 * forest.any();
+            else if (what < 0.4)
+                lenses[2].objects = {static_cast<ObjectIndex>(forest.any() * 8)};
+            else if (what < 0.5)
+                lenses[0].radius = forest.any() < 0.2 ? 0 : 150 * forest.any();
+            else if (what < 0.9)
+                lenses[static_cast<size_t>(forest.any() * 2.99)].transform.offset +=
+                    glm::dvec3(forest.any() - 0.5, forest.any() - 0.5, forest.any() - 0.5) * 40.0;
+        });
+        most = std::max(most, looked);
+    }
+    EXPECT_LT(most, 0.9);
+}
+
+TEST(Step, IsTheCutMadeAnewWhileALensThatHidesMoves) {
+    for (uint32_t seed = 300; seed < 310; ++seed) {
+        Forest forest(seed);
+        View view = forest.view();
+        view.camera.orthographic = false;
+        view.modifiers.lenses = {bent::lens(0, 100, 5), bent::lens(50, 150, 2)};
+        view.modifiers.lenses[1].filter = LensFilter::Show;
+        view.modifiers.lenses[1].objects = {1, 5};
+        walk(forest, view, 30, [&](View& next) {
+            next.modifiers.lenses[forest.any() < 0.5 ? 0 : 1].transform.offset.x +=
+                60 * forest.any() - 30;
+        });
+    }
+}
+
+TEST(Step, AMovedLensIsLookedAtWhereItIsAndWas) {
+    // From 300 m each of 20 pairs is drawn as one; a lens opens the one that it lies on.
+    const Model model = bent::pairs(40);
+    quality::Stepper stepper(table_of(model));
+    quality::Cut cut;
+    View view = models::view_from(300);
+    view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
+    stepper.step(view, cut);
+    EXPECT_EQ(bent::drawn(model, cut).substr(0, 31), "pair 0/left 1, pair 0/right 2, ");
+    view.modifiers.lenses[0].transform.offset.x += 1e3;
+    stepper.step(view, cut);
+    EXPECT_EQ(bent::drawn(model, cut).substr(0, 20), "pair 0 1, pair 1 1, ");
+    EXPECT_LE(stepper.looked_at(), 4u);  // the root, the pair, and what was below it
+    stepper.step(view, cut);
+    EXPECT_EQ(stepper.looked_at(), 0u);
+}
+
+TEST(Step, RefusesALensThatMakesNoSenseAndKeepsTheCut) {
+    const Model model = bent::pairs(8);
+    const auto table = table_of(model);
+    quality::Stepper stepper(table);
+    quality::Cut cut;
+    View view = models::view_from(300);
+    view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
+    stepper.step(view, cut);
+    const quality::Cut before = cut;
+    View bad = view;
+    bad.modifiers.lenses[0].strength = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(stepper.step(bad, cut), Error);
+    expect_same(cut, before);
+    view.modifiers.lenses[0].strength = 2;
+    stepper.step(view, cut);
+    expect_same(cut, quality::choose(*table, view));
 }
 
 TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {

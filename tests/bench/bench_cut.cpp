@@ -90,7 +90,7 @@ void print_times(int runs, double unit, const Run& run) {
 
 /// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the camera.
 void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, double metres,
-                 const char* what, const char* how) {
+                 const char* what, const char* how, bool lenses_move = false) {
     quality::Stepper stepper(table);
     quality::Cut cut;
     stepper.step(view, cut);
@@ -104,7 +104,10 @@ void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, 
         double whole_s = 0;
         for (int i = 0; i < kSteps; ++i) {
             // Out into the plain and back, on a way that ends where it began.
-            view.camera.position.y += i < kSteps / 2 ? metres : -metres;
+            const double on = i < kSteps / 2 ? metres : -metres;
+            view.camera.position.y += on;
+            for (DetailLens& lens : view.modifiers.lenses)
+                lens.transform.offset.y += lenses_move ? on : 0;
             if (metres == 0) {
                 angle += 0.01;
                 view.camera.right = {std::cos(angle), std::sin(angle), 0};
@@ -183,6 +186,7 @@ void bench(const char* what, int own) {
         bench_steps(kept, view, metres, what, "plain");
     view.modifiers.lenses = {lens};
     bench_steps(kept, view, 1, what, "one lens");
+    bench_steps(kept, view, 1, what, "one lens that moves along", true);
 }
 
 }  // namespace

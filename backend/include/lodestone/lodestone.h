@@ -862,8 +862,9 @@ typedef struct lds_cut lds_cut;
 LDS_API lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job,
                                   lds_cut** out_cut);
 /* Makes it the cut of another view of its model, the same as a new one: from the second call on in a
-   fraction of the time where only the camera has moved or turned. What was handed out by it, its
-   colors and its surface are gone. On failure it stays as it is. */
+   fraction of the time where only the camera has moved or turned, or lenses that hide nothing have
+   changed. What was handed out by it, its colors and its surface are gone. On failure it stays as it
+   is. */
 LDS_API lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, lds_job* job);
 
 /* Instead of a threshold: what the cut may cost at most. */

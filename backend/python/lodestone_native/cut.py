@@ -76,8 +76,8 @@ class Cut(Handle):
 
     def step(self, view: View, job: Job | None = None) -> None:
         """Becomes the cut of another view of the model, as a new one would be, but soon where only
-        the camera has moved. Its colors and its surface are gone. Raises LodestoneError; then it
-        is as it was."""
+        the camera has moved, or lenses that hide nothing have changed. Its colors and its surface
+        are gone. Raises LodestoneError; then it is as it was."""
         check(library().lds_cut_step(self.model.handle, self.handle, view.struct(), job))
         self.view, self.pixel_error, self.fits = view, view.pixel_error, True
 

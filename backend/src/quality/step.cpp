@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quality/step.h"
 
+#include "quality/lens_change.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -9,13 +11,6 @@ namespace {
 
 // Where more than one in so many is expired, choosing anew is sooner.
 constexpr size_t kLeastShare = 2;
-
-bool same(const DetailLens& a, const DetailLens& b) {
-    const auto& [name, shape, transform, radius, strength, falloff, filter, objects] = a;
-    return shape == b.shape && transform.linear == b.transform.linear &&
-           transform.offset == b.transform.offset && radius == b.radius && strength == b.strength &&
-           falloff == b.falloff && filter == b.filter && objects == b.objects;
-}
 
 /// Nothing that bends quality depends on the eye.
 bool rigid(const Modifiers& modifiers) {
@@ -36,17 +31,14 @@ void Stepper::step(const View& view, Cut& cut, const Job& job) {
         choose_anew(view, cut, job);
 }
 
-/// Whether the view differs from the last in where the eye is and what way it looks alone.
+/// Whether the view differs from the last alone in where the eye is, what way it looks, and in lenses
+/// that hide nothing.
 bool Stepper::steps(const View& view) const {
     const auto& [camera, width, height, pixel_error, kinds, border, modifiers] = view;
     const View& last = walk_->view;
     if (!rigid(modifiers) || !rigid(last.modifiers) || width != last.width ||
         height != last.height || pixel_error != last.pixel_error || camera.orthographic ||
-        last.camera.orthographic || camera.near_clip != last.camera.near_clip ||
-        modifiers.lenses.size() != last.modifiers.lenses.size())
-        return false;
-    if (!std::equal(modifiers.lenses.begin(), modifiers.lenses.end(), last.modifiers.lenses.begin(),
-                    same))
+        last.camera.orthographic || camera.near_clip != last.camera.near_clip)
         return false;
     const double frame = pixel_at_1m(view);
     const auto usual = [](double value) { return value > 1e-100 && value < 1e100; };
@@ -102,6 +94,8 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
     if (!walk_->to(view))
         return false;
     kept_.slack.find_expired(walk_->travel, expired_);
+    if (!change_lenses(view.modifiers.lenses, cut))
+        return false;
     if (kLeastShare * expired_.size() > cut.nodes.size())
         return false;
     looked_at_ = expired_.size();
@@ -114,6 +108,23 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
     }
     kept_.slack.find_largest(*walk_, kept_.seen, cut, guess);
     known_ = true;
+    return true;
+}
+
+/// Adds what changed lenses reach to what is expired. False: it may be that something appears.
+bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cut) {
+    const auto changed = changed_lenses(walk_->view.modifiers.lenses, lenses);
+    if (changed.empty())
+        return true;
+    if (std::any_of(changed.begin(), changed.end(),
+                    [](const DetailLens& lens) { return lens.filter == LensFilter::Show; }))
+        return false;
+    walk_->view.modifiers.lenses = lenses;
+    field_ = std::make_unique<FactorField>(table_->model(), walk_->view);
+    look_through(*table_, walk_->view, changed, *field_, cut, kept_.seen, reached_);
+    const auto middle = expired_.insert(expired_.end(), reached_.begin(), reached_.end());
+    std::inplace_merge(expired_.begin(), middle, expired_.end());
+    expired_.erase(std::unique(expired_.begin(), expired_.end()), expired_.end());
     return true;
 }
 
