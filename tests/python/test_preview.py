@@ -205,6 +205,32 @@ class Workers(unittest.TestCase):
         third, _ = self.answers(worker, 3)
         self.assertEqual(set(third), set(pictures[-1].keys))
 
+    def test_the_next_picture_goes_along_and_is_as_one_made_anew(self):
+        self.store(hill(48))
+        worker = self.worker()
+        self.answers(worker)
+        seen = set()
+        with mock.patch.object(Cut, "step", autospec=True, side_effect=Cut.step) as step:
+            for away in (10, 40, 160, 11):
+                camera = replace(CAMERA, position=(0, -away, 0))
+                wanted = replace(WANTED, camera=camera, pixel_error=1.0)
+                pictures = self.answers(worker, 1, wanted)[1]
+                fresh = self.answers(self.worker(), 1, wanted)[1]
+                self.assertEqual(pictures[-1].keys, fresh[-1].keys)
+                self.assertEqual(pictures[-1].triangles, fresh[-1].triangles)
+                seen.add(pictures[-1].triangles)
+        self.assertGreaterEqual(step.call_count, 4)
+        self.assertGreater(len(seen), 1)
+
+    def test_a_budget_between_two_pictures_changes_neither(self):
+        self.store(hill(48))
+        worker = self.worker()
+        wanted = replace(WANTED, pixel_error=0.5)
+        first = self.answers(worker, 1, wanted)[1][-1]
+        few = self.answers(worker, 1, replace(wanted, triangles=500))[1][-1]
+        self.assertLess(few.triangles, first.triangles)
+        self.assertEqual(self.answers(worker, 1, wanted)[1][-1].keys, first.keys)
+
     def test_a_moved_thing_is_elsewhere_and_back_again(self):
         self.store()
         worker = self.worker()

@@ -10,7 +10,8 @@ import threading
 import time
 import traceback
 from collections import OrderedDict, deque
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -109,6 +110,7 @@ class Worker:
         self.problem = ""  # why there are no levels
         self._folder, self._names = folder, names
         self._model: Any = None
+        self._last: Any = None  # cut without a budget
         self._before: tuple[int, int] = (0, 0)  # triangles, occurrences
         self._decided: Any = None
         self._asked: OrderedDict[Hashable, Wanted] = OrderedDict()
@@ -195,6 +197,8 @@ class Worker:
             except Exception as error:
                 traceback.print_exc()
                 self._out.append(Failed(viewport, f"{error!r} (see the console)"))
+        if self._last is not None:
+            self._last.close()
         if self._model is not None:
             self._model.close()
 
@@ -242,11 +246,10 @@ class Worker:
         if self._model is not None:
             start = time.perf_counter()
             self._decided.apply(things.changes, wanted.force)
-            cut = self._cut(viewport, wanted)
-            choose_s = time.perf_counter() - start
-            if cut is None:
-                return False
-            with cut:
+            with self._cut(viewport, wanted) as cut:
+                choose_s = time.perf_counter() - start
+                if cut is None:
+                    return False
                 error, fits = cut.pixel_error, cut.fits
                 drawn = cut.summary().occurrences
                 count = self._batches(viewport, cut, wanted.mode, keys, since)
@@ -282,29 +285,35 @@ class Worker:
             wanted.camera, *wanted.size, wanted.pixel_error, POVRAY_KINDS, modifiers=modifiers
         )
 
-    def _cut(self, viewport: Hashable, wanted: Wanted) -> Any:
+    def _along(self, view: Any) -> Any:
+        """The last cut, gone along to this view."""
+        if self._last is None:
+            self._last = native.Cut(self._model, view, self._job)
+        else:
+            self._last.step(view, self._job)
+        return self._last
+
+    @contextmanager
+    def _cut(self, viewport: Hashable, wanted: Wanted) -> Iterator[Any]:
         """None: what is forced is too much, which the viewport is told."""
         view, most = self._view(wanted), MOST_TRIANGLES
-        if wanted.force != NOT_FORCED:
-            cut = native.Cut(self._model, view, self._job)
+        if wanted.force != NOT_FORCED or not wanted.triangles:
+            cut = self._along(view)
             triangles = cut.summary().triangles
             if triangles <= most:
-                return cut
-            cut.close()
-            self._out.append(
-                Failed(viewport, TOO_FINE.format(wanted.force, progress.count(triangles)))
-            )
-            return None
-        if wanted.triangles:
-            most = min(most, wanted.triangles)
+                yield cut
+                return
+            if wanted.force != NOT_FORCED:
+                self._out.append(
+                    Failed(viewport, TOO_FINE.format(wanted.force, progress.count(triangles)))
+                )
+                yield None
+                return
         else:
-            cut = native.Cut(self._model, view, self._job)
-            if cut.summary().triangles <= most:
-                return cut
-            cut.close()
-        cut = native.Cut(self._model, view, self._job, native.Budget(triangles=most))
-        cut.view = replace(view, pixel_error=cut.pixel_error)  # that false colors are told by
-        return cut
+            most = min(most, wanted.triangles)
+        with native.Cut(self._model, view, self._job, native.Budget(triangles=most)) as cut:
+            cut.view = replace(view, pixel_error=cut.pixel_error)  # that false colors are told by
+            yield cut
 
     def _batches(
         self, viewport: Hashable, cut: Any, mode: str, keys: list[int], since: float
