@@ -267,3 +267,32 @@ TEST(PovrayRender, FalseColorsAreThoseOfTheLegend) {
         EXPECT_NEAR(image.at(96 + 90, 8)[i], color_of(Kind::Box, 0)[i], 0.002);
     }
 }
+
+// Single sunlit pixels stood along the edge of a wall and the ceiling over it: POV-Ray forgot the
+// ceiling where its underside was within its tolerance of where the ray to the sun began.
+TEST(PovrayRender, TheSunDoesNotShineThroughACeilingAtItsEdge) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({.8, .8, .8})});
+    builder.place(box, {glm::dmat3(2, 0, 0, 0, .2, 0, 0, 0, 3), {0, 1.1, 1.5}}, "wall");
+    builder.place(box, {glm::dmat3(2, 0, 0, 0, 2.1, 0, 0, 0, .2), {0, .05, 2.1}}, "ceiling");
+    Light sun = scenes::sun(3);
+    sun.direction = glm::normalize(glm::dvec3(0, 1, -1));
+    builder.model.lights = {sun};
+    View view = above(16, 8);
+    view.pixel_error = 0;
+    view.camera.orthographic = true;
+    // The middle of the first row is .00005 below the ceiling.
+    view.camera.position = {0, -.9, 1.96495};
+    view.camera.direction = {0, 1, 0};
+    view.camera.right = {.16, 0, 0};
+    view.camera.up = {0, 0, .08};
+    ExportOptions options;
+    options.folder = scratch("edge");
+    const scenes::Image image = render(builder.finish(), view, options);
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x)
+            ASSERT_LT(image.at(x, y).x, 1e-3) << x << " " << y;
+    }
+}
