@@ -5,6 +5,7 @@ import math
 import tempfile
 import unittest
 from array import array
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,6 +29,14 @@ class Cost(unittest.TestCase):
         # 1.65e-7 * 1e6^.2 * 1.5 each, 4 samples a pixel
         self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4 * 1.65e-7 * 1e6**0.2 * 1.5)
         self.assertAlmostEqual(found.wall_s, 0.6 + 5.2 + found.trace_cpu_s / 2)
+
+    def test_bounces_are_expected_to_take_what_they_gather(self):
+        direct = cost_model.predict(WORK).trace_cpu_s
+        self.assertEqual(cost_model.gathering(0, 200, 0.6), 0.0)
+        rays = cost_model.gathering(2, 200, 0.5)
+        self.assertAlmostEqual(rays, 0.1 / 0.25 * 200 * 2)
+        bouncing = cost_model.predict(replace(WORK, gathering=rays)).trace_cpu_s
+        self.assertAlmostEqual(bouncing, direct * (4 + rays) / 4)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)

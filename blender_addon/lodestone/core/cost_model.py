@@ -3,7 +3,8 @@
 
 POV-Ray 3.7 reads about 245 bytes of its memory in 5.2 microseconds; a sample takes longer with the
 fifth root of the triangles and with each lamp (measured on one machine; cost.json beside the levels
-keeps by how much the last picture differed).
+keeps by how much the last picture differed). Bounces gather light by rays at places as dense as
+their error asks for, and again from what these meet.
 """
 
 import json
@@ -19,6 +20,7 @@ FILE = "cost.json"
 _PARSE_S_PER_BYTE = 5.2e-6 / 245
 _SAMPLE_S = 1.65e-7
 _LAMP_SHARE = 0.5
+_GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
 _SAMPLES = {
     native.Antialias.OFF: 1.0,
     native.Antialias.FINAL: 4.0,
@@ -64,20 +66,32 @@ class Work:
     lights: int
     antialias: int
     threads: int
+    gathering: float = 0.0  # rays a pixel that gather light for Bounces
 
     @classmethod
-    def of(cls, summary: Any, view: Any, lights: int, antialias: int, threads: int) -> "Work":
+    def of(
+        cls, summary: Any, view: Any, lights: int, antialias: int, threads: int, quality: Any
+    ) -> "Work":
+        """`quality`: what shades it, a quality_tree.Quality."""
         width, height = view.border[2:] if view.border[2] else (view.width, view.height)
         threads = threads or len(os.sched_getaffinity(0))
         whole = (view.width, view.height)
         drawn = width * height
-        return cls(summary.bytes, summary.triangles, drawn, *whole, lights, antialias, threads)
+        sums = (summary.bytes, summary.triangles, drawn)
+        rays = gathering(quality.bounces, quality.bounce_rays, quality.bounce_error)
+        return cls(*sums, *whole, lights, antialias, threads, rays)
+
+
+def gathering(bounces: int, rays: int, error: float) -> float:
+    """Rays a pixel: what each bounce adds; places are denser with the square of the error."""
+    return _GATHERED / error**2 * rays * bounces
 
 
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     parse = work.bytes * _PARSE_S_PER_BYTE * ratios.parse
     each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _LAMP_SHARE * work.lights)
-    trace = work.pixels * _SAMPLES.get(work.antialias, 4.0) * each * ratios.trace
+    samples = _SAMPLES.get(work.antialias, 4.0) + work.gathering
+    trace = work.pixels * samples * each * ratios.trace
     wall = _START_S + parse + trace / max(1, work.threads)
     kept = _PIXEL_BYTES * work.width * work.height
     peak = _EMPTY_BYTES + kept + work.bytes * ratios.memory

@@ -140,8 +140,9 @@ def _cut_and_export(
         exported = native.povray_export(cut, str(folder), shaded.povray(), job)
     parts["export"] = report.export_part(exported)
     lights = 0 if settings.false_color or settings.covered_only else model.light_count()
-    antialias = native.Antialias[shaded.quality.antialias]
-    work = cost_model.Work.of(summary, view, lights, antialias, settings.threads)
+    quality = shaded.quality
+    antialias = native.Antialias[quality.antialias]
+    work = cost_model.Work.of(summary, view, lights, antialias, settings.threads, quality)
     return parts, in_use, work
 
 

@@ -135,8 +135,9 @@ CONTROLS = (
     Control(
         "bounces", "Bounces", "antialias", _bounces, "", 0, 8,
         "How many times light goes from surface to surface before the camera sees it, as Diffuse "
-        "Bounces do in Cycles: a room behind a window is not black. It takes several times as "
-        "long. 0: direct light only",
+        "Bounces do in Cycles. It takes several times as long. 0: direct light only, with the sky "
+        "shining evenly through walls and ceilings: flat in a room lit through a window, which "
+        "needs 2 or more",
     ),
 )  # fmt: skip
 CONTROL = {control.key: control for control in CONTROLS}
