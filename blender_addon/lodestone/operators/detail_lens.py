@@ -38,7 +38,9 @@ class LODESTONE_OT_detail_lens_add(InObjectMode, AddObjectHelper, Operator):
     bl_description = "Add an Empty in whose sphere or box everything is drawn finer"
     bl_options = {"REGISTER", "UNDO"}
 
-    shape: EnumProperty(name="Shape", items=SHAPES, default="SPHERE")
+    shape: EnumProperty(
+        name="Shape", description="What is inside of it", items=SHAPES, default="SPHERE"
+    )
     radius: FloatProperty(
         name="Radius",
         description="Of the sphere, or half of the box's sides",

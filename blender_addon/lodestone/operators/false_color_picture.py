@@ -153,8 +153,15 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
 
     failures = FAILURES
 
-    seen_from: EnumProperty(name="Seen From", items=SEEN_FROM, default="CAMERA")
-    mode: EnumProperty(name="Color By", items=MODES, default="LEVEL")
+    seen_from: EnumProperty(
+        name="Seen From",
+        description="Where the picture is drawn from",
+        items=SEEN_FROM,
+        default="CAMERA",
+    )
+    mode: EnumProperty(
+        name="Color By", description="What the colors tell", items=MODES, default="LEVEL"
+    )
 
     def _asked(self, context):
         chosen = context.window_manager.lodestone_overlay.mode

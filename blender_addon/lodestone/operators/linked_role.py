@@ -20,6 +20,7 @@ class LODESTONE_OT_linked_role(bpy.types.Operator):
 
     role: EnumProperty(
         name="Role",
+        description="What kind of thing this is in this scene",
         items=(("LIBRARY", "As in Library", "As its library has it"), *ROLES),
         default="LIBRARY",
     )

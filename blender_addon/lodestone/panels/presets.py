@@ -46,7 +46,9 @@ class LODESTONE_OT_levels_preset(Operator):
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     preset: bpy.props.EnumProperty(
-        name="Preset", items=[(key, name, _WORDS[key]) for key, (name, *_) in PRESETS.items()]
+        name="Preset",
+        description="How coarse renders may be",
+        items=[(key, name, _WORDS[key]) for key, (name, *_) in PRESETS.items()],
     )
 
     @classmethod
