@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMostLooks = 524288;
 constexpr double kFiner = 2;       // looks along a pixel, of small pictures: edges are thinner
+constexpr int kCloser = 4;         // more looks beside one that is alone
 constexpr double kSameWay = 0.25;  // cosine of what faces about the same way
 
 using Cells = std::vector<std::vector<uint32_t>>;  // points of each cell of a grid
@@ -58,25 +59,36 @@ private:
         uint32_t speaker = kNobody;
     };
 
+    /// Once in every part of a row; where that is alone, some more times, at most twice as many in all.
     void look(size_t row, std::vector<Look>& out) const {
-        const auto rows = static_cast<double>(rows_);
-        const auto columns = static_cast<double>(columns_);
         Random random(2, row);
+        size_t more = columns_;
         for (size_t column = 0; column < columns_; ++column) {
-            const double x = (static_cast<double>(column) + random.uniform()) / columns;
-            const double y = (static_cast<double>(row) + random.uniform()) / rows;
-            const size_t cell = cell_at(x, y);
-            for (quality::LitPoint& point : scene_.seen(view_, x, y)) {
-                Look one{std::move(point), cell, kNobody};
-                one.speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
-                    for (uint32_t i = grid_.first[there]; i < grid_.first[there + 1]; ++i) {
-                        if (speaks(i))
-                            return i;
-                    }
-                    return kNobody;
-                });
-                out.push_back(std::move(one));
-            }
+            const size_t before = out.size();
+            look(row, column, random, out);
+            const auto alone = [](const Look& one) { return one.speaker == kNobody; };
+            if (std::none_of(out.begin() + static_cast<ptrdiff_t>(before), out.end(), alone))
+                continue;
+            for (int i = 0; i < kCloser && more > 0; ++i, --more)
+                look(row, column, random, out);
+        }
+    }
+
+    void look(size_t row, size_t column, Random& random, std::vector<Look>& out) const {
+        const double x =
+            (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns_);
+        const double y = (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows_);
+        const size_t cell = cell_at(x, y);
+        for (quality::LitPoint& point : scene_.seen(view_, x, y)) {
+            Look one{std::move(point), cell, kNobody};
+            one.speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
+                for (uint32_t i = grid_.first[there]; i < grid_.first[there + 1]; ++i) {
+                    if (speaks(i))
+                        return i;
+                }
+                return kNobody;
+            });
+            out.push_back(std::move(one));
         }
     }
 
@@ -86,15 +98,16 @@ private:
         return std::min(row, grid_.rows - 1) * grid_.columns + std::min(column, grid_.columns - 1);
     }
 
-    /// A point of its cell, else of those around it, that sees it. `among(cell, speaks)` tries those
-    /// of one cell.
+    /// A point of its cell, else of those around it, that is near it and sees it. `among(cell,
+    /// speaks)` tries those of one cell.
     template <typename Among>
     uint32_t speaker_of(const Look& one, const Among& among) const {
+        const double most = reach_beside(view_, grid_, one.point);
         const auto speaks = [&](uint32_t index) {
             const quality::LitPoint& a = grid_.points[index];
             const quality::LitPoint& b = one.point;
             const double facing = glm::dot(a.aside, b.aside);
-            return a.region == b.region &&
+            return a.region == b.region && glm::length(a.position - b.position) <= most &&
                    facing > kSameWay * glm::length(a.aside) * glm::length(b.aside) &&
                    scene_.clear(a.position + a.aside, b.position + b.aside);
         };

@@ -15,10 +15,11 @@ struct Sighting {
     uint32_t point = 0;
 };
 
-/// Looks through every pixel up to four times, half a million times in all. What no point beside it sees,
-/// of the same thing and facing about its way, becomes a point itself, at most as many as there are
-/// (then evenly chosen ones). Sightings are those of things that `divisible` allows to be cut. The
-/// same on any number of threads. cost: two rays a pixel.
+/// Looks through every pixel up to four times, half a million times in all, more where a look
+/// is alone, at most twice as many. What no point beside it sees (reach_beside), of the same thing and facing about its
+/// way, is alone and becomes a point itself, at most as many as there are (then evenly chosen ones).
+/// Sightings are those of things that `divisible` allows to be cut. The
+/// same on any number of threads. cost: two rays a look.
 std::vector<Sighting> cover(const LitScene& scene, const View& view,
                             std::span<const uint8_t> divisible, LitGrid& grid, const Job& job);
 
