@@ -191,6 +191,8 @@ class FileRun:
             if request.with_poses:
                 self._poses = request.poses
         self.problems.extend(extraction.problems)
+        if self.job.verb != "build":
+            requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
             self.result.setdefault("model", report.model_part(totals))

@@ -178,7 +178,7 @@ class _Run:
         self._remember(totals, made)
         left, top, *part = self.settings.border
         part = picture.cropped(image, left, size[1] - top - part[1], *part)
-        picture.hand_over(self.engine, layer, part, self.settings.stamp())
+        self._hand_over(layer, part)
         self._report()
 
     def _read_shutter(self, extraction, model, frame):
@@ -251,7 +251,11 @@ class _Run:
         image = self.work.run(self.plan.compare, self._poll)
         left, bottom, *part = picture.border(self.scene.render, image.width, image.height)
         part = picture.cropped(image, left, bottom, *part)
-        picture.hand_over(self.engine, layer, part, self.settings.stamp())
+        self._hand_over(layer, part)
+
+    def _hand_over(self, layer, part):
+        depth = self.depsgraph.view_layer_eval.use_pass_z
+        picture.hand_over(self.engine, layer, part, self.settings.stamp(), depth)
 
     def _build_options(self, view):
         """What properties.BUILD_ON_RENDER says."""

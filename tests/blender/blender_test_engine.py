@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import math
 import os
 import tempfile
 import unittest
@@ -224,6 +225,18 @@ class Engine(unittest.TestCase):
         self.assertEqual(max(pixel[3] for row in self.render() for pixel in row), 1.0)
         codes = [problem.code for problem in last_check.get(self.scene.name).problems]
         self.assertIn("nothing_shown", codes)
+
+    def test_grease_pencil_in_a_layer_with_depth_crashed_blender(self):
+        scenes.cube()
+        bpy.ops.object.gpencil_add(type="STROKE", location=(0, 0, 2), rotation=(math.pi / 2, 0, 0))
+        without = self.render()
+        bpy.context.view_layer.use_pass_z = True
+        found = self.render()
+        self.assertEqual(found, without)  # Blender has drawn it over the picture
+        bpy.context.object.hide_render = True
+        self.assertNotEqual(found, self.render())
+        severities = {problem.severity for problem in last_check.get(self.scene.name).problems}
+        self.assertNotIn("error", severities)
 
     def test_settings_of_a_newer_version_are_their_defaults_here(self):
         scenes.cube()

@@ -68,7 +68,9 @@ class WithoutFaces(Case):
         scenes.link(bpy.data.objects.new("Ink", bpy.data.grease_pencils.new("Ink")))
         extraction, occurrences = self.extract()
         self.assertEqual(occurrences, [])
-        self.assertEqual(self.codes(extraction), [("Ink", "object_kind"), ("Smoke", "object_kind")])
+        self.assertEqual(
+            self.codes(extraction), [("Ink", "grease_pencil"), ("Smoke", "object_kind")]
+        )
 
 
 class Instancing(Case):

@@ -45,6 +45,7 @@ if kind == "animated":
         ball.keyframe_insert("location", frame=frame)
 if kind == "volume":
     place("Smoke", bpy.data.volumes.new("Smoke"))
+    place("Ink", bpy.data.grease_pencils.new("Ink"))
     scene.use_nodes = True
 bpy.ops.wm.save_as_mainfile(filepath=path)
 """
@@ -223,6 +224,7 @@ class Batch(unittest.TestCase):
         blend = self.blend("volume")
         self.assertEqual(self.run_batch("render", blend, "--out", str(self.out)), 3, self.said)
         self.assertIn("Smoke", self.said)
+        self.assertRegex(self.said, 'error: .*"Ink" is left out')
         self.assertIn("compositor", {item["code"] for item in self.report()["problems"]})
         self.assertEqual(size_of(self.out), (64, 36))
         again = self.run_batch("render", blend, "--out", str(self.out), "--strict")

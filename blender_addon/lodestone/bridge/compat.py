@@ -73,12 +73,11 @@ def color_attribute(mesh: Any, name: str) -> Any | None:
 
 
 def set_pass(render_pass: Any, width: int, height: int, pixels: array) -> None:
-    """Linear RGBA floats, bottom row first, into a render pass."""
+    """Floats (linear RGBA, or one a pixel), bottom row first, into a render pass."""
     try:
         render_pass.rect.foreach_set(pixels)
-    except TypeError:  # 3.4 wants a sequence of four-tuples
-        values = iter(pixels)
-        render_pass.rect = list(zip(values, values, values, values))
+    except TypeError:  # 3.4 wants a tuple for each pixel
+        render_pass.rect = list(zip(*[iter(pixels)] * render_pass.channels))
 
 
 def principled_input(node: Any, *names: str) -> Any:

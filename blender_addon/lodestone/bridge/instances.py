@@ -15,11 +15,11 @@ from typing import Any
 from mathutils import Matrix
 
 from ..core.decision import UNDECIDED, Decision
-from ..core.problems import ERROR, WARNING, Problems
+from ..core.problems import ERROR, INFO, WARNING, Problems
 from . import ids, strands
 from .glow import Glows
 from .ids import name_of
-from .leaves import DRAWN, Leaf, Look, undrawn
+from .leaves import DRAWN, GREASE_PENCIL, Leaf, Look, undrawn
 from .listed import Listed, Rows, rows
 from .motion import Motion
 from .plain import Plain, find
@@ -148,6 +148,9 @@ class Instances:
         if what is not None:
             text = f'Object "{name_of(shown)}" is left out: {what} cannot be drawn'
             self._problems.add(name_of(shown), ERROR, "object_kind", text)
+        if kind == GREASE_PENCIL:
+            text = f'Object "{name_of(shown)}" is drawn by Blender, over pictures of F12 alone'
+            self._problems.add(name_of(shown), INFO, "grease_pencil", text)
         if what is not None or kind not in DRAWN:
             return
         if place is None:

@@ -14,7 +14,8 @@ from .ids import name_of
 from .materials import Materials
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
-UNDRAWN = {"VOLUME": "volumes", "GPENCIL": "grease pencil"}
+UNDRAWN = {"VOLUME": "volumes"}
+GREASE_PENCIL = "GPENCIL"  # Blender draws it over the picture of any engine
 HAIR = "hair"  # of particles; also in the names of leaves
 POINT = "point"
 Color = tuple[float, float, float, float]
@@ -163,7 +164,7 @@ class Leaves:
             if error.status != native.Status.INVALID_ARGUMENT:
                 raise
             return self._unreadable(owner, error)  # a file may hold faces of what is not there
-        leaf = Leaf(item, uid, name_of(shown.data), _names(slots), size, look.deforms)
+        leaf = Leaf(item, uid, _data_name(shown, owner), _names(slots), size, look.deforms)
         return leaf if shown.type == "CURVES" else replace(leaf, loose=look.loose)
 
     def _unreadable(self, owner: Any, error: Exception) -> None:
@@ -253,6 +254,12 @@ def override_of(depsgraph: Any) -> Any | None:
     """The evaluated material that a view layer puts on everything, as Cycles does; or None."""
     material = depsgraph.view_layer_eval.material_override
     return None if material is None else material.evaluated_get(depsgraph)
+
+
+def _data_name(shown: Any, owner: Any) -> str:
+    """As the designer knows it: what is subdivided on the GPU has no name of its own."""
+    own = shown.type == "MESH" and shown.data.as_pointer() == owner.data.as_pointer()
+    return name_of(owner.original.data if own else shown.data)
 
 
 def _names(slots: list) -> tuple[str, ...]:

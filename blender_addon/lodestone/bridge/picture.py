@@ -8,6 +8,8 @@ from typing import Any
 from . import compat
 from ..core.native import lodestone_native as native
 
+_ENDLESS = 1e10  # metres, as Cycles has it for the sky
+
 
 def read(path: str) -> Any:
     """An EXR as Blender wants it: linear, lowest row first."""
@@ -51,12 +53,20 @@ def layer_of(depsgraph: Any) -> str:
         return ""  # the only one
 
 
-def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str]) -> None:
+def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str], depth: bool) -> None:
     """Into the layer's combined pass; other passes stay empty. The result's corner is that of the
-    border. `stamp` becomes text in the saved file. An exception between begin and end would take
-    Blender down, so nothing but the pixels is done between them."""
+    border. `stamp` becomes text in the saved file. `depth`: the layer asks for its depth, which is
+    told to be endless: Blender 3.4, drawing grease pencil, dies where there is none. An exception
+    between begin and end would take Blender down, so nothing but the pixels is done between them.
+    """
+    if depth:
+        engine.add_pass("Depth", 1, "Z", layer=layer)
+        far = array("f", [_ENDLESS]) * (image.width * image.height)
     result = engine.begin_result(0, 0, image.width, image.height, layer=layer)
     try:
+        if depth:
+            passed = result.layers[0].passes.find_by_name("Depth", "")
+            compat.set_pass(passed, image.width, image.height, far)
         combined = result.layers[0].passes.find_by_name("Combined", "")
         compat.set_pass(combined, image.width, image.height, image.pixels)
     finally:

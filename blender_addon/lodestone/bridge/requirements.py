@@ -10,7 +10,7 @@ from ..core import store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from .ids import name_of
-from .leaves import DRAWN
+from .leaves import DRAWN, GREASE_PENCIL
 
 NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 NOTHING = "Nothing to render: no object with faces is visible in renders"
@@ -29,7 +29,8 @@ def camera(scene: Any, problems: Problems) -> Any | None:
 def something(scene: Any, problems: Problems) -> bool:
     """For a view layer's frame that shows nothing: whether a picture of the world alone may be
     meant, since objects of the scene could be seen in another frame or layer. Either is told."""
-    if any(item.type in DRAWN or item.instance_type != "NONE" for item in scene.objects):
+    kinds = {*DRAWN, GREASE_PENCIL}
+    if any(item.type in kinds or item.instance_type != "NONE" for item in scene.objects):
         problems.add("", WARNING, "nothing_shown", NOTHING_HERE)
         return True
     problems.add("", ERROR, "nothing_to_render", NOTHING)
@@ -45,6 +46,13 @@ def post_processing(scene: Any, problems: Problems) -> None:
     if render.use_sequencer and scene.sequence_editor and scene.sequence_editor.sequences:
         text = f'The sequencer of scene "{name}" is left out: it works in F12 alone'
         problems.add(name, WARNING, "sequencer", text)
+
+
+def grease_pencil(problems: Problems) -> None:
+    """Of what was found: where Blender draws nothing over the picture, it is left out."""
+    for name in [item.object for item in problems if item.code == "grease_pencil"]:
+        text = f'Object "{name}" is left out: grease pencil cannot be drawn'
+        problems.add(name, ERROR, "object_kind", text)
 
 
 def povray(program: str, problems: Problems) -> None:
