@@ -50,8 +50,9 @@ std::vector<glm::vec3> corners_of(const Mesh& mesh) {
 /// Mean distance of samples of the original from a mesh brought to a target and fitted.
 double mean_after(const Mesh& source, size_t target, const FitOptions& options) {
     CollapseMesh mesh = open(source, {});
-    Reducer(mesh, {}).reduce(target, {}, [] {});
     Adjacency adjacency;
+    Reducer(mesh, {}).reduce(
+        target, {}, [] {}, adjacency);
     fit(mesh, source, adjacency, options, {});
     adjacency.build(mesh);
     const FitPlaces places(mesh, source);
@@ -83,7 +84,10 @@ TEST(Fit, TrianglesWithVerticesOfTheirOwnAreFittedLikeWeldedOnes) {
 TEST(Fit, BothSidesOfATextureSeamHaveTheirPlace) {
     const Mesh mesh = shapes::seamed_cylinder(64, 40);
     CollapseMesh working = open(mesh, {});
-    Reducer(working, {}).reduce(800, {}, [] {});
+    Adjacency adjacency;
+    Reducer(working, {})
+        .reduce(
+            800, {}, [] {}, adjacency);
     const FitPlaces places(working, mesh);
     const std::vector<uint32_t> welded = weld(mesh);
     size_t copies = 0;
@@ -93,7 +97,6 @@ TEST(Fit, BothSidesOfATextureSeamHaveTheirPlace) {
         copies += welded[v] != v;
     }
     EXPECT_EQ(copies, 41u);
-    Adjacency adjacency;
     adjacency.build(working);
     FitSamples samples;
     sample_surface(places, adjacency, mesh.triangles.size(), 0, {}, samples);

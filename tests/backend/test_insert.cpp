@@ -32,7 +32,9 @@ struct Reduced {
     Reduced(const Mesh& from, size_t target) : source(from), mesh(open(source, {})) {
         SimplifyOptions options;
         options.mode = SimplifyMode::Best;
-        Reducer(mesh, options).reduce(target, {}, [] {});
+        Reducer(mesh, options)
+            .reduce(
+                target, {}, [] {}, adjacency);
         fit(mesh, source, adjacency, {20, 1, 1, 1, 3, false}, {});
         refresh();
     }

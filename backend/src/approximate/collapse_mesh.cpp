@@ -192,7 +192,6 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();
-    compact(mesh);
     return mesh;
 }
 

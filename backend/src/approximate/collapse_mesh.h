@@ -61,7 +61,8 @@ struct CollapseMesh {
 /// Positions of the input's vertices in other frames, each as many as it has and finite.
 using OtherPositions = std::span<const std::vector<glm::vec3>>;
 
-/// Leaves out triangles with non-finite vertices and those with two corners in one place.
+/// Leaves out triangles with non-finite vertices and those with two corners in one place. Not
+/// compact: vertices that nothing uses are still there.
 CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {});
 
 struct Adjacency;

@@ -77,7 +77,6 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
          const Job& job) {
     if (mesh.live == 0 || mesh.ids.empty() || !mesh.others.empty())
         return;
-    adjacency.build(mesh);
     FitPlaces places(mesh, source);
     const double want = std::min(options.samples * static_cast<double>(mesh.points.size()),
                                  options.share * static_cast<double>(source.triangles.size()));

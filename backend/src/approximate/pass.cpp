@@ -308,7 +308,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     return before - mesh_.live;
 }
 
-bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass) {
+bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
+                     Adjacency& adjacency) {
     const Effort last = options_.keep_topology ? Effort::Rough : Effort::Anything;
     Effort effort = Effort::Careful;
     int slow_passes = 0;
@@ -323,11 +324,11 @@ bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>&
         else if (gone == 0 || ++slow_passes > kMostSlowPasses)
             break;
     }
-    compact(mesh_);
-    shrink(mesh_);
-    adjacency_ = {};
     edges_.clear();
     used_ = {};
+    adjacency_ = {};
+    compact(mesh_, &adjacency);
+    shrink(mesh_);
     return mesh_.live <= target;
 }
 

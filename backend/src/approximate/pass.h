@@ -25,7 +25,9 @@ public:
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
     /// `after_pass` is called after every pass.
-    bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass);
+    /// The mesh is compact then; `adjacency` gets its lists.
+    bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
+                Adjacency& adjacency);
 
 private:
     class Batch;

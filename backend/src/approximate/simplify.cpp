@@ -116,7 +116,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
                 job.progress(static_cast<double>(start - working.live) /
                              static_cast<double>(start - goal));
         };
-        reducer.reduce(targets[next] - 2 * spare, job, report);
+        reducer.reduce(targets[next] - 2 * spare, job, report, adjacency);
         const bool reached = working.live <= targets[next];
         // Where it gets stuck, the mesh so far is the last result, unless it already is.
         if (reached || results.empty() || working.live < last) {
