@@ -170,14 +170,6 @@ private:
     size_t columns_ = 0;
 };
 
-bool inside(const Box3& box, const glm::dvec3& point) {
-    for (int i = 0; i < 3; ++i) {
-        if (point[i] < box.low[i] || point[i] > box.high[i])
-            return false;
-    }
-    return true;
-}
-
 }  // namespace
 
 std::vector<Sighting> cover(const LitScene& scene, const View& view,
@@ -198,7 +190,7 @@ void lend(std::span<const Sighting> sightings, const LightRegions& regions,
     for (const Sighting& seen : sightings) {
         for (size_t i = first[seen.drawn]; i < first[seen.drawn + 1]; ++i) {
             const Piece& piece = regions.pieces[i];
-            if (!piece.within || !inside(*piece.within, seen.position))
+            if (!piece.within || !piece.within->contains(seen.position))
                 continue;
             if (piece.group != points[seen.point].region)
                 lent.emplace(piece.group, seen.point);

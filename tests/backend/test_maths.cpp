@@ -85,3 +85,13 @@ TEST(Maths, TransformedBoxIsThatOfItsEightCornersToTheLastBit) {
     }
     EXPECT_TRUE(transformed(Bound{}, turned(1, {0, 0, 1})).empty());
 }
+
+TEST(Maths, BoxContainsItsFacesAndNothingBeyond) {
+    Box3 box;
+    EXPECT_FALSE(box.contains({0, 0, 0}));
+    box.add({1, 2, 3});
+    box.add({2, 4, 6});
+    EXPECT_TRUE(box.contains({1, 4, 4}));
+    EXPECT_FALSE(box.contains({1, 4, 6.5}));
+    EXPECT_FALSE(box.contains({1, std::nan(""), 4}));
+}

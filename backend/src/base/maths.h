@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <array>
 #include <cmath>
@@ -75,6 +76,10 @@ struct Box3 {
     void add(const Box3& other) {
         low = glm::min(low, other.low);
         high = glm::max(high, other.high);
+    }
+    bool contains(const glm::dvec3& point) const {
+        return glm::all(glm::lessThanEqual(low, point)) &&
+               glm::all(glm::lessThanEqual(point, high));
     }
     glm::dvec3 center() const { return 0.5 * (low + high); }
     glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : high - low; }
