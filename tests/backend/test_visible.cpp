@@ -4,6 +4,7 @@
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "measure/principal_axes.h"
+#include "measure/seen_from_outside.h"
 #include "measure/sobol.h"
 #include "measure/strata.h"
 #include "measure/surface_inertia.h"
@@ -386,39 +387,6 @@ TEST(Visible, SceneOfAnotherMeshIsRefused) {
     const ray::Scene scene(shapes::quad(1, 1));
     EXPECT_THROW(measure_visible(shapes::cube(), scene, {}, {}), Error);
     EXPECT_THROW(measure::seen_from_outside(shapes::cube(), scene, 4, 1), Error);
-}
-
-// A group's shell lost the boards of its roofs, and its levels had holes where tiles had gone.
-TEST(Visible, BoardBetweenTilesIsSeenThroughTheirGaps) {
-    constexpr int kSide = 24;
-    constexpr float kTile = 0.995f;  // of a cell's width
-    Mesh mesh = shapes::quad(kSide, kSide);
-    for (const double height : {-0.002, 0.002}) {
-        for (int i = 0; i < kSide * kSide; ++i)
-            append(mesh, shapes::quad(kTile, kTile),
-                   {glm::dmat3(1.0), {i % kSide, i / kSide, height}});
-    }
-    const ray::Scene scene(mesh);
-    for (const uint64_t seed : {1u, 2u, 3u}) {
-        const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, scene, 24, seed);
-        EXPECT_EQ(seen, std::vector<uint8_t>(seen.size(), 1)) << seed;
-    }
-}
-
-TEST(Visible, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
-    Mesh mesh = shapes::box(glm::dvec3(0), glm::dvec3(2));
-    append(mesh, shapes::sphere(0.5, 3), {glm::dmat3(1.0), glm::dvec3(1)});
-    append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0.5, 0.5, 0.25}});
-    append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {5, 5, 5}});
-    mesh.triangles.emplace_back(0, 0, 0);
-    const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, ray::Scene(mesh), 16, 1);
-    const size_t sphere = 1280;
-    for (size_t i = 0; i < 12; ++i)
-        EXPECT_EQ(seen[i], 1) << i;
-    for (size_t i = 12; i < 12 + sphere + 2; ++i)
-        EXPECT_EQ(seen[i], 0) << i;
-    for (size_t i = 12 + sphere + 2; i < seen.size(); ++i)
-        EXPECT_EQ(seen[i], 1) << i;
 }
 
 TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {

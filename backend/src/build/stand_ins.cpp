@@ -6,7 +6,7 @@
 #include "build/judge.h"
 #include "build/levels.h"
 #include "build/replacements.h"
-#include "measure/visible.h"
+#include "measure/seen_from_outside.h"
 #include "quality/cut.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a mesh can be seen: its attributes by rays (dissertation 4.2.4), and which triangles.
+// Visible: attributes of what can be seen of a mesh, by rays (dissertation 4.2.4).
 #pragma once
 
 #include "base/job.h"
@@ -51,18 +51,5 @@ Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const r
 
 /// The visible area alone, of a fixed number of rays: what measure_visible() tells of it, sooner.
 double visible_area(const VisibleSampler& sampler, uint64_t rays, const Job& job = {});
-
-/// 1 for each triangle of which any of `rays_per_triangle` rays sees infinity, else 0: what may be
-/// dropped before simplifying. What touches nothing that is seen by half of its rays has no others.
-/// One larger than the mean has as many times more rays, to 64 times: whatever tears open above it
-/// would otherwise show what is behind. Rays leave random points in random directions (cosine), on
-/// both sides of parts that are not closed and opaque. Triangles without area count as seen: nobody knows.
-/// Same bits on any number of threads.
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
-                                       int rays_per_triangle, uint64_t seed, const Job& job = {});
-/// The same where the sides are known.
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
-                                       const Sides& sides, int rays_per_triangle, uint64_t seed,
-                                       const Job& job = {});
 
 }  // namespace lodestone::measure
