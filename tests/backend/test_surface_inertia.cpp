@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards SurfaceInertia: closed forms against quadrature, traversal against closed forms.
+#include "backend/closed_forms.h"
 #include "backend/shapes.h"
 #include "measure/surface_inertia.h"
 
@@ -121,13 +122,13 @@ TEST(SurfaceInertia, UnitCubeHasTensorFiveThirds) {
     EXPECT_NEAR(cube.area, 6, 1e-14);
     EXPECT_NEAR(cube.inertia()[0][0], 5.0 / 3, 1e-14);
     EXPECT_NEAR(cube.inertia()[0][1], 0, 1e-14);
-    EXPECT_NEAR(measure::of_box(1, 1, 1).inertia()[2][2], 5.0 / 3, 1e-14);
+    EXPECT_NEAR(closed_forms::of_box(1, 1, 1).inertia()[2][2], 5.0 / 3, 1e-14);
 }
 
 TEST(SurfaceInertia, BoxMeshEqualsTheBox) {
     const SurfaceInertia mesh =
         measure::of_mesh(shapes::box(glm::dvec3(-1.5, -1, -0.25), glm::dvec3(1.5, 1, 0.25)));
-    EXPECT_LT(difference(mesh, measure::of_box(3, 2, 0.5)), 1e-14);
+    EXPECT_LT(difference(mesh, closed_forms::of_box(3, 2, 0.5)), 1e-14);
     EXPECT_NEAR(glm::length(mesh.center), 0, 1e-15);
 }
 
@@ -153,7 +154,7 @@ TEST(SurfaceInertia, ClosedFormsEqualQuadrature) {
                            },
                            1));
     }
-    EXPECT_LT(difference(measure::of_box(a, b, c), box), 1e-9);
+    EXPECT_LT(difference(closed_forms::of_box(a, b, c), box), 1e-9);
 
     const auto disc = [&](double z) {
         return integrate(
@@ -162,15 +163,15 @@ TEST(SurfaceInertia, ClosedFormsEqualQuadrature) {
             },
             12);
     };
-    EXPECT_LT(difference(measure::of_disc(b), disc(0)), 1e-9);
+    EXPECT_LT(difference(closed_forms::of_disc(b), disc(0)), 1e-9);
     const SurfaceInertia wall = integrate(
         [&](double u, double v) {
             return glm::dvec3(b * std::cos(2 * kPi * v), b * std::sin(2 * kPi * v), (u - 0.5) * a);
         },
         12);
-    EXPECT_LT(
-        difference(measure::of_closed_cylinder(b, a), sum(wall, sum(disc(a / 2), disc(-a / 2)))),
-        1e-9);
+    EXPECT_LT(difference(closed_forms::of_closed_cylinder(b, a),
+                         sum(wall, sum(disc(a / 2), disc(-a / 2)))),
+              1e-9);
 
     const auto ellipsoid = [](const glm::dvec3& r) {
         return integrate(
@@ -180,10 +181,10 @@ TEST(SurfaceInertia, ClosedFormsEqualQuadrature) {
             },
             24);
     };
-    EXPECT_LT(difference(measure::of_sphere(b), ellipsoid(glm::dvec3(b))), 1e-9);
+    EXPECT_LT(difference(closed_forms::of_sphere(b), ellipsoid(glm::dvec3(b))), 1e-9);
     for (const glm::dvec3& r :
          {glm::dvec3(1, 1, 1), glm::dvec3(1.7, 0.6, 0.9), glm::dvec3(0.4, 2, 0.5)})
-        EXPECT_LT(difference(measure::of_ellipsoid(r), ellipsoid(r)), 1e-9);
+        EXPECT_LT(difference(closed_forms::of_ellipsoid(r), ellipsoid(r)), 1e-9);
 }
 
 TEST(SurfaceInertia, EllipsoidEqualsTheClosedFormOfSpheroids) {
@@ -191,21 +192,21 @@ TEST(SurfaceInertia, EllipsoidEqualsTheClosedFormOfSpheroids) {
         // Oblate: 2 pi a^2 (1 + (1 - e^2) / e artanh e).
         const double e = std::sqrt(1 - c * c);
         const double oblate = c < 1 ? 2 * kPi * (1 + c * c / e * std::log((1 + e) / c)) : 4 * kPi;
-        EXPECT_NEAR(measure::of_ellipsoid({1, 1, c}).area / oblate, 1, 1e-10) << c;
-        EXPECT_NEAR(measure::of_ellipsoid({c, 1, 1}).area / oblate, 1, 1e-10) << c;
+        EXPECT_NEAR(closed_forms::of_ellipsoid({1, 1, c}).area / oblate, 1, 1e-10) << c;
+        EXPECT_NEAR(closed_forms::of_ellipsoid({c, 1, 1}).area / oblate, 1, 1e-10) << c;
         // Prolate: 2 pi a^2 (1 + c / (a e) asin e) with a the short half size.
         const double prolate = c < 1 ? 2 * kPi * c * c * (1 + std::asin(e) / (c * e)) : 4 * kPi;
-        EXPECT_NEAR(measure::of_ellipsoid({c, 1, c}).area / prolate, 1, 1e-10) << c;
+        EXPECT_NEAR(closed_forms::of_ellipsoid({c, 1, c}).area / prolate, 1, 1e-10) << c;
     }
-    const SurfaceInertia flat = measure::of_ellipsoid({0, 2, 2});
+    const SurfaceInertia flat = closed_forms::of_ellipsoid({0, 2, 2});
     EXPECT_LT(
         difference(
             flat,
             measure::transformed(
-                measure::combined(measure::of_disc(2), measure::of_disc(2)),
+                measure::combined(closed_forms::of_disc(2), closed_forms::of_disc(2)),
                 {glm::dmat3(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0)), {}})),
         1e-10);
-    EXPECT_EQ(measure::of_ellipsoid({0, 0, 2}).area, 0);
+    EXPECT_EQ(closed_forms::of_ellipsoid({0, 0, 2}).area, 0);
 }
 
 TEST(SurfaceInertia, TessellationsConvergeAtSecondOrder) {
@@ -219,19 +220,19 @@ TEST(SurfaceInertia, TessellationsConvergeAtSecondOrder) {
     };
     check_order(
         "sphere", [](int i) { return measure::of_mesh(shapes::sphere(1.5, 2 + i)); },
-        measure::of_sphere(1.5));
+        closed_forms::of_sphere(1.5));
     check_order(
         "ellipsoid",
         [](int i) {
             return measure::of_mesh(shapes::ellipsoid({1.5, 1, 0.7}, 3 + i));
         },
-        measure::of_ellipsoid({1.5, 1, 0.7}));
+        closed_forms::of_ellipsoid({1.5, 1, 0.7}));
     check_order(
         "cylinder", [](int i) { return measure::of_mesh(prism(16u << i, 0.7, 2, false)); },
-        measure::of_closed_cylinder(0.7, 2));
+        closed_forms::of_closed_cylinder(0.7, 2));
     check_order(
         "disc", [](int i) { return measure::of_mesh(prism(16u << i, 0.7, 0, true)); },
-        measure::of_disc(0.7));
+        closed_forms::of_disc(0.7));
 }
 
 TEST(SurfaceInertia, ScalingByThreeMultipliesTheTensorBy81) {
@@ -260,12 +261,12 @@ TEST(SurfaceInertia, TransformedEqualsTheTransformedMesh) {
 TEST(SurfaceInertia, NonUniformScaleAndShearAreRefused) {
     Affine uneven;
     uneven.linear[0][0] = 2;
-    EXPECT_THROW(measure::transformed(measure::of_sphere(1), uneven), Error);
+    EXPECT_THROW(measure::transformed(closed_forms::of_sphere(1), uneven), Error);
     Affine shear;
     shear.linear[1][0] = 0.1;
-    EXPECT_THROW(measure::transformed(measure::of_sphere(1), shear), Error);
-    EXPECT_THROW(measure::transformed(measure::of_sphere(1), {glm::dmat3(0.0), {}}), Error);
-    EXPECT_THROW(measure::transformed(measure::of_sphere(1), {glm::dmat3(kNan), {}}), Error);
+    EXPECT_THROW(measure::transformed(closed_forms::of_sphere(1), shear), Error);
+    EXPECT_THROW(measure::transformed(closed_forms::of_sphere(1), {glm::dmat3(0.0), {}}), Error);
+    EXPECT_THROW(measure::transformed(closed_forms::of_sphere(1), {glm::dmat3(kNan), {}}), Error);
 }
 
 TEST(SurfaceInertia, CompositionEqualsTheMeshOfBoth) {
@@ -283,7 +284,7 @@ TEST(SurfaceInertia, PrincipalAxesOfATurnedBoxAreItsOwn) {
     const glm::dvec3 z = glm::normalize(glm::dvec3(1, 2, 3));
     const glm::dvec3 x = glm::normalize(glm::cross(z, glm::dvec3(0, 1, 0)));
     const glm::dmat3 axes(x, glm::cross(z, x), z);
-    const SurfaceInertia box = measure::of_box(3, 2, 1);
+    const SurfaceInertia box = closed_forms::of_box(3, 2, 1);
     const Eigen out = measure::principal_variances(measure::transformed(box, {axes, {1, 2, 3}}));
     for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(std::abs(glm::dot(out.axes[i], axes[i])), 1, 1e-12);
@@ -295,11 +296,11 @@ TEST(SurfaceInertia, FarFromTheOriginAndTinyAndHugeKeepTheirDigits) {
     Mesh far = shapes::cube();
     for (glm::vec3& position : far.positions)
         position += 0x1p20f;
-    EXPECT_LT(difference(measure::of_mesh(far), measure::of_box(1, 1, 1)), 1e-9);
+    EXPECT_LT(difference(measure::of_mesh(far), closed_forms::of_box(1, 1, 1)), 1e-9);
     for (const double s : {0x1p-20, 0x1p20, 0x1p-60, 0x1p60}) {
         Mesh scaled = shapes::box({-1.5 * s, -s, -0.5 * s}, {1.5 * s, s, 0.5 * s});
         const SurfaceInertia out = measure::of_mesh(scaled);
-        EXPECT_LT(difference(out, measure::of_box(3 * s, 2 * s, s)), 1e-12);
+        EXPECT_LT(difference(out, closed_forms::of_box(3 * s, 2 * s, s)), 1e-12);
         const Eigen eigen = measure::principal_variances(out);
         EXPECT_NEAR(std::abs(eigen.axes[0].x), 1, 1e-12) << s;
     }
@@ -314,15 +315,6 @@ TEST(SurfaceInertia, OpenSheetsCountTwiceWhenAsked) {
     EXPECT_NEAR(measure::of_mesh(shapes::cube(), true).area, 6, 1e-14);
 }
 
-TEST(SurfaceInertia, NegativeAndNonFiniteLengthsAreRefused) {
-    EXPECT_THROW(measure::of_sphere(-1), Error);
-    EXPECT_THROW(measure::of_box(1, kNan, 1), Error);
-    EXPECT_THROW(measure::of_closed_cylinder(1, -1), Error);
-    EXPECT_THROW(measure::of_disc(std::numeric_limits<double>::infinity()), Error);
-    EXPECT_THROW(measure::of_ellipsoid({1, 1, -1}), Error);
-    EXPECT_EQ(measure::of_sphere(0).area, 0);
-}
-
 TEST(SurfaceInertia, TrianglesWithNonFiniteVerticesCountNothing) {
     Mesh mesh = shapes::cube();
     mesh.normals.clear();
@@ -335,7 +327,7 @@ TEST(SurfaceInertia, AttributesFollowPlacementsThatKeepShapesAndRefuseOthers) {
     Attributes box;
     box.visible_area = box.surface_area = 22;
     box.centroid = {1, 2, 3};
-    box.moments = measure::of_box(3, 2, 1).moments;
+    box.moments = closed_forms::of_box(3, 2, 1).moments;
     const double s = 2;
     const Affine mirrored{glm::dmat3({-s, 0, 0}, {0, 0, s}, {0, s, 0}), {10, 0, 0}};
     for (const Affine& placed :

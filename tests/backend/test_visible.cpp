@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is measured by rays: visible area and its moments against closed forms, on convex
 // shapes, open sheets and a book of which almost nothing shows.
+#include "backend/closed_forms.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "measure/principal_axes.h"
@@ -115,14 +116,14 @@ TEST(Visible, ConvexShapesShowAllTheirArea) {
         EXPECT_NEAR(attributes_of(sphere, 4096, seed).visible_area / (4 * kPi), 1, 0.005);
         const glm::dvec3 half(2, 1, 0.5);
         EXPECT_NEAR(attributes_of(shapes::ellipsoid(half, 4), 4096, seed).visible_area /
-                        measure::of_ellipsoid(half).area,
+                        closed_forms::of_ellipsoid(half).area,
                     1, 0.005);
     }
 }
 
 TEST(Visible, MomentsOfABoxAreItsInertia) {
     const Attributes box = attributes_of(shapes::box({1, 1, 1}, {4, 3, 2}), 16384);
-    const measure::SurfaceInertia exact = measure::of_box(3, 2, 1);
+    const measure::SurfaceInertia exact = closed_forms::of_box(3, 2, 1);
     const double radius = box.radius_of_gyration();
     EXPECT_NEAR(glm::length(box.centroid - glm::dvec3(2.5, 2, 1.5)) / radius, 0, 0.01);
     EXPECT_LT(size(box.moments - exact.moments) / size(exact.moments), 0.01);
@@ -178,7 +179,7 @@ TEST(Visible, BookIsMeasuredByRaysAndOverestimatedByTraversal) {
     const double truth = attributes_of(book, uint64_t{1} << 20u, 99).visible_area;
     // Sheets this near each other look like their outer box from almost everywhere.
     const double thick = (pages - 1) * 0.001;
-    const double outer = measure::of_box(1, 1.4, thick).area;
+    const double outer = closed_forms::of_box(1, 1.4, thick).area;
     EXPECT_LT(truth, outer);
     EXPECT_GT(truth, 0.99 * outer);
     for (const uint64_t seed : {1u, 2u, 3u, 4u}) {

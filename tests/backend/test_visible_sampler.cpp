@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the estimator of what is visible: both kinds of rays find the same, errors are as large as
 // they are said to be, and what hides nothing is exact.
+#include "backend/closed_forms.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "measure/strata.h"
@@ -123,7 +124,7 @@ TEST(VisibleSampler, WhatHidesNothingIsExact) {
     tags[0] = tags[1] = 1;
     const Visible box =
         measure::measure_visible(shapes::box({0, 0, 0}, {3, 2, 1}), {}, options, tags);
-    const measure::SurfaceInertia exact = measure::of_box(3, 2, 1);
+    const measure::SurfaceInertia exact = closed_forms::of_box(3, 2, 1);
     EXPECT_NEAR(box.attributes.visible_area, 22, 1e-5);
     EXPECT_EQ(box.attributes.rays, 0u);
     EXPECT_GT(box.pilot_rays, 0u);

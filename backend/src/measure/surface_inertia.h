@@ -24,14 +24,6 @@ struct SurfaceInertia {
 /// mesh that is not closed() counts twice, as it can be seen from both sides.
 SurfaceInertia of_mesh(const Mesh& mesh, bool both_sides_of_open = false);
 
-// Primitives about the origin; lengths in metres, >= 0 and finite, else Error(InvalidArgument).
-
-SurfaceInertia of_sphere(double radius);                          // A.10, A.11
-SurfaceInertia of_box(double a, double b, double c);              // A.12-A.14 with 1/12 in A.13
-SurfaceInertia of_closed_cylinder(double radius, double height);  // A.15-A.17, axis z
-SurfaceInertia of_disc(double radius);                            // A.18, A.19, normal z, one side
-SurfaceInertia of_ellipsoid(const glm::dvec3& half_size);         // by quadrature, to 1e-10
-
 /// Both surfaces together (4.28-4.30).
 SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b);
 
