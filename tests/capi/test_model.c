@@ -285,15 +285,16 @@ static void test_pictures_and_textures_are_checked(void) {
 
 static void test_texture_coordinates_are_projected(void) {
     const float positions[9] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
-    const uint32_t triangles[3] = {0, 1, 2};
+    const uint32_t triangle[3] = {0, 1, 2};
     const int32_t slots[1] = {5};
-    lds_mesh_view mesh = {0};
-    mesh.struct_size = sizeof mesh;
-    mesh.positions = positions;
-    mesh.vertex_count = 3;
-    mesh.triangles = triangles;
-    mesh.triangle_count = 1;
-    mesh.slots = slots;
+    lds_faces_view faces = {0};
+    faces.struct_size = sizeof faces;
+    faces.positions = positions;
+    faces.vertex_count = 3;
+    faces.corner_vertices = triangle;
+    faces.corner_count = 3;
+    faces.face_count = 1;
+    faces.face_slots = slots;
     lds_uv_projection flat = {0};
     flat.struct_size = sizeof flat;
     flat.to_space[0] = flat.to_space[5] = flat.to_space[10] = 0.5;
@@ -301,20 +302,20 @@ static void test_texture_coordinates_are_projected(void) {
     flat.slot_count = 2; /* slot 5 counts as the last */
     float uvs[6] = {9, 9, 9, 9, 9, 9};
     flat.slot = 0;
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK && uvs[0] == 9);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, uvs) == LDS_OK && uvs[0] == 9);
     flat.slot = 1;
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, uvs) == LDS_OK);
     EXPECT(uvs[0] == 1 && uvs[1] == 0 && uvs[2] == 2 && uvs[5] == 1);
     const float points[9] = {4, 4, 4, 4, 4, 4, 4, 4, 4};
     flat.points = points;
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_OK && uvs[0] == 3);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, uvs) == LDS_OK && uvs[0] == 3);
     flat.projection = 4;
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
     flat.projection = LDS_PROJECTION_BOX;
-    mesh.vertex_count = 2;
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
-    EXPECT(lds_mesh_project_uvs(&mesh, NULL, uvs) == LDS_ERROR_INVALID_ARGUMENT);
-    EXPECT(lds_mesh_project_uvs(&mesh, &flat, NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    faces.vertex_count = 2;
+    EXPECT(lds_faces_project_uvs(&faces, &flat, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_faces_project_uvs(&faces, NULL, uvs) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_faces_project_uvs(&faces, &flat, NULL) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(uvs[0] == 3);
 }
 

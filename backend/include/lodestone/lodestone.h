@@ -35,7 +35,7 @@ extern "C" {
 #endif
 
 /* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
-#define LDS_ABI_VERSION 2
+#define LDS_ABI_VERSION 3
 
 typedef enum lds_status {
     LDS_OK = 0,
@@ -406,10 +406,8 @@ LDS_API lds_status lds_model_bake_picture(lds_model* model, const lds_bake* bake
 /* out_index: of the new material, rising from 0. */
 LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* material,
                                           uint32_t* out_index);
-/* Writes the projected coordinates to out_corner_uvs (float32[corner_count][2]; without corners
-   float32[vertex_count][2]); corners of other slots are left as they are. Not finite ones become 0. */
-LDS_API lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh,
-                                        const lds_uv_projection* projection, float* out_corner_uvs);
+/* Writes projected texture coordinates to out_corner_uvs (float32[corner_count][2]). Corners of other
+   slots keep theirs. Coordinates that are not finite become 0. */
 LDS_API lds_status lds_faces_project_uvs(const lds_faces_view* faces,
                                          const lds_uv_projection* projection,
                                          float* out_corner_uvs);

@@ -29,7 +29,6 @@ PROTOTYPES = (
     ("lds_model_texture_mean", I, [M, P(s.Texture), P(D)]),
     ("lds_model_bake_picture", I, [M, P(s.Bake), P(Job), P(c_uint32)]),
     ("lds_model_add_material", I, [M, P(s.Material), P(c_uint32)]),
-    ("lds_mesh_project_uvs", I, [P(s.MeshView), P(s.UvProjection), c_void_p]),
     ("lds_faces_project_uvs", I, [P(s.FacesView), P(s.UvProjection), c_void_p]),
     ("lds_faces_largest", Z, [c_void_p, Z, Z]),
     ("lds_model_add_mesh", I, [M, P(s.ObjectInfo), P(s.MeshView), P(c_uint32), Z, P(s.Object)]),

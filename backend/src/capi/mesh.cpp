@@ -19,18 +19,6 @@ glm::dvec3 point_at(const float* points, uint32_t index) {
     return {p[0], p[1], p[2]};
 }
 
-/// Throws unless every index of a triangle is in range.
-void check_indices(const lds_mesh_view& mesh, const uint32_t* corners, size_t corner_count) {
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) {
-        if (mesh.triangles[i] >= mesh.vertex_count)
-            fail(Status::InvalidArgument, "triangle ", i / 3, " uses vertex ", mesh.triangles[i],
-                 " of ", mesh.vertex_count);
-        if (corners[i] >= corner_count)
-            fail(Status::InvalidArgument, "triangle ", i / 3, " uses corner ", corners[i], " of ",
-                 corner_count);
-    }
-}
-
 /// Writes the coordinates of one slot's corners.
 class Projector {
 public:
@@ -103,24 +91,6 @@ Faces lodestone::capi::faces_of(const lds_faces_view* view) {
     out.vertex_colors = given.vertex_colors;
     check(out);
     return out;
-}
-
-lds_status lds_mesh_project_uvs(const lds_mesh_view* mesh, const lds_uv_projection* projection,
-                                float* out_corner_uvs) {
-    return guard([&] {
-        const lds_mesh_view& view = checked(mesh, "mesh");
-        const Projector projector(projection, view.positions, out_corner_uvs);
-        if (view.triangle_count == 0)
-            return;
-        require(view.positions, "mesh.positions");
-        require(view.triangles, "mesh.triangles");
-        const uint32_t* corners = view.corners != nullptr ? view.corners : view.triangles;
-        check_indices(view, corners,
-                      view.corners != nullptr ? view.corner_count : view.vertex_count);
-        for (size_t t = 0; t < view.triangle_count; ++t)
-            projector.write(view.slots != nullptr ? view.slots[t] : 0, view.triangles + 3 * t,
-                            corners + 3 * t);
-    });
 }
 
 lds_status lds_faces_project_uvs(const lds_faces_view* faces, const lds_uv_projection* projection,
