@@ -7,8 +7,8 @@
    transforms  double[12], row-major 3x4, x -> M x + t
    status      LDS_OK (0) or the cause; the sentence that names the thing is lds_last_error_text().
                On failure outputs are untouched
-   structs     start with struct_size; set it to sizeof the struct (lds_..._default does). Fields may
-               be added at the end in later versions; those of a shorter, older struct count as 0
+   structs     start with struct_size; set it to sizeof the struct (lds_..._default does). Later
+               versions may add fields at the end; those that an older struct lacks count as 0
    strings     UTF-8 in, any bytes accepted; strings handed out stay valid until the model or cut
                they came from changes or is destroyed. A null name counts as ""
    arrays      read during the call only, never kept; results are copied into the caller's buffers
@@ -96,7 +96,7 @@ typedef struct lds_object {
 
 typedef enum lds_role {
     LDS_ROLE_ORDINARY = 0,
-    LDS_ROLE_ENVIRONMENT = 1 /* wall, ground or sky: simplified, never made a box or ellipsoid */
+    LDS_ROLE_ENVIRONMENT = 1 /* wall, ground or sky: simplified, but never a box or ellipsoid */
 } lds_role;
 
 typedef enum lds_kind {
@@ -107,7 +107,7 @@ typedef enum lds_kind {
     LDS_KIND_ASSEMBLY = 8
 } lds_kind;
 
-/* Bits; what is seen through glass is seen by the camera. */
+/* Bits of a mask. Rays refracted by glass count as camera rays. */
 typedef enum lds_ray_class {
     LDS_RAY_CAMERA = 1,
     LDS_RAY_REFLECTION = 2,
@@ -117,13 +117,15 @@ typedef enum lds_ray_class {
 
 typedef struct lds_object_info {
     uint32_t struct_size;
-    const char* uid;  /* stable and unique in the model; not empty */
-    const char* name; /* the user's */
-    int32_t role;     /* lds_role */
-    int32_t deforms; /* 1: its shape is another one in every frame: it has the levels that follow it
-                         from lds_build_options.poses, if any; nothing stands for a group of it */
-    uint64_t connectivity; /* deforms: equal in two frames with the same polygons, however they are
-                              cut into triangles; 0: the triangles have to be the same */
+    const char* uid;       /* stable and unique in the model; not empty */
+    const char* name;      /* the user's */
+    int32_t role;          /* lds_role */
+    int32_t deforms;       /* 1: its shape changes from frame to frame. Its levels are those that
+                         lds_build_options.poses make to follow it, if any; groups that hold it
+                         are always opened */
+    uint64_t connectivity; /* with deforms: a number that two frames share exactly when they have
+                              the same polygons, however these are cut into triangles; 0: compare
+                              the triangles */
 } lds_object_info;
 
 /* An image. Exactly one of path, bytes and pixels is given. */
@@ -171,11 +173,11 @@ typedef struct lds_texture {
 typedef enum lds_alpha_mode {
     LDS_ALPHA_MODE_OPAQUE = 0,
     LDS_ALPHA_MODE_BLEND = 1,
-    LDS_ALPHA_MODE_CLIP = 2 /* there where alpha >= alpha_cutoff */
+    LDS_ALPHA_MODE_CLIP = 2 /* opaque where alpha >= alpha_cutoff, else nothing */
 } lds_alpha_mode;
 
-/* A value with a texture is the texture's; the field beside it holds the mean, used wherever
-   textures are not looked at (lds_model_texture_mean gives it). Get one from
+/* Where a value has a texture, the texture counts. The field beside it must then hold the texture's
+   mean (from lds_model_texture_mean), for everything that does not look at textures. Start from
    lds_material_default. */
 typedef struct lds_material {
     uint32_t struct_size;
@@ -189,7 +191,7 @@ typedef struct lds_material {
     lds_texture roughness_texture;
     lds_texture metallic_texture;
     lds_texture emission_texture;
-    int32_t vertex_colors; /* 1: base color and alpha times the mesh's colors */
+    int32_t vertex_colors; /* 1: base color and alpha are multiplied by the mesh's colors */
     double alpha;          /* 0...1 */
     lds_texture alpha_texture;
     int32_t alpha_mode; /* lds_alpha_mode */
@@ -202,7 +204,7 @@ typedef struct lds_material {
     double normal_strength;
     lds_texture bump_texture; /* height in parts of bump_distance */
     double bump_distance;     /* metres from 0 to 1; below 0 inward */
-    uint32_t other; /* 1 + the index of an added material this one is mixed with; 0: none */
+    uint32_t other; /* 1 + the index of the added material that this one is mixed with; 0: none */
     double mix;     /* 0...1: share of the other */
     lds_texture mix_texture;
 } lds_material;
@@ -226,9 +228,8 @@ typedef struct lds_mesh_view {
                                     counts as the nearest slot (Blender's rule) */
 } lds_mesh_view;
 
-/* A mesh of polygons as modelers keep it: the backend makes triangles and normals of it. A corner is
-   one vertex of one face; those of a face follow each other around it, those of the next face follow
-   them. */
+/* A mesh of polygons as modelers keep it; the backend triangulates it and makes its normals. A
+   corner is one vertex of one face. Corners are listed face by face, in order around each face. */
 typedef struct lds_faces_view {
     uint32_t struct_size;
     const float* positions; /* float32[vertex_count][3] metres */
@@ -245,8 +246,9 @@ typedef struct lds_faces_view {
     const int32_t* face_slots;   /* int32[face_count]; null: all 0. Outside 0...material_count-1
                                     counts as the nearest slot */
     const float* corner_normals; /* float32[corner_count][3]; null: smooth faces have at each vertex
-                                    the mean of the faces' normals there, weighted by their angles.
-                                    Given ones that are these but for rounding become these */
+                                    the mean of the adjacent faces' normals, weighted by angle.
+                                    Given normals that differ from these by rounding alone are
+                                    replaced by them, so that a mesh keeps its hash */
     const float* corner_uvs;     /* float32[corner_count][2]; null: none */
     const float* corner_colors;  /* float32[corner_count][4] linear RGBA, straight; null: white */
     const float* vertex_colors;  /* float32[vertex_count][4], where corner_colors is null */
@@ -272,7 +274,8 @@ typedef enum lds_projection {
     LDS_PROJECTION_TUBE = 3    /* longitude around that point's z axis, and z */
 } lds_projection;
 
-/* Texture coordinates of a slot's corners from positions: those projected of to_space (x, y, z, 1). */
+/* How the texture coordinates of a slot's corners are made: their positions, moved by to_space, are
+   projected. */
 typedef struct lds_uv_projection {
     uint32_t struct_size;
     int32_t projection;  /* lds_projection */
@@ -295,7 +298,7 @@ typedef struct lds_light {
     const char* name;
     int32_t kind; /* lds_light_kind */
     double color[3];
-    double power; /* sun: W/m^2; others: W; Blender's energy units. Negative takes light away */
+    double power;        /* sun: W/m^2; others: W; Blender's energy units. May be negative */
     double position[3];  /* all but suns; an area's center */
     double direction[3]; /* all but points: the way the light travels */
     int32_t shadow;      /* 0: casts none */
@@ -336,52 +339,52 @@ typedef struct lds_world {
 } lds_world;
 
 LDS_API lds_status lds_model_create(lds_model** out_model);
-/* Null is fine. */
+/* A null model is ignored. */
 LDS_API void lds_model_destroy(lds_model* model);
 
 /* Reads a .obj, .ply, .glb or .gltf file, or a store (its folder or tileset.json). A store's meshes
    are read when they are needed. */
 LDS_API lds_status lds_model_read(const char* path, lds_model** out_model);
-/* Writes .obj, .ply or .glb by the name's ending: finest representations. */
+/* Writes the finest representations as .obj, .ply or .glb, told by the name's ending. */
 LDS_API lds_status lds_model_write(lds_model* model, const char* path);
 
-/* out_index: of the new picture, rising from 0; an equal one's when there is one. BAD_FILE, IO. */
+/* out_index: of the picture, counted from 0; a picture with the same content keeps its first index.
+   BAD_FILE, IO. */
 LDS_API lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
                                          uint32_t* out_index);
 /* The mean of a texture's value over its whole picture, colors weighted by alpha. A single number
    is the first of out_color with a channel other than COLOR. */
 LDS_API lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
                                           double out_color[3]);
-typedef enum lds_bake_op { /* what a step does with the results a, b, c of earlier ones */
-                           LDS_BAKE_CONSTANT = 0, /* value */
-                           LDS_BAKE_TEXEL =
-                               1, /* color and alpha of texture args[0], by its picture, mapping, extension */
-                           LDS_BAKE_CHANNEL = 2, /* a's channel value[0] (0...3), in all channels */
-                           LDS_BAKE_LUMA = 3,    /* of a, in all channels */
-                           LDS_BAKE_COMBINE = 4, /* red of a, green of b, blue of c */
-                           LDS_BAKE_ADD = 5,
-                           LDS_BAKE_SUBTRACT = 6,
-                           LDS_BAKE_MULTIPLY = 7,
-                           LDS_BAKE_DIVIDE = 8, /* 0 where b is 0 */
-                           LDS_BAKE_POWER = 9,  /* 0 where it has no real value */
-                           LDS_BAKE_MINIMUM = 10,
-                           LDS_BAKE_MAXIMUM = 11,
-                           LDS_BAKE_MIX = 12,     /* a + c (b - a) */
-                           LDS_BAKE_GREATER = 13, /* 1 where a > b, else 0 */
-                           LDS_BAKE_ABSOLUTE = 14,
-                           LDS_BAKE_FLOOR = 15,
-                           LDS_BAKE_MODULO = 16, /* with a's sign; 0 where b is 0 */
-                           LDS_BAKE_RAMP = 17,   /* the table's color at a's red */
-                           LDS_BAKE_CURVES =
-                               18, /* each channel of a to the same channel of the table */
-                           LDS_BAKE_TO_HSV = 19, /* all 0...1 */
-                           LDS_BAKE_FROM_HSV = 20,
-                           LDS_BAKE_TO_SRGB = 21, /* display-encodes linear color */
-                           LDS_BAKE_FROM_SRGB = 22
+/* What a step does with the results a, b, c of earlier steps. */
+typedef enum lds_bake_op {
+    LDS_BAKE_CONSTANT = 0, /* value */
+    LDS_BAKE_TEXEL = 1,    /* color and alpha of texture args[0], through its mapping */
+    LDS_BAKE_CHANNEL = 2,  /* a's channel value[0] (0...3), in all channels */
+    LDS_BAKE_LUMA = 3,     /* of a, in all channels */
+    LDS_BAKE_COMBINE = 4,  /* red of a, green of b, blue of c */
+    LDS_BAKE_ADD = 5,
+    LDS_BAKE_SUBTRACT = 6,
+    LDS_BAKE_MULTIPLY = 7,
+    LDS_BAKE_DIVIDE = 8, /* 0 where b is 0 */
+    LDS_BAKE_POWER = 9,  /* 0 where it has no real value */
+    LDS_BAKE_MINIMUM = 10,
+    LDS_BAKE_MAXIMUM = 11,
+    LDS_BAKE_MIX = 12,     /* a + c (b - a) */
+    LDS_BAKE_GREATER = 13, /* 1 where a > b, else 0 */
+    LDS_BAKE_ABSOLUTE = 14,
+    LDS_BAKE_FLOOR = 15,
+    LDS_BAKE_MODULO = 16, /* with a's sign; 0 where b is 0 */
+    LDS_BAKE_RAMP = 17,   /* the table's color at a's red */
+    LDS_BAKE_CURVES = 18, /* each channel of a through that channel of the table */
+    LDS_BAKE_TO_HSV = 19, /* all 0...1 */
+    LDS_BAKE_FROM_HSV = 20,
+    LDS_BAKE_TO_SRGB = 21, /* display-encodes linear color */
+    LDS_BAKE_FROM_SRGB = 22
 } lds_bake_op;
 
 typedef struct lds_bake_step {
-    int32_t op;       /* lds_bake_op, by channel unless it says otherwise */
+    int32_t op;       /* lds_bake_op; works on each channel by itself unless it says otherwise */
     uint32_t args[3]; /* a, b, c: earlier steps */
     double value[4];
     const float* table; /* float32[table_count][4] over 0...1, linear between; RAMP, CURVES */
@@ -399,90 +402,93 @@ typedef struct lds_bake {
     int32_t height;
     int32_t linear; /* as in lds_picture: 0 keeps color display-encoded */
 } lds_bake;
-/* Adds a picture computed from others, texel by texel; opaque, cut to 0...1, an 8-bit PNG. out_index
-   as lds_model_add_picture's. */
+/* Adds a picture computed from others, texel by texel; opaque, cut to 0...1, an 8-bit PNG.
+   out_index as lds_model_add_picture's. */
 LDS_API lds_status lds_model_bake_picture(lds_model* model, const lds_bake* bake, lds_job* job,
                                           uint32_t* out_index);
-/* out_index: of the new material, rising from 0. */
+/* out_index: of the new material, counted from 0. */
 LDS_API lds_status lds_model_add_material(lds_model* model, const lds_material* material,
                                           uint32_t* out_index);
-/* Writes projected texture coordinates to out_corner_uvs (float32[corner_count][2]). Corners of other
-   slots keep theirs. Coordinates that are not finite become 0. */
+/* Writes projected texture coordinates to out_corner_uvs (float32[corner_count][2]). Corners of
+   other slots keep theirs. Coordinates that are not finite become 0. */
 LDS_API lds_status lds_faces_project_uvs(const lds_faces_view* faces,
                                          const lds_uv_projection* projection,
                                          float* out_corner_uvs);
-/* The most corners that a face has (as in lds_faces_view; above four the faces need triangles), or 0
-   when the starts are not rising. */
+/* The most corners that a face has (as in lds_faces_view; above four the faces need triangles), or
+   0 when the starts are not rising. */
 LDS_API size_t lds_faces_largest(const uint32_t* face_starts, size_t face_count,
                                  size_t corner_count);
 /* Adds an object with one mesh; materials[slot] are indices of added materials (none: a grey one).
-   Vertices that are not numbers, and the triangles that use them, are left out with a problem. */
+   Triangles that use a non-finite vertex are left out, with a problem. */
 LDS_API lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
                                       const lds_mesh_view* mesh, const uint32_t* materials,
                                       size_t material_count, lds_object* out_object);
 LDS_API lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
                                        const lds_faces_view* faces, const uint32_t* materials,
                                        size_t material_count, lds_object* out_object);
-/* Adds an object with one mesh: a closed, tapered, smooth tube a strand, through its points in a
-   curve; three-sided, as wide on average as a round one. What has no length or no radius draws
-   nothing; runs that are straight to a quarter of the strand's radius cost one segment. */
+/* Adds an object with one mesh: for each strand a closed, tapered, smooth-shaded tube along a
+   curve through its points. Tubes have three sides and, over all directions, the mean width of a
+   round one. Points that lie within a quarter of the radius of a straight line share one segment.
+   A strand without length or radius draws nothing. */
 LDS_API lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
                                          const lds_strands_view* strands, const uint32_t* materials,
                                          size_t material_count, lds_object* out_object);
 /* Adds a group without children. */
 LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* info,
                                        lds_object* out_object);
-/* Places child in group. An object never becomes its own descendant: found when it is used. */
+/* Places child in group. A group that contains itself is reported by the first call that goes
+   through the model (INVALID_ARGUMENT). */
 LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
                                            const double transform[12], const char* name);
-/* Places many, in this order: children[count], transforms float32[count][12], names[count] (UTF-8), and
-   the ray classes (lds_ray_class bits) each is hidden from as below; null: none is. All or none. */
+/* Places many, in this order: children[count], transforms float32[count][12], names[count]
+   (UTF-8), and the ray classes (lds_ray_class bits) each is hidden from as below; null: none is.
+   All or none. */
 LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
                                             const lds_object* children, const float* transforms,
                                             const char* const* names, const uint32_t* hidden);
-/* Hides a group's newest placement, with all below it, from the ray classes in the mask (lds_ray_class
-   bits). Groups with something hidden in them are drawn by their children, never by stand-ins. */
+/* Hides a group's newest placement, with everything below it, from the ray classes in the mask
+   (lds_ray_class bits). A group that holds something hidden is always drawn by its children. */
 LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
                                             uint32_t ray_classes);
-/* What is decided about the placement at `position` of a group (those added count from 0, in order).
-   importance: it and all below it are drawn so many times finer, 1/64 to 64; 1: as elsewhere.
-   coarsest: the largest LOD number it is drawn with, LDS_ANY_LEVEL: any; groups around it are opened.
-   0: its original, and those of all below it. */
+/* Sets the user's decisions about the placement at `position` of a group (counted from 0, in the
+   order they were added).
+   importance   how many times finer it and everything below it are drawn, 1/64 to 64; 1: no change
+   coarsest     the largest LOD number that may draw it; groups around it are opened for that.
+                LDS_ANY_LEVEL: no limit; 0: the originals of it and of everything below it */
 #define LDS_ANY_LEVEL UINT32_MAX
 LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
                                               double importance, uint32_t coarsest);
-/* Always the level with that LOD number, from wherever it is seen (its coarsest where it has no such
-   one, or the nearest that the view can draw); groups around it are opened. LDS_ANY_LEVEL: no pin. It
-   replaces the placement's coarsest level. */
+/* Pins the placement to one LOD number, from wherever it is seen; groups around it are opened. An
+   object with fewer levels takes its coarsest; if the view cannot draw that kind, the nearest
+   level it can. LDS_ANY_LEVEL: no pin. It replaces the `coarsest` of lds_model_decide_placement. */
 LDS_API lds_status lds_model_pin_placement(lds_model* model, lds_object group, size_t position,
                                            uint32_t lod);
-/* What has become of the placement at `position` of a group since levels were built: it is at another
-   place (null: where it was), and hidden from ray classes as by lds_model_hide_placement. Groups
-   around it are opened: their stand-ins show it as it was. For viewers; levels are not built of it. */
+/* For viewers: changes a placement after the levels were built. transform: its new place (null:
+   the old one); hidden: ray classes, as for lds_model_hide_placement. Groups around it are opened,
+   since their stand-ins show the old state. Builds do not see the change. */
 LDS_API lds_status lds_model_change_placement(lds_model* model, lds_object group, size_t position,
                                               const double transform[12], uint32_t hidden);
-/* Where the placement at `position` of a group is when the shutter closes, in the group's frame; null:
-   it rests there. For lds_modifiers.when_moving; no store keeps it. */
+/* Sets where a placement is when the shutter closes, in the group's frame; null: it does not move
+   in its group. Read by lds_modifiers.when_moving; not stored. */
 LDS_API lds_status lds_model_move_placement(lds_model* model, lds_object group, size_t position,
                                             const double closing[12]);
-/* Gives a group of more than most_children (8 or more; usual 64) groups of at most so many in their
-   place, to any depth: neighbors together. Occurrences stay exactly where they are; something added
-   later changes only the groups around it. Call it when the group is complete. out_added may be
-   null. */
+/* Puts the children of a group with more than most_children (at least 8; usual 64) into nested
+   groups of at most that many, by position (octree cells). Occurrences stay exactly where they
+   are. Cells are fixed, so a child added in a later frame changes only the groups around it. Call
+   it when the group is complete. out_added may be null. */
 LDS_API lds_status lds_model_group_by_position(lds_model* model, lds_object group,
                                                uint32_t most_children, size_t* out_added);
 
 typedef struct lds_structure_options {
     uint32_t struct_size;
-    uint32_t
-        fewest_children;    /* groups of at most so many are left as they are; usual 64, least 2 */
-    uint32_t most_children; /* of a group; 8 or more, usual 64 */
-    uint32_t orders;        /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
+    uint32_t fewest_children; /* groups of at most this many are left alone; usual 64, least 2 */
+    uint32_t most_children;   /* of a group; at least 8, usual 64 */
+    uint32_t orders;          /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
                                  lower cost, linearly more time */
-    double similarity;      /* how much looks (color, size, shape, orientation) count beside place:
-                                 0 not at all, usual 0.1 */
-    double group_cost;      /* of a group, in children, usual 8; larger makes fewer and larger
-                                 groups */
+    double similarity;        /* weight of looks (color, size, shape, orientation) beside position;
+                                 0: position alone, usual 0.1 */
+    double group_cost;        /* what a group costs, counted in children; usual 8. Larger: fewer and
+                                 larger groups */
     uint64_t seed;
     int32_t threads; /* 0 = all */
 } lds_structure_options;
@@ -492,16 +498,17 @@ typedef struct lds_structure_report {
     uint32_t struct_size;
     uint64_t structured; /* of the groups given */
     uint64_t made;       /* groups */
-    double cost_before;  /* expected number of children a random ray through a group is tested with,
-                            summed over the groups given */
+    double cost_before;  /* expected number of children that a random ray through a group is tested
+                            against, summed over the groups given */
     double cost_after;
     double cpu_s;
 } lds_structure_report;
-/* Gives flat groups small groups of what is near and alike in the place of their children, to any
-   depth, by inserting one child after the other where that costs least. Occurrences stay exactly where
-   they are. What deforms, or hides something from some rays, stays where it is. The same children make
-   the same groups, in any order and on any number of threads. groups null: all below the root.
-
+/* Puts the children of flat groups into nested groups of what is near and looks alike, by
+   inserting one child after the other where the cost grows least. Occurrences stay exactly where
+   they are. Children that deform, or hold something hidden from some rays, are not moved. The
+   result depends neither on the order of the children nor on the number of threads. groups null:
+   all below the root.
+   
    source   Sewell, Managing complex models for computer graphics: 4.5.3, 4.5.4 */
 LDS_API lds_status lds_model_structure(lds_model* model, const lds_object* groups,
                                        size_t group_count, const lds_structure_options* options,
@@ -509,11 +516,10 @@ LDS_API lds_status lds_model_structure(lds_model* model, const lds_object* group
 
 typedef struct lds_loose_options {
     uint32_t struct_size;
-    int32_t always;            /* 1: also where it hardly pays */
-    uint32_t fewest_triangles; /* of a cluster, usual 8192: more makes fewer clusters, which are
-                                    built sooner; less keeps less of what is far as fine as what is
-                                    near it */
-    uint32_t most_clusters;    /* of one mesh, in the mean; 2 or more, usual 128 */
+    int32_t always;            /* 1: also meshes that hardly gain by it */
+    uint32_t fewest_triangles; /* of a cluster, usual 8192. Larger: fewer clusters, a faster build.
+                                  Smaller: detail follows distance more closely */
+    uint32_t most_clusters;    /* of one mesh, on average; 2 or more, usual 128 */
     int32_t threads;           /* 0 = all */
 } lds_loose_options;
 LDS_API lds_loose_options lds_loose_options_default(void);
@@ -525,13 +531,14 @@ typedef struct lds_loose_report {
     uint64_t made;  /* objects that were made: clusters of parts, and groups of these */
     double cpu_s;
 } lds_loose_report;
-/* Makes groups of meshes that are many loose parts (kit-bashed scenes, joined rocks), in place: their
-   children are clusters of neighboring parts, each with levels of its own, so that what is near the
-   eye does not force the rest to be as fine. The object stays one object and one occurrence;
-   triangles, normals, texture coordinates, colors and materials stay exactly what they are. What
-   deforms or refracts stays one mesh. Without `always` only more than 50,000 triangles in more than
-   64 parts, at least half of them in parts at most an eighth as large as the whole, and nothing that
-   was read from a store. objects null: all below the root. Call it before lds_model_build. */
+/* Turns meshes of many loose parts (kit-bashed scenes, joined rocks) into groups, in place. The
+   children are clusters of neighboring parts with levels of their own, so that a part near the eye
+   does not make the whole mesh fine. The object stays one object and one occurrence; triangles,
+   normals, texture coordinates, colors and materials stay exactly the same. Meshes that deform or
+   refract are not split. Without `always` a mesh is split only if it has more than 50,000
+   triangles in more than 64 parts, at least half of the triangles lie in parts at most an eighth
+   as large as the whole, and it was not read from a store. objects null: all below the root. Call
+   it before lds_model_build. */
 LDS_API lds_status lds_model_split_loose_parts(lds_model* model, const lds_object* objects,
                                                size_t object_count,
                                                const lds_loose_options* options, lds_job* job,
@@ -543,8 +550,8 @@ LDS_API lds_status lds_model_set_world(lds_model* model, const lds_world* world)
 
 typedef struct lds_totals {
     uint32_t struct_size;
-    uint64_t objects;          /* reachable from the root, groups included; one made of loose parts
-                                    counts once, with all its parts */
+    uint64_t objects;          /* reachable from the root, groups included; an object split into
+                                  loose parts counts once */
     uint64_t occurrences;      /* of leaves: each path counts */
     uint64_t triangles_placed; /* at full detail */
     uint64_t triangles_unique;
@@ -649,7 +656,8 @@ LDS_API lds_status lds_surface_inertia(const float* positions, size_t vertex_cou
 typedef struct lds_measure_options {
     uint32_t struct_size;
     uint64_t rays;         /* fixed budget; usual 4096. More: less noise, linearly more time */
-    double relative_error; /* > 0: cast until the visible area is this sure (95 %) instead */
+    double relative_error; /* > 0: cast until the visible area has this relative error (95 %
+                              confidence), whatever `rays` says */
     uint64_t seed;
     int32_t threads; /* 0 = all */
 } lds_measure_options;
@@ -658,7 +666,7 @@ LDS_API lds_measure_options lds_measure_options_default(void);
 typedef struct lds_attributes {
     uint32_t struct_size;
     double visible_area; /* VSA, m^2; open sheets count both sides */
-    double surface_area; /* that could be seen at all */
+    double surface_area; /* of all sides that could be seen, if nothing hid them */
     double centroid[3];
     double inertia[6]; /* xx yy zz xy yz zx about the centroid, m^4 */
     double normal_moment;
@@ -668,7 +676,7 @@ typedef struct lds_attributes {
     double relative_error;
     uint64_t rays;
 } lds_attributes;
-/* Measures an object (a group: with all it places) at full detail by rays (eqs. 4.16-4.19). */
+/* Measures an object at full detail by rays (eqs. 4.16-4.19); a group with everything it places. */
 LDS_API lds_status lds_model_measure(lds_model* model, lds_object object,
                                      const lds_measure_options* options, lds_job* job,
                                      lds_attributes* out_attributes);
@@ -676,9 +684,9 @@ LDS_API lds_status lds_model_measure(lds_model* model, lds_object object,
 /* ---- Simplifying ---------------------------------------------------------------------------- */
 
 typedef enum lds_simplify_mode {
-    LDS_SIMPLIFY_FAST = 0,   /* collapses edges */
-    LDS_SIMPLIFY_BEST = 1,   /* ... with more care, for more time */
-    LDS_SIMPLIFY_CLUSTER = 2 /* joins what lies together: fastest; parts may grow together */
+    LDS_SIMPLIFY_FAST = 0,   /* edge collapse */
+    LDS_SIMPLIFY_BEST = 1,   /* edge collapse with a smaller error, in about three times the time */
+    LDS_SIMPLIFY_CLUSTER = 2 /* vertex clustering: fastest; separate parts may be joined */
 } lds_simplify_mode;
 
 typedef struct lds_simplify_options {
@@ -689,11 +697,11 @@ typedef struct lds_simplify_options {
     int32_t measure;    /* 1: measure the error of the result; error and pixels always do */
     uint64_t seed;
     int32_t threads;
-    double pixels;    /* the same as error, in pixels where the model is height_px of them high (its
-                         largest side); 0: not used */
-    double height_px; /* with pixels: more than 0 */
-    int32_t mode;     /* lds_simplify_mode */
-    int32_t keep_topology; /* 1: parts, holes and handles stay, even where a target is then missed;
+    double pixels;         /* as error, in pixels of a picture in which the model's largest side is
+                         height_px pixels long; 0: not used */
+    double height_px;      /* with pixels: more than 0 */
+    int32_t mode;          /* lds_simplify_mode */
+    int32_t keep_topology; /* 1: keep all parts, holes and handles, even if that misses the target;
                               not with LDS_SIMPLIFY_CLUSTER */
 } lds_simplify_options;
 LDS_API lds_simplify_options lds_simplify_options_default(void);
@@ -706,7 +714,8 @@ typedef struct lds_simplify_report {
     double error;     /* metres in the model's frame; negative when it was not measured */
     double max_error; /* likewise */
 } lds_simplify_report;
-/* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error, pixels is given. */
+/* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error, pixels is
+   given. */
 LDS_API lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* options,
                                       lds_job* job, lds_simplify_report* out_report);
 
@@ -714,26 +723,26 @@ LDS_API lds_status lds_model_simplify(lds_model* model, const lds_simplify_optio
 
 typedef struct lds_build_options {
     uint32_t struct_size;
-    double level_ratio; /* triangles of a level over those of the finer one; usual 0.4. Larger:
-                             more levels, a closer fit to every distance, more time and disk */
-    uint64_t rays;      /* measuring an object; usual 4096 */
-    uint32_t samples;   /* measuring an error, each way; usual 2048 */
+    double level_ratio; /* triangles of a level over those of the next finer one; usual 0.4. Larger:
+                           more levels, a closer fit to every distance, more time and disk */
+    uint64_t rays;      /* to measure an object with; usual 4096 */
+    uint32_t samples;   /* to measure an error with, in each direction; usual 2048 */
     uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */
     uint64_t seed;
     int32_t threads;         /* 0 = all */
-    int32_t rebuild;         /* 1: also what is not stale */
-    const lds_object* scope; /* build only what is reachable from these; what is stale elsewhere
-                                keeps its finest level alone, and stays stale */
+    int32_t rebuild;         /* 1: build also what is up to date */
+    const lds_object* scope; /* build only what is reachable from these. Stale objects elsewhere
+                                keep their finest level alone, and stay stale */
     size_t scope_count;      /* 0: everything */
-    const struct lds_model* const* poses; /* the same scene in a few frames, always the same ones:
-                                what deforms is collapsed once, to suit all of them, and its levels
-                                follow it in every frame. An object is found by its uid; one that
-                                is in none of them with the faces it has now is drawn as it is */
-    size_t pose_count;                    /* 0: all that deforms is drawn as it is */
-    const struct lds_view* view; /* build only what this picture gains most from; what is left
-                                    stays stale. NULL: everything */
-    double share;                /* with a view: most time to build over the picture's, both
-                                    guessed from counts; usual 0.2 */
+    /* The same scene in a few frames, the same frames in every call: an object that deforms is
+       collapsed once, to suit all of them, and its levels follow it in every frame. Objects are
+       matched by uid; one whose present faces are in none of the poses is drawn at full detail. */
+    const struct lds_model* const* poses;
+    size_t pose_count;           /* 0: everything that deforms is drawn at full detail */
+    const struct lds_view* view; /* build only what saves this picture most time; the rest stays
+                                    stale. NULL: everything */
+    double share; /* with a view: the most time to build, as a share of the picture's own time (both
+                     estimated from counts); usual 0.2 */
 } lds_build_options;
 LDS_API lds_build_options lds_build_options_default(void);
 
@@ -746,16 +755,17 @@ typedef struct lds_build_report {
     uint64_t bytes_written;
     double wall_s;
     double cpu_s;
-    uint64_t left; /* still stale: what options.view does not call for */
+    uint64_t left; /* objects still stale, because options.view does not need them */
 } lds_build_report;
 
-/* What lds_model_build would do: fills objects, built, triangles and wall_s (a guess). */
+/* What lds_model_build would do: fills objects, built, triangles and wall_s (an estimate). */
 LDS_API lds_status lds_model_build_estimate(lds_model* model, const char* store,
                                             const lds_build_options* options,
                                             lds_build_report* out_report);
-/* Gives every object its stand-ins: those of the store (a folder, made when missing) where the source
-   hash still fits, new ones elsewhere, and brings the store up to date, about every 20 seconds: a build
-   that was cancelled or killed is gone on with. Then the model is as before. One writer at a time. */
+/* Gives every object its stand-ins: those in the store (a folder, made when missing) where the
+   source hash still matches, newly built ones elsewhere. The store is written about every 20
+   seconds, so a build that was cancelled or killed continues from there; the model of a failed
+   call is unchanged. One writer at a time. */
 LDS_API lds_status lds_model_build(lds_model* model, const char* store,
                                    const lds_build_options* options, lds_job* job,
                                    lds_build_report* out_report);
@@ -763,29 +773,32 @@ LDS_API lds_status lds_model_build(lds_model* model, const char* store,
 /* ---- Choosing ------------------------------------------------------------------------------- */
 
 typedef enum lds_lens_shape { LDS_LENS_SHAPE_SPHERE = 0, LDS_LENS_SHAPE_BOX = 1 } lds_lens_shape;
-/* What a lens does to what is not in its list. */
+/* What a lens does, by its list of objects. */
 typedef enum lds_lens_filter {
-    LDS_LENS_FILTER_ALL = 0,    /* there is no list: everything is refined */
-    LDS_LENS_FILTER_REFINE = 1, /* only what is listed is refined, and all that is below it */
-    LDS_LENS_FILTER_SHOW = 2    /* and nothing else is drawn whose bound has its center inside */
+    LDS_LENS_FILTER_ALL = 0,    /* no list: everything inside is refined */
+    LDS_LENS_FILTER_REFINE = 1, /* only the listed objects, and all below them, are refined */
+    LDS_LENS_FILTER_SHOW = 2    /* the same, and nothing else whose bound has its center inside the
+                                   lens is drawn */
 } lds_lens_filter;
-/* A region of the world inside which everything is drawn `strength` times finer (below 1: coarser), less
-   so towards its rim: 1 + (strength - 1) cos(pi d / 2 radius)^falloff, where d is the distance from the
-   origin of the lens's frame (a box: the largest coordinate), 1 outside. Counts with its largest value
-   anywhere in a bound: a group that it touches is opened, and its far children are not refined. */
+/* A region of the world inside which everything is drawn up to `strength` times finer (below 1:
+   coarser). The factor falls off towards the rim:
+     1 + (strength - 1) cos(pi d / (2 radius))^falloff,  1 outside
+   where d is the distance from the origin of the lens's frame (for a box: the largest coordinate).
+   A bound takes the largest factor anywhere in it. So a group that the lens touches is opened, and
+   those of its children that the lens does not touch are not refined. */
 typedef struct lds_lens {
     uint32_t struct_size;
     int32_t shape;        /* lds_lens_shape */
-    double transform[12]; /* its frame -> the world; flat: no effect */
+    double transform[12]; /* its frame -> the world; a singular one: no effect */
     double radius;        /* of the sphere, or half the box's sides, in its frame; 0: no effect */
     double strength;      /* more than 0; usual 4 */
     double falloff;       /* usual 1; 0: the same everywhere inside */
     int32_t filter;       /* lds_lens_filter */
     const char* name;     /* for messages */
-    const lds_object* objects; /* what a filter is about: objects and groups */
+    const lds_object* objects; /* the list of the filter: objects and groups */
     size_t object_count;
 } lds_lens;
-/* The same on the image: a disc. */
+/* The same as a disc on the image. */
 typedef struct lds_screen_lens {
     uint32_t struct_size;
     int32_t in_pixels; /* 1: center and radius are pixels of the final image; 0: shares of its width
@@ -797,33 +810,32 @@ typedef struct lds_screen_lens {
     const char* name;
 } lds_screen_lens;
 
-/* What a level is judged by (5.2.2), and so what lds_view.pixel_error means. */
+/* What decides whether a level is good enough (5.2.2), and so the unit of lds_view.pixel_error. */
 typedef enum lds_criterion {
-    LDS_CRITERION_RESOLUTION = 0, /* pixels that its error covers */
-    LDS_CRITERION_FEATURE = 1,    /* share of the picture that its largest missing feature covers */
-    LDS_CRITERION_AREA = 2,       /* share of the picture up to which the coarsest level is used;
-                                     each finer one serves four times as much */
-    LDS_CRITERION_DISTANCE = 3    /* metres up to which the original is used; each coarser level
-                                     serves twice as far: larger is finer */
+    LDS_CRITERION_RESOLUTION = 0, /* pixels: the error of the level on screen */
+    LDS_CRITERION_FEATURE = 1,    /* share of the picture that the largest missing feature covers */
+    LDS_CRITERION_AREA = 2,       /* share of the picture that an object may cover with its coarsest
+                                     level; four times as much with each finer one */
+    LDS_CRITERION_DISTANCE = 3    /* metres up to which the original is used, twice as many for each
+                                     coarser level; here a larger threshold is finer */
 } lds_criterion;
 
-/* How fine things are that the picture does not show; the whole picture counts, whatever part of it
-   is drawn. */
+/* How fine things outside of the picture are. A border does not count: the whole picture does. */
 typedef enum lds_off_screen {
-    LDS_OFF_SCREEN_FULL = 0,      /* as if it showed them */
-    LDS_OFF_SCREEN_REFLECTED = 1, /* as their shadows in it and their images in mirrors need */
-    LDS_OFF_SCREEN_SHADOWS = 2    /* as their shadows in it need: images of them may be coarse */
+    LDS_OFF_SCREEN_FULL = 0,      /* as if they were in it */
+    LDS_OFF_SCREEN_REFLECTED = 1, /* as their visible shadows and mirror images need */
+    LDS_OFF_SCREEN_SHADOWS = 2    /* as their visible shadows need; images may be coarse */
 } lds_off_screen;
 
-/* Classes of rays that may meet coarser representations than the camera's rays (5.3): a mask. */
+/* Mask of the ray classes that may meet coarser representations than camera rays do (5.3). */
 typedef enum lds_rays {
     LDS_RAYS_REFLECTION = 1,
     LDS_RAYS_SHADOW = 2,
     LDS_RAYS_RADIOSITY = 4
 } lds_rays;
 
-/* All that bends quality (5.5.5). Every factor multiplies, with the placements' importance; the product
-   stays within 1/64 to 64. */
+/* What makes single things finer or coarser than the view's threshold (5.5.5). All factors, and the
+   placements' importances, are multiplied; the product is clamped to 1/64 ... 64. */
 typedef struct lds_modifiers {
     uint32_t struct_size;
     int32_t criterion;      /* lds_criterion */
@@ -831,16 +843,17 @@ typedef struct lds_modifiers {
     size_t lens_count;
     const lds_screen_lens* screen_lenses; /* at most 1024 */
     size_t screen_lens_count;
-    double depth;       /* exaggeration k, 0 to 8; 1: none. Coarser by (z / depth_focus)^(k - 1) */
-    double depth_focus; /* metres */
-    int32_t
-        when_moving;   /* 1: coarser by sqrt(1 + m^2) where things cross m pixels while the shutter
-                            is open: by lds_model_move_placement, and the camera's own motion */
-    int32_t when_dark; /* 1: coarser where what the lamps and the world could light is displayed
-                            below 1/2, unless the world behind is brighter */
+    double depth;        /* exaggeration k, 0 to 8; 1: none. Coarser by (z / depth_focus)^(k - 1) */
+    double depth_focus;  /* metres */
+    int32_t when_moving; /* 1: what crosses m pixels while the shutter is open is coarser by
+                            sqrt(1 + m^2). The motion is the camera's (`closing`) and that of
+                            lds_model_move_placement */
+    int32_t when_dark;   /* 1: what the lamps and the world light so little that a white surface
+                            would be displayed below 1/2 is coarser, unless the world behind it is
+                            brighter */
     const lds_camera* closing; /* the camera when the shutter closes; null: it rests */
     int32_t off_screen;        /* lds_off_screen */
-    uint32_t ray_classes;      /* lds_rays; 0: every ray meets what the camera sees */
+    uint32_t ray_classes;      /* lds_rays that may meet coarser levels; 0: none */
 } lds_modifiers;
 LDS_API lds_modifiers lds_modifiers_default(void);
 
@@ -851,33 +864,33 @@ typedef struct lds_view {
     int32_t height;
     double pixel_error; /* T, usual 1; larger is coarser and cheaper; 0 = originals */
     uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
-    int32_t border[4];  /* the part that is drawn: left, top, width, height in pixels of the final
-                             image, the rest of which stays empty; width 0: all of it */
-    const lds_modifiers* modifiers; /* null: nothing bends quality */
+    int32_t border[4];  /* the part of the image that is drawn: left, top, width, height in pixels;
+                           width 0: all of it */
+    const lds_modifiers* modifiers; /* null: none */
 } lds_view;
 
 typedef struct lds_cut lds_cut;
 LDS_API lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job,
                                   lds_cut** out_cut);
-/* Makes it the cut of another view of its model, the same as a new one: from the second call on in a
-   fraction of the time where only the camera has moved or turned, or lenses that hide nothing have
-   changed. What was handed out by it, its colors and its surface are gone. On failure it stays as it
-   is. */
+/* Makes `cut` the cut of another view of its model, bit for bit the one that lds_cut_create would
+   make. From the second call on it takes a fraction of the time if only the camera has moved or
+   turned, or detail lenses that hide nothing have changed. Strings, colors and surfaces of the old
+   cut are gone. On failure the cut is unchanged. */
 LDS_API lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, lds_job* job);
 
-/* Instead of a threshold: what the cut may cost at most. */
+/* The most that a cut may cost. */
 typedef struct lds_budget {
     uint32_t struct_size;
     uint64_t triangles; /* placed; 0: any number */
-    uint64_t bytes; /* POV-Ray's memory: distinct representations and occurrences; 0: any number */
+    uint64_t bytes; /* of POV-Ray's memory, shared representations counted once; 0: any number */
 } lds_budget;
 typedef struct lds_budget_report {
     uint32_t struct_size;
-    int32_t fits;       /* 0: even the coarsest cut costs more; it is the one made */
-    double pixel_error; /* the least threshold, not below the view's, whose cut fits */
-    uint64_t cuts;      /* how often the model was gone through: at most 3 */
+    int32_t fits;       /* 0: even the coarsest cut costs more, and that one is returned */
+    double pixel_error; /* the smallest threshold, not below the view's, whose cut fits */
+    uint64_t cuts;      /* traversals of the model this took: at most 3 */
 } lds_budget_report;
-/* The finest cut within the budget. A larger budget never gives a larger threshold. */
+/* The finest cut within the budget. A larger budget never gives a coarser cut. */
 LDS_API lds_status lds_cut_create_within(lds_model* model, const lds_view* view,
                                          const lds_budget* budget, lds_job* job,
                                          lds_budget_report* out_report, lds_cut** out_cut);
@@ -885,9 +898,9 @@ LDS_API void lds_cut_destroy(lds_cut* cut);
 
 typedef struct lds_cut_summary {
     uint32_t struct_size;
-    uint64_t occurrences; /* chosen: drawn once each */
-    uint64_t opened;      /* groups the choice went into */
-    uint64_t mesh;        /* occurrences of each kind */
+    uint64_t occurrences; /* chosen ones, each drawn once */
+    uint64_t opened;      /* groups drawn by their children */
+    uint64_t mesh;        /* occurrences drawn by each kind */
     uint64_t box;
     uint64_t ellipsoid;
     uint64_t originals; /* occurrences drawn at LOD 0 */
@@ -913,21 +926,23 @@ LDS_API lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choic
 /* Names of the placements from the root, joined by '/'. */
 LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
 
-/* Why a choice is what it is: error_px * factor <= Pixel Error, and not so for the next coarser level. */
+/* Why a choice was made: its error_px * factor is at most the Pixel Error, and that of the next
+   coarser level (coarser_error_px * coarser_factor) is not, or a pin forbids that level. */
 typedef struct lds_reason {
     uint32_t struct_size;
-    uint32_t lod;    /* as the choice's */
-    double z;        /* metres from the eye to its bound, at least the near clip */
-    double pixel;    /* size of a pixel there, metres */
-    double error;    /* metres in the object's frame */
-    double stretch;  /* by which its placements enlarge it */
-    double error_px; /* error * stretch / pixel */
-    double factor; /* all of the next eight, within 1/64 to 64; infinite: a lens hides part of it */
+    uint32_t lod;      /* as the choice's */
+    double z;          /* metres from the eye to its bound, at least the near clip */
+    double pixel;      /* size of a pixel at that distance, metres */
+    double error;      /* metres in the object's frame */
+    double stretch;    /* factor by which its placements enlarge it */
+    double error_px;   /* error * stretch / pixel */
+    double factor;     /* product of the next eight, clamped to 1/64 ... 64; infinite where a lens
+                          hides part of it */
     double importance; /* of its placements; this and the next three refine */
-    double demand;     /* of the most important thing below it, infinite: of a limited one */
+    double demand;     /* largest importance below it; infinite where a level limit lies below */
     double lenses;
     double screen_lenses;
-    double depth; /* this and the next three coarsen */
+    double depth; /* this and the next three make it coarser */
     double motion;
     double darkness;
     double off_screen;
@@ -937,33 +952,33 @@ typedef struct lds_reason {
     int32_t coarser_kind;
     double coarser_error;    /* metres in that object's frame */
     double coarser_error_px; /* on screen */
-    double coarser_factor;   /* its factors together */
-    int32_t pinned;          /* 1: a decision on a placement forbids that one */
+    double coarser_factor;
+    int32_t pinned; /* 1: a decision about a placement forbids that level */
 } lds_reason;
-/* model: the cut's, its levels unchanged since. */
+/* model: the one the cut was made from, with the same levels. */
 LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
                                          lds_reason* out_reason);
-/* What a class of rays meets, in place of what the camera sees. */
+/* What a class of rays meets instead of what the camera sees. */
 typedef struct lds_ray_summary {
     uint32_t struct_size;
     uint32_t rays;           /* the class: one of lds_rays */
-    uint64_t own;            /* occurrences and groups it meets a coarser representation of */
-    uint64_t occurrences;    /* it meets */
-    uint64_t triangles;      /* placed, that it meets */
-    uint64_t bytes;          /* of these in POV-Ray's memory */
-    double largest_error_px; /* bound: how far edges of shadows or images are off by these */
-    uint64_t
-        kept_need; /* choices it meets as the camera does, because nothing coarser is good enough */
-    uint64_t kept_shape;    /* because a stand-in would shadow or mirror its own original */
-    uint64_t kept_contact;  /* because something else is too near */
+    uint64_t own;            /* coarser representations of occurrences and groups that it meets */
+    uint64_t occurrences;    /* that it meets in all */
+    uint64_t triangles;      /* placed, of these */
+    uint64_t bytes;          /* in POV-Ray's memory, of these */
+    double largest_error_px; /* upper bound: how far they shift shadow edges or mirror images */
+    /* Choices that the class meets as the camera does, and why: */
+    uint64_t kept_need;     /* nothing coarser is good enough */
+    uint64_t kept_shape;    /* a stand-in would shadow or mirror its own original */
+    uint64_t kept_contact;  /* something else is too near */
     uint64_t all_triangles; /* placed, that the camera or any class meets */
-    uint64_t all_bytes;     /* of these in POV-Ray's memory */
+    uint64_t all_bytes;     /* in POV-Ray's memory, of these */
 } lds_ray_summary;
-/* Of a class that the cut's modifiers ask for; of another one: as the camera's. */
+/* rays: one class. For a class that the cut's modifiers do not ask for, the camera's numbers. */
 LDS_API lds_status lds_cut_get_rays(const lds_cut* cut, uint32_t rays,
                                     lds_ray_summary* out_summary);
 typedef enum lds_met {
-    LDS_MET_OFF = 0,    /* the class was not asked for, or does not meet it: as the camera's */
+    LDS_MET_OFF = 0,    /* the class was not asked for, or does not meet this choice */
     LDS_MET_OWN = 1,    /* a coarser representation of its own */
     LDS_MET_GROUP = 2,  /* a stand-in for a group around it */
     LDS_MET_NEED = 3,   /* as the camera's: nothing coarser is good enough */
@@ -977,68 +992,71 @@ typedef struct lds_ray_choice {
     lds_object object; /* whose representation it meets */
     uint32_t lod;
     int32_t kind;
-    double scale;    /* of a box or ellipsoid about its center, so that it is inside or around */
+    double scale;    /* of a box or ellipsoid about its center, so that it lies inside the original
+                        (shadows) or around it (reflections) */
     double error;    /* metres in the world; 0 where it meets what the camera sees */
-    double error_px; /* bound: how far edges of its shadow or image are off */
+    double error_px; /* upper bound: how far edges of its shadow or mirror image are off */
 } lds_ray_choice;
 LDS_API lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t position,
                                        uint32_t rays, lds_ray_choice* out_choice);
 /* How a cut draws one thing of the scene. */
 typedef enum lds_drawn {
-    LDS_DRAWN_MISSING = 0,  /* the model has no such occurrence */
+    LDS_DRAWN_MISSING = 0,  /* not at all: the model has no such occurrence */
     LDS_DRAWN_ITSELF = 1,   /* by a level of its own */
     LDS_DRAWN_IN_GROUP = 2, /* by a stand-in for a group around it */
     LDS_DRAWN_OPENED = 3,   /* it is a group, drawn by what is in it */
-    LDS_DRAWN_NOT = 4       /* no ray sees it, or a lens hides it */
+    LDS_DRAWN_NOT = 4       /* not at all: hidden from all rays, or by a lens */
 } lds_drawn;
-/* Of the occurrence of an object whose transform is nearest to `world` (within 1/1000 of its distance
-   from the origin, or 1 mm). out_position: of the choice, of ITSELF and IN_GROUP. */
+/* Finds how an occurrence is drawn: that of `object` whose transform is nearest to `world` (within
+   1/1000 of its distance from the origin, or 1 mm). out_position: the choice that draws it, set for
+   ITSELF and IN_GROUP. */
 LDS_API lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object object,
                                        const double world[12], int32_t* out_drawn,
                                        size_t* out_position);
-/* The path of placements below a group to what is drawn finer than anything else in it, by importance
-   or a limit, and opens the group for that; "" where nothing does. Valid until this thread's next call
-   of it. */
+/* The path of placements from a group to the thing below it that has the largest importance, or a
+   level limit, and for which the group is opened; "" if there is none. Valid until this thread's
+   next call of it. */
 LDS_API lds_status lds_model_most_demanding(lds_model* model, lds_object group,
                                             const char** out_path);
-/* Frees the meshes that the store the model was built with can give back; they are read again when they
-   are needed. */
+/* Frees the meshes that can be read again from the store the model was built with; this is done
+   when they are needed. */
 LDS_API lds_status lds_model_release_meshes(lds_model* model);
 
-/* Linear colors of the choices, in their order: of surfaces, and of pictures with
-   lds_povray_options.false_color. colors float64[count][3], 0 to 1; count 0: those of
-   lds_povray_false_color. */
+/* Sets the linear colors in which surfaces, batches and pictures with
+   lds_povray_options.false_color show the choices: colors float64[choice count][3], 0 to 1, in the
+   order of the choices. count 0: back to those of lds_povray_false_color. */
 LDS_API lds_status lds_cut_set_colors(lds_cut* cut, const double* colors, size_t count);
-/* Gives each choice a color of its own, which lds_image_compare_shown understands. */
+/* Gives each choice a unique color, from which lds_image_compare_shown finds it in a picture. */
 LDS_API lds_status lds_cut_set_identities(lds_cut* cut);
-/* Makes loose triangles of what cameras see of the cut, at most about most_triangles: what has more
-   is shown by a coarser level, or by its box. Kept with the cut until the next call; 0 frees them. */
+/* Makes an unindexed triangle list of what cameras see of the cut, of about most_triangles at
+   most: if there are more, coarser levels or boxes are shown. Kept with the cut until the next
+   call; 0 frees the list. */
 LDS_API lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_triangles,
                                         lds_job* job, uint64_t* out_triangles);
 /* out_corners float32[triangles][3][3], in the world; out_colors uint8[triangles][3][4], sRGB and
-   opaque, darker where a triangle is turned away from above. capacity counts triangles. */
+   opaque, shaded as by light from above. capacity counts triangles. */
 LDS_API lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t* out_colors,
                                         size_t capacity);
 
-/* Batches: what cameras see of a cut, in portions for a viewer that keeps them. A portion that shows
-   the same in another cut has the same key there (colors of lds_cut_set_colors included): only the
-   others are to be made. Kept with the cut until the next call. */
+/* Divides what cameras see of a cut into batches for a viewer that keeps them on the GPU. Batches
+   of different cuts with equal keys show the same (colors of lds_cut_set_colors included), so the
+   viewer creates only those whose key is new. Kept with the cut until the next call. */
 LDS_API lds_status lds_cut_make_batches(lds_model* model, lds_cut* cut, size_t* out_count);
-/* out_keys uint64[count], never 0; out_triangles uint64[count], a guess for composites. */
+/* out_keys uint64[count], never 0; out_triangles uint64[count], an estimate for composites. */
 LDS_API lds_status lds_cut_batch_keys(const lds_cut* cut, uint64_t* out_keys,
                                       uint64_t* out_triangles, size_t capacity);
 typedef struct lds_batch lds_batch;
-/* Reads the meshes it needs and puts them together. It outlives cut and model. */
+/* Reads the meshes that a batch needs and merges them. The batch may outlive cut and model. */
 LDS_API lds_status lds_batch_create(lds_model* model, const lds_cut* cut, size_t position,
                                     lds_job* job, lds_batch** out_batch);
 LDS_API void lds_batch_destroy(lds_batch* batch);
 LDS_API size_t lds_batch_vertex_count(const lds_batch* batch);
 LDS_API size_t lds_batch_triangle_count(const lds_batch* batch);
-/* Corners of the box around it, in the world: the lower ones first; zeros around nothing. */
+/* Its bounding box in the world: the lower corner, then the upper one; zeros for an empty batch. */
 LDS_API lds_status lds_batch_box(const lds_batch* batch, double out_box[6]);
-/* out_positions float32[vertices][3], in the world; out_normals int16[vertices][4], unit normals times
-   32767, zero where the surface is flat, and 32767 as the fourth where it glows; out_colors
-   uint8[vertices][4], sRGB and how much light it stops; out_triangles uint32[triangles][3]. */
+/* out_positions float32[vertices][3], in the world; out_normals int16[vertices][4]: unit normals
+   times 32767, zero on flat shaded surfaces, and in the fourth number 32767 where the surface
+   glows; out_colors uint8[vertices][4]: sRGB and opacity; out_triangles uint32[triangles][3]. */
 LDS_API lds_status lds_batch_copy(const lds_batch* batch, float* out_positions,
                                   int16_t* out_normals, uint8_t* out_colors,
                                   uint32_t* out_triangles);
@@ -1053,33 +1071,31 @@ typedef enum lds_antialias {
 
 typedef struct lds_povray_options {
     uint32_t struct_size;
-    int32_t antialias;   /* lds_antialias; usual FINAL */
-    int32_t false_color; /* 1: paint by kind and LOD number */
-    int32_t
-        covered_only;    /* 1: without environment objects and world (the mask of covered pixels) */
-    int32_t threads;     /* 0 = all */
-    const char* program; /* null: $LODESTONE_POVRAY, else povray on the PATH */
-    /* How finely it is shaded; 0 is the usual. A larger error is rougher and cheaper. */
-    double
-        antialias_threshold; /* FINAL: neighbors that differ by more get more samples; usual .1 */
-    int32_t antialias_depth; /* FINAL: its square is how many; usual 3 */
-    int32_t trace_depth;     /* mirrors or bodies of glass, one behind the other; usual 5 */
-    int32_t
-        area_samples;   /* rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows; usual 17,
-                             with OFF 1 */
-    int32_t sky_lights; /* lights that stand for an environment image; below 0: none; usual 24, with
-                             OFF 12, with REFERENCE 64 */
-    double shadow_error; /* pixels; narrower penumbrae are sharp; usual the view's pixel_error */
-    double
-        light_error; /* how far lights are approximated, in place of the view's Pixel Error; 0: all of
-                           them light everything; negative (usual): the view's. A point differs by about
-                           as many steps of an 8-bit display on average */
-    double reflection_error; /* 255ths; rays that add less are not followed; usual 1 */
-    double texture_error;    /* pixels; what image textures may be blurred by; usual 0 */
-    int32_t bounces;     /* of light from surface to surface, up to 8; usual 0: direct light only */
-    int32_t bounce_rays; /* that gather it; usual 200, with OFF 60, with REFERENCE 800 */
-    double bounce_error; /* how far what is gathered is used again (0 ... 1); usual .6, with OFF 1,
-                              with REFERENCE .4 */
+    int32_t antialias;    /* lds_antialias; usual FINAL */
+    int32_t false_color;  /* 1: paint by kind and LOD number */
+    int32_t covered_only; /* 1: without environment objects and world, so that alpha is the mask of
+                             covered pixels */
+    int32_t threads;      /* 0 = all */
+    const char* program;  /* null: $LODESTONE_POVRAY, else povray on the PATH */
+    /* How finely the picture is shaded; 0 is the usual value. Larger errors are cheaper. */
+    double antialias_threshold; /* FINAL: difference of neighbors that adds samples; usual .1 */
+    int32_t antialias_depth;    /* FINAL: n, for n x n samples in such a pixel; usual 3 */
+    int32_t trace_depth;        /* most mirrors and glass bodies one behind the other; usual 5 */
+    int32_t area_samples; /* shadow rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows;
+                             usual 17, with OFF 1 */
+    int32_t sky_lights;   /* lights that stand for an environment image; below 0: none; usual 24,
+                             with OFF 12, with REFERENCE 64 */
+    double shadow_error;  /* pixels: a penumbra narrower than this is drawn sharp; usual the view's
+                             pixel_error */
+    double light_error;   /* replaces the view's Pixel Error where lamps are joined into lights that
+                             stand for several; 0: every lamp lights everything; negative (usual):
+                             the view's. On average a point is off by about as many 255ths */
+    double reflection_error; /* 255ths: rays that add less are not followed; usual 1 */
+    double texture_error;    /* pixels that image textures may be blurred by; usual 0 */
+    int32_t bounces;         /* of indirect light, up to 8; usual 0: direct light only */
+    int32_t bounce_rays;     /* that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
+    double bounce_error;     /* 0...1: how far gathered light is interpolated; usual .6, with OFF 1,
+                                with REFERENCE .4 */
 } lds_povray_options;
 LDS_API lds_povray_options lds_povray_options_default(void);
 
@@ -1090,9 +1106,9 @@ typedef struct lds_export_report {
     uint64_t written; /* files that were not there yet */
     double cpu_s;
     uint64_t lamps;     /* lights but suns */
-    double lights_each; /* lamps, and lights that stand for several, that light a point of the
-                             picture, on average */
-    uint64_t unseen;    /* occurrences that only some classes of rays meet */
+    double lights_each; /* lights, of one lamp or standing for several, per point of the picture, on
+                           average */
+    uint64_t unseen;    /* occurrences that the camera does not see, but some class of rays meets */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,
@@ -1105,15 +1121,15 @@ typedef struct lds_povray_report {
     double parse_cpu_s;
     double trace_cpu_s;
     double wall_s;
-    uint64_t peak_bytes; /* VmHWM */
+    uint64_t peak_bytes; /* largest resident memory (VmHWM) */
 } lds_povray_report;
-/* Renders folder/scene.ini to folder/<picture> (ending .exr or .png). POVRAY_FAILED carries
-   POV-Ray's own sentence; then and when cancelled an older picture stays as it was. */
+/* Renders folder/scene.ini to folder/<picture> (ending .exr or .png). POVRAY_FAILED comes with
+   POV-Ray's own sentence. If the call fails or is cancelled, an older picture stays as it was. */
 LDS_API lds_status lds_povray_run(const char* folder, const char* picture,
                                   const lds_povray_options* options, lds_job* job,
                                   lds_povray_report* out_report);
-/* VmHWM of POV-Ray on a picture of this size without any object: what to subtract from peak_bytes to
-   know what a scene costs. Measured by running it; remembered for the life of the process. */
+/* peak_bytes of an empty picture of this size: subtract it to know what a scene costs. Measured by
+   running POV-Ray, then remembered for the life of the process. */
 LDS_API lds_status lds_povray_empty_bytes(int32_t width, int32_t height, const char* program,
                                           uint64_t* out_bytes);
 /* The program that would be run. POVRAY_MISSING says what to do. */
@@ -1133,29 +1149,31 @@ LDS_API lds_status lds_image_read(const char* path, int32_t bottom_up, float* ou
 LDS_API lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
                                        const float* pixels);
 
-/* Adds lines of text to a PNG, as its readers show them ("Comment", "Software"): keywords of 1 to 79
-   characters. Lines of the same keyword are replaced; what is not ASCII becomes '?'. All or
+/* Adds lines of text to a PNG, as its readers show them ("Comment", "Software"): keywords of 1 to
+   79 characters. Lines of the same keyword are replaced; what is not ASCII becomes '?'. All or
    nothing. */
 LDS_API lds_status lds_image_add_text(const char* path, const char* const* keywords,
                                       const char* const* texts, size_t count);
 
 typedef struct lds_difference {
     uint32_t struct_size;
-    double mean; /* of display-encoded values 0...1 over the compared pixels */
-    double p999;
+    double mean; /* over the compared pixels; of display-encoded values 0...1 */
+    double p999; /* 99.9 % quantile */
     double max;
-    double ssim; /* luma, 11x11 Gaussian */
+    double ssim; /* of luma, 11x11 Gaussian */
     uint64_t pixels;
 } lds_difference;
 /* mask (may be null): a picture whose alpha > 1/255 marks the covered pixels. */
 LDS_API lds_status lds_image_compare(const char* path_a, const char* path_b, const char* mask,
                                      lds_difference* out_difference);
-/* Compares two pictures where either shows something, and tells what differs. shown_a and shown_b:
-   linear pictures of the two cuts by lds_cut_set_identities, false_color, covered_only, without
-   antialiasing. Each pixel counts for what shown_a shows there, or else for what shown_b does: out_a
-   float64[count_a] and out_b float64[count_b] get the sums over pixels of the mean difference of R, G,
-   B of each choice. out_picture float32[height][width][4]: the differences in
-   lds_image_difference_color()s; may be null. capacity counts floats. */
+/* Compares two pictures where either shows something, and tells which choices differ.
+   shown_a, shown_b   linear pictures of the two cuts, made after lds_cut_set_identities with
+                      false_color and covered_only, without antialiasing
+   out_a, out_b       float64[count_a], float64[count_b]: for each choice the sum over its pixels of
+                      the mean difference of R, G and B. A pixel belongs to the choice that shown_a
+                      shows there, or, where it shows none, to that of shown_b
+   out_picture        float32[height][width][4]: the differences as lds_image_difference_color gives
+                      them; may be null. capacity counts floats */
 LDS_API lds_status lds_image_compare_shown(const char* path_a, const char* path_b,
                                            const char* shown_a, const char* shown_b, double* out_a,
                                            size_t count_a, double* out_b, size_t count_b,
