@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Light plan: by which lights each object of a scene is lit, so that a view looks as with all of them.
+// SPDX-License-Identifier: GPL-3.0-or-later Light plan: the few lights that each object of a scene
+// needs, so that a view looks as with all lamps.
 #pragma once
 
 #include "base/job.h"
@@ -37,17 +37,20 @@ struct LightPlan {
 /// Below this many lamps all of them light everything.
 inline constexpr size_t kFewLamps = 8;
 
-/// Groups what is drawn by what lights it; POV-Ray shades a group with its own lamps alone, and
-/// whatever stands between casts its shadow. Points that the view shows (one in every 20 pixels, at
-/// least 12,000, in mirrors and behind glass too), and such that every part of a thing that a pixel
-/// shows sees one (light_coverage.h), say by rays which lamps reach what, and by how much a light
-/// that stands for several differs: see quality::cut_lights. Lamps that reach none of the points of
-/// an object, nor points beside these, are not among its lights: a patch of light smaller than the
-/// distance of points can be missed. What no point lies on is lit by all lamps as they are. What
-/// many lamps light here and there (the floor of many rooms) is cut into boxes. `bounces`: of light
-/// between surfaces; then what sends light to what the view shows is looked at too. Empty where that
-/// saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is too much to cast
-/// them at (a problem).
+/// Groups what is drawn by what lights it. POV-Ray shades a group with its own lamps alone, while
+/// everything in between casts shadows.
+///
+/// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000,
+/// in mirrors and behind glass too, and as many more as it takes that every part of a thing that a
+/// pixel shows sees one (light_coverage.h). They tell which lamps reach what, and by how much a
+/// light that stands for several differs from these (quality::cut_lights). A lamp that reaches no
+/// point of an object, nor any beside these, is not among its lights; so a patch of light smaller
+/// than the distance of points can be missed. Things without any point are lit by all lamps. Things
+/// that many lamps light here and there (the floor of many rooms) are cut into boxes. `bounces`: of
+/// light between surfaces; then points that send light to what the view shows are taken too.
+///
+/// Empty if that saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is
+/// too much to cast them at (a problem).
 LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
                       double pixel_error, int bounces, Problems& problems, const Job& job = {});
 

@@ -22,13 +22,15 @@ struct Agreement {
     glm::dvec3 light{0.0};  // the finest's mean light where covered over the stand-in's, by color
 };
 
-/// The error of what is not solid (foliage, fences, crowds, things one can see through): where single
-/// leaves are missing the distance to the nearest other leaf tells nothing, what a pixel covers and
-/// how bright it is does. Orthographic pictures along 13 axes (against them the same is covered, and lit
-/// by other suns) of a diffuse surface under an even sky (a quarter of the light) and a sun that stands
-/// obliquely beside the viewer, with shadows; glass shows what lies behind it, refracted. Both meshes
-/// are sampled by the same rays. Larger pixels are means of smaller ones; differences are those of
-/// pictures without sampling noise.
+/// The error of what is not solid: foliage, fences, crowds, things one can see through. If single
+/// leaves are missing, the distance to the nearest other leaf tells nothing; how much of a pixel is
+/// covered and how bright it is does.
+///
+/// Pictures are orthographic, along 13 axes (the opposite directions cover the same), of a diffuse
+/// surface under a uniform sky, which gives a quarter of the light, and a sun that stands obliquely
+/// beside the viewer, with shadows; glass refracts what lies behind it. Both meshes are sampled by
+/// the same rays. Larger pixels are means of smaller ones. Sampling noise is taken out of the
+/// differences.
 class AgreementReference {
 public:
     /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
@@ -38,29 +40,31 @@ public:
     /// Enough for how bright something is, and for pixels of a sixth of its size.
     static constexpr int kBrightSide = 30;
 
-    /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+    /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument,
+    /// RaysUnavailable, Cancelled.
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                        int side = kSide, const Job& job = {});
     /// The same with a scene made from this mesh, and this skin, before.
     AgreementReference(const Mesh& finest, const ray::Scene& scene, const ray::SkinPtr& skin,
                        uint64_t seed, int side, const Job& job);
 
-    /// Same bits on any number of threads. Two meshes that show nothing agree at every size; where
-    /// they never agree the error is the side of the whole picture, up to twice as much the more they
+    /// Same bits on any number of threads. Two meshes that show nothing agree at every size. If the
+    /// pictures agree at no size, the error is one to two sides of the picture, the more they
     /// differ.
     Agreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
 
-    /// What pictures of a stand-in have where, and how much light falls on it: what all skins that
-    /// hide alike have in common, and what takes long.
+    /// Which point of a stand-in each sample of the pictures shows, and how much light falls on it.
+    /// This takes most of the time, and is the same for all skins with the same transparency.
     class Traced;
     /// Keeps a reference to the mesh. Same bits on any number of threads.
     Traced trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
-    /// `skin` is the one it was traced in, or differs from that in colors and scales of textures alone.
+    /// `skin` is the one it was traced in, or differs from that in colors and scales of textures
+    /// alone.
     Agreement of(const Traced& stand_in, const ray::SkinPtr& skin) const;
-    /// What is seen through gaps: the smallest pixel size at which pictures agree that differ only
-    /// where a point of the finest is seen, but no visible point of the stand-in is within twice `off`
-    /// (and the samples' distance); or of() where the stand-in covers much less in all. 0 where they
-    /// agree at all sizes.
+    /// The error of gaps alone. The pictures compared are the finest's and one that differs from it
+    /// only where the finest shows a point that has no visible point of the stand-in within twice
+    /// `off` (and the distance of samples). Returns the smallest pixel size at which they agree (0:
+    /// all sizes), or the error of of() if the stand-in covers much less in all.
     double gaps_of(const Traced& stand_in, const ray::SkinPtr& skin, double off) const;
     /// As of(), without the error.
     Agreement brightness_of(const Traced& stand_in, const ray::SkinPtr& skin) const;

@@ -15,11 +15,12 @@ struct Scaled {
 };
 
 struct Convexity {
-    /// One closed solid, its outside outside, and convex but for edges so flat that what they hide gets
-    /// next to no light, as the diagonals of quads.
+    /// One closed solid that is convex, except at concave edges so flat (diagonals of bent quads)
+    /// that next to no light is lost in them. Its triangles face outwards.
     bool convex = false;
-    double hollow = 0;  // metres: how deep these lie at most below its convex hull
-    /// Images in it are no larger than in a flat mirror: it is flat or convex, and so are its normals.
+    double hollow = 0;  // metres: how deep such edges lie below the convex hull at most
+    /// Whether it is flat or convex, its shading normals too: as a mirror it shows nothing larger
+    /// than a flat mirror would.
     bool flattens = false;
 };
 

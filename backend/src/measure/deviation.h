@@ -8,15 +8,17 @@ namespace lodestone::measure {
 
 class VisibleLooks;
 
-/// Distances in metres, of both directions together: from the visible surface of the finest to the
-/// stand-in, and from the stand-in (all of it) to the finest (all of it). Where the nearest surface
-/// of the stand-in has another look than a visible point, it also counts by how much the looks were
-/// moved, the least of: the distance to the look that is missed; to where the finest shows the look
-/// that is there instead; and, for a look that the finest has nowhere (a mean color), the radius
-/// within which the finest's own colors mix to it. So a road that is gone is as wrong as half its
-/// width, however large the field around it: every look that at least .2 % of the area shows has
-/// its own quantile (99 %). Where the same textured material shows another color it counts by how
-/// far its texture slid. What is transparent is not there: it is neither sampled nor matched.
+/// How far apart two surfaces and their looks are, in metres. Surfaces are compared both ways: from
+/// the visible surface of the finest to the whole stand-in, and from the whole stand-in to the
+/// whole finest.
+///
+/// If the nearest point of the stand-in has another look than the visible point, that look was
+/// moved, by the least of: the distance to the missing look on the stand-in; the distance to where
+/// the finest shows the look that is there instead; and, for a look that the finest has nowhere (a
+/// mean color), the radius within which the finest's own colors mix to it. If the same textured
+/// material shows another color there, it was moved by as much as its texture slid. Every look that
+/// at least .2 % of the area shows has its own quantile, so a lost road is wrong by half its width,
+/// however large the field around it is. Transparent points are neither sampled nor matched.
 struct Deviation {
     double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
     double max = 0;    // the largest distance that was seen
@@ -28,10 +30,11 @@ struct DeviationOptions {
     uint64_t seed = 1;
 };
 
-/// The finest surface made ready to be compared with. A direction's quantile is over two sets of
-/// equal weight: points uniform in (visible) area, which share it equally, and (visible) vertices,
-/// each with a third of its triangles' area; of a stand-in up to 16,384, for a few of them decide. A point of the finest is visible when a ray from
-/// outside its bound hits it; a vertex when one of 16 rays from beside it sees infinity.
+/// The finest surface made ready to be compared with. The quantile of each direction is over two
+/// sets of the same total weight: points uniform in (visible) area, with equal weights, and
+/// (visible) vertices, each with a third of its triangles' area. Of a stand-in up to 16,384
+/// vertices are taken, because a few of them decide. A point of the finest is visible if a ray from
+/// outside its bound hits it; a vertex if one of 16 rays from beside it reaches infinity.
 class DeviationReference {
 public:
     /// Keeps what it needs of the mesh, of the looks and of the skin, and a reference to their
@@ -42,28 +45,28 @@ public:
     DeviationReference(const DeviationReference&) = delete;
     DeviationReference& operator=(const DeviationReference&) = delete;
 
-    /// `surface` is numbered by the same palette. Same bits on any number of threads. Where one of
-    /// the two meshes has nothing to measure to, both numbers are the diameter of the other's
-    /// bounding sphere; two empty ones agree. Where the error is much larger than `useless` the answer
-    /// may be infinite, and sooner there. May be called from any thread.
+    /// `surface` is numbered by the same palette. Same bits on any number of threads, and may be
+    /// called from any. If one of the two meshes has nothing to measure to, both numbers are the
+    /// diameter of the other's bounding sphere; two empty meshes agree. An error much larger than
+    /// `useless` may be returned as infinite, which takes less time.
     Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
                  double useless = std::numeric_limits<double>::infinity()) const {
         return of(stand_in, surface, {}, useless, job);
     }
-    /// The same of a level that was repainted (or not, and no triangle of it has moved since), knowing
-    /// what that found; `nearest` may be empty.
+    /// The same for a level after repaint(), whose result is `nearest`, or without it (empty). No
+    /// triangle of the level may have moved since.
     Deviation of(const Mesh& stand_in, const Surface& surface,
                  std::span<const ray::Closest> nearest, double useless, const Job& job) const;
 
-    /// The same with half of all points, for what need not be known as well.
+    /// The same with half of all points: less exact, in half of the time.
     Deviation roughly(const Mesh& stand_in, const Surface& surface,
                       std::span<const ray::Closest> nearest, double useless, const Job& job) const;
 
-    /// Gives each triangle of a level (of the finest's slots and skin) the slot that most of the
-    /// visible points nearest to it show, where enough of them agree: boards look like the tiles
-    /// that lay on them. A slot with textures comes with texture coordinates that show what those
-    /// points show, or not at all. The nearest point of the level by visible point, at infinity where
-    /// it was not looked for; empty where nothing was.
+    /// Gives each triangle of a level (with the finest's slots and skin) the slot that most of the
+    /// visible points nearest to it show, if enough of them agree: boards look like the tiles that
+    /// lay on them. A textured slot is given only with texture coordinates that show what those
+    /// points show. Returns the nearest point of the level for each visible point (infinitely far
+    /// where it was not searched), or nothing if no point was.
     std::vector<ray::Closest> repaint(Mesh& level, const ray::Skin* skin = nullptr,
                                       const Job& job = {}) const;
 

@@ -27,13 +27,14 @@ struct Visible {
     uint64_t pilot_rays = 0;            // that were cast besides Attributes::rays
 };
 
-/// Attributes of the visible surface in the mesh's frame. `materials` by slot (a slot without one
-/// looks like Material{}), with their textures: what is transparent is not there, and surface
-/// properties are means over the visible area, each point showing its own texel. `tags` is empty or
-/// one a triangle, each < 2^24: for instance which child the triangle came from. A mesh without
-/// area, or of which no ray hit anything, gives empty attributes. Where nothing hides anything (one
-/// convex body, one flat sheet) all is exact, by traversal, after a pilot has agreed. Same bits on any number of
-/// threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled, BadFile (a picture).
+/// Attributes of the visible surface in the mesh's frame. `materials` are by slot (a slot without
+/// one looks like Material{}). Their textures count: transparent points are left out, and surface
+/// properties are means over the visible area of what each point shows. `tags` is empty or has one
+/// number < 2^24 for each triangle, for instance which child it came from. A mesh without area, or
+/// one that no ray hits, has empty attributes. A mesh that hides nothing of itself (one convex
+/// body, one flat sheet) is measured exactly by traversal, after a pilot of rays has agreed. Same
+/// bits on any number of threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled,
+/// BadFile (a picture).
 Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         const Job& job = {});
@@ -43,13 +44,13 @@ Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::Sk
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         const Job& job = {});
 
-/// The same with a sampler of it made before, of this seed, casting and relative error. `known` is what
-/// its first rays found, if somebody has cast them.
+/// The same with a sampler made before for this mesh, seed, casting and relative error. `known`:
+/// what its first rays found, if they have been cast already.
 Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
                         const VisibleOptions& options, std::span<const uint32_t> tags = {},
                         std::span<const Cast> known = {}, const Job& job = {});
 
-/// The visible area alone, of a fixed number of rays: what measure_visible() tells of it, sooner.
+/// The visible area alone, by a fixed number of rays: that of measure_visible(), in less time.
 double visible_area(const VisibleSampler& sampler, uint64_t rays, const Job& job = {});
 
 }  // namespace lodestone::measure
