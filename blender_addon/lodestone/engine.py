@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import bpy
 
-from . import preferences, preview, render_job
+from . import handlers, preferences, preview, render_job
 from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
@@ -369,7 +369,9 @@ def _forget(*_):
     _poses.clear()
 
 
-_HANDLERS = ("render_init", "render_complete", "render_cancel", "load_pre")
+_HANDLERS = tuple(
+    (name, _forget) for name in ("render_init", "render_complete", "render_cancel", "load_pre")
+)
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray,))
 
 
@@ -378,8 +380,7 @@ def register():
     if not render_job.take_back(_leave):
         _register()
     _leaving = False
-    for name in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(_forget)
+    handlers.add(_HANDLERS)
     atexit.register(_folder.close)
 
 
@@ -387,10 +388,7 @@ def unregister():
     global _leaving
     _leaving = True
     atexit.unregister(_folder.close)
-    for name in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if _forget in handlers:
-            handlers.remove(_forget)
+    handlers.remove(_HANDLERS)
     render_job.when_none_runs(_leave)
 
 

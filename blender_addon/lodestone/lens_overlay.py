@@ -5,6 +5,7 @@ screen lenses on the image. Nothing of the GPU is touched before something is dr
 import bpy
 from mathutils import Vector
 
+from . import handlers
 from .bridge import live_view
 from .core import lens_rim
 from .operators import screen_lenses
@@ -95,12 +96,13 @@ def _forget(*_):
     _found.clear()
 
 
-_HANDLERS = ("depsgraph_update_post", "undo_post", "redo_post", "load_post")
+_HANDLERS = tuple(
+    (name, _forget) for name in ("depsgraph_update_post", "undo_post", "redo_post", "load_post")
+)
 
 
 def register():
-    for name in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(_forget)
+    handlers.add(_HANDLERS)
     if not bpy.app.background:
         add = bpy.types.SpaceView3D.draw_handler_add
         _handles.append(add(_draw_world, (), "WINDOW", "POST_VIEW"))
@@ -110,8 +112,5 @@ def register():
 def unregister():
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
-    for name in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if _forget in handlers:
-            handlers.remove(_forget)
+    handlers.remove(_HANDLERS)
     _forget()

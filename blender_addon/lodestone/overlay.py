@@ -11,7 +11,7 @@ import traceback
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
-from . import forced_lod, preview
+from . import forced_lod, handlers, preview
 from .bridge import kept_view
 from .core import false_colors, kept_model
 from .core.native import lodestone_native as native
@@ -352,6 +352,7 @@ def forget():
     forced_lod.forget()
 
 
+_HANDLERS = (("load_post", _on_load),)
 _CLASSES = (LODESTONE_PG_overlay, LODESTONE_VIEW3D_PT_false_colors)
 _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
@@ -363,7 +364,7 @@ def register():
         type=LODESTONE_PG_overlay, options={"HIDDEN", "SKIP_SAVE"}
     )
     bpy.types.VIEW3D_HT_header.append(_draw_header)
-    bpy.app.handlers.load_post.append(_on_load)
+    handlers.add(_HANDLERS)
     if not bpy.app.background:
         _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
 
@@ -375,8 +376,7 @@ def unregister():
         _handle = None
     if bpy.app.timers.is_registered(_refresh_later):
         bpy.app.timers.unregister(_refresh_later)
-    if _on_load in bpy.app.handlers.load_post:
-        bpy.app.handlers.load_post.remove(_on_load)
+    handlers.remove(_HANDLERS)
     bpy.types.VIEW3D_HT_header.remove(_draw_header)
     del bpy.types.WindowManager.lodestone_overlay
     _unregister()

@@ -14,7 +14,7 @@ import weakref
 
 import bpy
 
-from . import forced_lod, preview_draw
+from . import forced_lod, handlers, preview_draw
 from .bridge import ids, lenses, preview_scene, viewport_view
 from .bridge.decisions import edits_of
 from .bridge.ids import name_of
@@ -371,15 +371,11 @@ _HANDLERS = (("depsgraph_update_post", _on_change), ("load_pre", _on_load), ("lo
 
 
 def register():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
-    for name, handler in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(_HANDLERS)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
     forget()

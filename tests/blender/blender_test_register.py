@@ -21,8 +21,10 @@ def traces():
         engines = getattr(getattr(bpy.types, name, None), "COMPAT_ENGINES", ())
         if "LODESTONE_POVRAY" in engines:
             names.append(f"{name}.COMPAT_ENGINES")
-    for handlers in (bpy.app.handlers.load_pre, bpy.app.handlers.load_post):
-        names += [h.__module__ for h in handlers if "lodestone" in h.__module__]
+    for handlers in bpy.app.handlers:
+        for handler in handlers if isinstance(handlers, list) else ():
+            if "lodestone" in handler.__module__:
+                names.append(handler.__module__)
     return names
 
 

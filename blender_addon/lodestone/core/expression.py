@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from . import srgb
 from .native import lodestone_native as native
 
 Op = native.BakeOp
@@ -296,16 +297,6 @@ def _row(table: array, at: float) -> Color:
     return tuple(table[4 * low + c] * (1.0 - part) + table[4 * high + c] * part for c in range(3))
 
 
-def encode(value: float) -> float:
-    """Linear to sRGB-encoded."""
-    value = max(0.0, value)
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-
-def decode(value: float) -> float:
-    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
-
-
 def to_hsv(color: Color) -> Color:
     most, spread = max(color), max(color) - min(color)
     if spread <= 0.0:
@@ -343,8 +334,8 @@ _BY_CHANNEL: dict[Op, Callable[..., float]] = {
     Op.ABSOLUTE: abs,
     Op.FLOOR: lambda x: float(math.floor(x)) if math.isfinite(x) else 0.0,
     Op.MODULO: lambda x, y: math.fmod(x, y) if y and math.isfinite(x) else 0.0,
-    Op.TO_SRGB: encode,
-    Op.FROM_SRGB: decode,
+    Op.TO_SRGB: srgb.encode,
+    Op.FROM_SRGB: srgb.decode,
 }
 _SAME_RANGE = {Op.CHANNEL, Op.LUMA, Op.COMBINE}
 _CORNERS: dict[Op, Callable[[float, float], float]] = {

@@ -7,7 +7,7 @@ Colors are linear Rec.709, 0...1.
 from collections.abc import Sequence
 from typing import Any
 
-from . import progress
+from . import progress, srgb
 from .native import lodestone_native as native
 
 Color = tuple[float, float, float]
@@ -99,18 +99,9 @@ def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
 
 def displayed(color: Color) -> Color:
     """As sRGB, for what draws in display values."""
-
-    def encoded(value: float) -> float:
-        value = min(1.0, max(0.0, value))
-        return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-    return (encoded(color[0]), encoded(color[1]), encoded(color[2]))
+    red, green, blue = (srgb.encode(min(1.0, value)) for value in color)
+    return (red, green, blue)
 
 
-def _linear(value: int) -> int:
-    encoded = value / 255.0
-    linear = encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
-    return round(255.0 * linear)
-
-
-LINEAR = bytes(_linear(value) for value in range(256))  # of sRGB bytes, for bytes.translate()
+# Of sRGB bytes, for bytes.translate()
+LINEAR = bytes(round(255.0 * linear) for linear in srgb.DECODED)

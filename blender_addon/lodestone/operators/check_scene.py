@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import preferences
+from .. import handlers, preferences
 from ..bridge import ids, ignored, requirements, scene_check
 from ..core import causes, last_check, last_render, store_path
 from ..core.native import lodestone_native as native
@@ -65,12 +65,14 @@ def _on_load(*_):
     last_render.clear()
 
 
+_HANDLERS = (("load_pre", _on_load),)
+
+
 def register():
     _register()
-    bpy.app.handlers.load_pre.append(_on_load)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
-    if _on_load in bpy.app.handlers.load_pre:
-        bpy.app.handlers.load_pre.remove(_on_load)
+    handlers.remove(_HANDLERS)
     _unregister()

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import bpy
 
+from .. import handlers
 from ..bridge.settings import SceneSettings
 from ..core import compare_plan, progress
 from ..panels import ENGINE
@@ -224,24 +225,19 @@ def _draw_menu(self, context):
     self.layout.operator("lodestone.compare", icon="IMAGE_REFERENCE")
 
 
+_HANDLERS = (("load_pre", _on_load), ("save_pre", _on_save))
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_OT_compare,))
 
 
 def register():
     _register()
     bpy.types.TOPBAR_MT_render.append(_draw_menu)
-    bpy.app.handlers.load_pre.append(_on_load)
-    bpy.app.handlers.save_pre.append(_on_save)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
     stop()
     compare_plan.clear()
-    for handlers, one in (
-        (bpy.app.handlers.load_pre, _on_load),
-        (bpy.app.handlers.save_pre, _on_save),
-    ):
-        if one in handlers:
-            handlers.remove(one)
+    handlers.remove(_HANDLERS)
     bpy.types.TOPBAR_MT_render.remove(_draw_menu)
     _unregister()

@@ -6,7 +6,7 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 
 import bpy
 
-from .. import extract_engine
+from .. import extract_engine, handlers
 from ..bridge.settings import SceneSettings
 from ..core import kept_model, motion_file, store_path
 from ..core.native import lodestone_native as native
@@ -158,14 +158,10 @@ _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_OT_read_l
 
 def register():
     _register()
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
-    for name, handler in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(_HANDLERS)
     kept_model.clear()
     _unregister()

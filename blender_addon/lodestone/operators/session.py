@@ -10,7 +10,7 @@ import traceback
 
 import bpy
 
-from .. import extract_engine, render_job
+from .. import extract_engine, handlers, render_job
 from ..core import work
 from ..core.native import lodestone_native as native
 from ..core.text import sentence
@@ -212,11 +212,13 @@ def _on_load(*_):
     stop_running()
 
 
+_HANDLERS = (("load_pre", _on_load),)
+
+
 def register():
-    bpy.app.handlers.load_pre.append(_on_load)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
     stop_running()
-    if _on_load in bpy.app.handlers.load_pre:
-        bpy.app.handlers.load_pre.remove(_on_load)
+    handlers.remove(_HANDLERS)

@@ -5,6 +5,7 @@ picture what only a picture tells."""
 import bpy
 from bpy.types import Panel
 
+from .. import handlers
 from ..bridge import lenses, live_view
 from ..core import last_render, progress
 from ..core.native import lodestone_native as native
@@ -127,16 +128,16 @@ def _follow(scene, depsgraph):
                 return _redraw()
 
 
+_HANDLERS = (("depsgraph_update_post", _follow),)
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_levels_view,))
 
 
 def register():
     _register()
-    bpy.app.handlers.depsgraph_update_post.append(_follow)
+    handlers.add(_HANDLERS)
 
 
 def unregister():
-    if _follow in bpy.app.handlers.depsgraph_update_post:
-        bpy.app.handlers.depsgraph_update_post.remove(_follow)
+    handlers.remove(_HANDLERS)
     live_view.forget()
     _unregister()
