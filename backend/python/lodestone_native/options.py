@@ -3,14 +3,12 @@
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import structs
+from .handle import Handle
 from .library import library
 from .structs import Object
-
-if TYPE_CHECKING:
-    from .model import Model
 
 
 def changed(options: Any, changes: dict[str, Any]) -> Any:
@@ -51,7 +49,7 @@ class BuildOptions(structs.BuildOptions):
     def __new__(
         cls,
         scope: Sequence[Object] = (),
-        poses: "Sequence[Model]" = (),
+        poses: Sequence[Handle] = (),
         view: Any = None,
         **changes: Any,
     ) -> Any:
