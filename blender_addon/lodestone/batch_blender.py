@@ -5,7 +5,6 @@ import contextlib
 import json
 import os
 import resource
-import shutil
 import signal
 import sys
 import time
@@ -20,15 +19,15 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
     sys.path.insert(0, str(PACKAGE.parent))
 
 import lodestone  # noqa: E402
-from lodestone import extract_engine  # noqa: E402
+from lodestone import batch_pictures, extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, compare_plan, comparing  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, comparing  # noqa: E402
 from lodestone.core import file_names  # noqa: E402
 from lodestone.core import motion_file, process_session, progress, report  # noqa: E402
 from lodestone.core import store_path, unseen  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
-from lodestone.core.exit_codes import ExitCode  # noqa: E402
+from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
 from lodestone.core.picture import (  # noqa: E402
@@ -43,19 +42,9 @@ from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.work import Stopped, Work  # noqa: E402
 
 
-THUMBNAIL = 192  # pixels
-THUMBNAIL_OF = 64_000_000  # pixels of the largest picture that gets one
 NO_LEVELS = (
     "Pixel Error 0 renders the originals: there is nothing to compare; give another --pixel-error"
 )
-
-
-class Failed(Exception):
-    """Ends the file with a code and a sentence."""
-
-    def __init__(self, code: ExitCode, text: str) -> None:
-        super().__init__(text)
-        self.code = code
 
 
 class FileRun:
@@ -285,14 +274,16 @@ class FileRun:
                     raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
                 raise
             if compares:
-                about.update(_save_compared(scene, made, Path(picture.out), settings))
+                about.update(batch_pictures.save_compared(scene, made, Path(picture.out), settings))
             else:
                 with_alpha = picture.covered_only
-                save(scene, made.path, Path(picture.out), with_alpha, settings.stamp())
+                batch_pictures.save(
+                    scene, made.path, Path(picture.out), with_alpha, settings.stamp()
+                )
             if self.job.keep_exr:
-                _replace_by_copy(made.path, Path(picture.out).with_suffix(".exr"))
+                batch_pictures.copy_exr(made.path, Path(picture.out).with_suffix(".exr"))
         if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
-            save_thumbnail(picture.out, self.job.thumbnail)
+            batch_pictures.save_thumbnail(picture.out, self.job.thumbnail)
         return {**about, **made.parts, "picture": picture.out}
 
     def _scene_folder(self, kept: Path):
@@ -341,71 +332,6 @@ class FileRun:
             print(f"Lodestone: progress: {line}", flush=True)
 
 
-def save(scene, exr: Path, out: Path, with_alpha: bool, stamp: dict[str, str]) -> None:
-    """The picture as F12 would save it: through the scene's view transform, as a PNG with the
-    stamp's text in it. The old one is replaced only when the new one is complete."""
-    format_ = scene.render.image_settings
-    before = (format_.file_format, format_.color_mode, format_.color_depth)
-    temporary = out.with_name(report.temporary_name())
-    image = bpy.data.images.load(str(exr))
-    try:
-        if format_.file_format != "PNG":
-            format_.file_format = "PNG"
-            format_.color_mode, format_.color_depth = "RGBA", "8"
-        if with_alpha or scene.render.film_transparent:
-            format_.color_mode = "RGBA"
-        image.save_render(str(temporary), scene=scene)
-        native.image_add_text(str(temporary), stamp)
-        os.replace(temporary, out)
-    except (OSError, RuntimeError) as error:
-        raise Failed(ExitCode.FAILED, f"cannot write {out}: {error}") from error
-    finally:
-        format_.file_format, format_.color_mode, format_.color_depth = before
-        bpy.data.images.remove(image)
-        temporary.unlink(missing_ok=True)
-
-
-def _save_compared(scene, made, out: Path, settings: Settings) -> dict[str, str]:
-    """The difference as `out`, and beside it what it is of; where these lie."""
-    paths = {}
-    both = (settings.of_originals(), settings)
-    for word, path, how in zip(compare_plan.WORDS, made.paths, both):
-        name = file_names.fitting(out.stem, file_names.LONGEST - len(f"_{word}.png"))
-        target = out.with_name(f"{name}_{word}.png")
-        save(scene, path, target, False, how.stamp())
-        paths[f"{word}_picture"] = str(target)
-    temporary = out.with_name(report.temporary_name())
-    try:
-        native.image_write_png(str(temporary), made.image)
-        native.image_add_text(str(temporary), settings.stamp())
-        os.replace(temporary, out)
-    except (OSError, native.LodestoneError) as error:
-        raise Failed(ExitCode.FAILED, f"cannot write {out}: {error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
-    return paths
-
-
-def save_thumbnail(picture: str, target: str) -> None:
-    """A small JPEG of a picture. Failing at it is no failure: the picture is there."""
-    image = None
-    try:
-        width, height = native.image_size(picture)
-        if width * height > THUMBNAIL_OF:
-            return
-        image = bpy.data.images.load(picture)
-        scale = min(1.0, THUMBNAIL / max(width, height))
-        image.scale(max(1, round(width * scale)), max(1, round(height * scale)))
-        image.file_format = "JPEG"
-        image.filepath_raw = target
-        image.save()
-    except (OSError, RuntimeError, native.LodestoneError) as error:
-        print(f"no thumbnail: {error}")
-    finally:
-        if image is not None:
-            bpy.data.images.remove(image)
-
-
 def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
     """What neither the command line nor a profile says is as the file has it."""
     own = SceneSettings(scene)
@@ -431,16 +357,6 @@ def _asked(modifiers, picture: PictureRequest):
     if not changed:
         return modifiers
     return replace(native.Modifiers() if modifiers is None else modifiers, **changed)
-
-
-def _replace_by_copy(source: Path, target: Path) -> None:
-    temporary = target.with_name(report.temporary_name(".exr"))
-    try:
-        shutil.copyfile(source, temporary)
-        os.replace(temporary, target)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise Failed(ExitCode.FAILED, f"cannot write {target}: {error}") from error
 
 
 def _code_of(error) -> ExitCode:

@@ -36,3 +36,11 @@ def of_many(codes: Iterable[int]) -> ExitCode:
     if any(code not in (ExitCode.DONE, ExitCode.INCOMPLETE) for code in found):
         return ExitCode.FAILED
     return ExitCode.INCOMPLETE if ExitCode.INCOMPLETE in found else ExitCode.DONE
+
+
+class Failed(Exception):
+    """Ends the file with a code and a sentence."""
+
+    def __init__(self, code: ExitCode, text: str) -> None:
+        super().__init__(text)
+        self.code = code
