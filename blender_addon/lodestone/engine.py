@@ -15,7 +15,8 @@ from dataclasses import replace
 import bpy
 
 from . import handlers, preferences, preview, render_job
-from .bridge import camera, ignored, lenses, picture, poses, quality, requirements, scene, shutter
+from .bridge import camera, ignored, lenses, poses, quality, render_result, requirements
+from .bridge import scene, shutter
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import (
@@ -131,7 +132,7 @@ class _Run:
         self._shown = ""
 
     def render(self):
-        layer = picture.layer_of(self.depsgraph)
+        layer = render_result.layer_of(self.depsgraph)
         if self.plan is not None and self.plan.step == compare_plan.DIFFERENCE:
             self._show_difference(layer)
             return
@@ -162,7 +163,7 @@ class _Run:
             view = camera.extract(camera_object, frame, self.problems)
             camera.report_render(self.scene, self.problems)
             size = (frame.width, frame.height)
-            left, bottom, *part = picture.border(self.scene.render, *size)
+            left, bottom, *part = render_result.border(self.scene.render, *size)
             border = (left, size[1] - bottom - part[1], *part)
             modifiers = self._modifiers(extraction, camera_object, closing)
             self.settings = replace(self.settings, border=border, modifiers=modifiers)
@@ -177,7 +178,7 @@ class _Run:
                 kept_model.put(name_of(self.scene), kept)
         self._remember(totals, made)
         left, top, *part = self.settings.border
-        part = picture.cropped(image, left, size[1] - top - part[1], *part)
+        part = render_result.cropped(image, left, size[1] - top - part[1], *part)
         self._hand_over(layer, part)
         self._report()
 
@@ -241,7 +242,7 @@ class _Run:
                         model, view, size, self.settings, self.plan.folder, self.work.new_job
                     )
                     self.plan.take(made, *shown)
-                return made, picture.read(str(made.path))
+                return made, render_result.read(str(made.path))
         except OSError as error:
             text = f"Cannot write the scene for POV-Ray: {error}"
             raise Refused("folder_unwritable", text) from None
@@ -249,13 +250,13 @@ class _Run:
     def _show_difference(self, layer):
         """The third picture of Compare, of two that are there."""
         image = self.work.run(self.plan.compare, self._poll)
-        left, bottom, *part = picture.border(self.scene.render, image.width, image.height)
-        part = picture.cropped(image, left, bottom, *part)
+        left, bottom, *part = render_result.border(self.scene.render, image.width, image.height)
+        part = render_result.cropped(image, left, bottom, *part)
         self._hand_over(layer, part)
 
     def _hand_over(self, layer, part):
         depth = self.depsgraph.view_layer_eval.use_pass_z
-        picture.hand_over(self.engine, layer, part, self.settings.stamp(), depth)
+        render_result.hand_over(self.engine, layer, part, self.settings.stamp(), depth)
 
     def _build_options(self, view):
         """What properties.BUILD_ON_RENDER says."""

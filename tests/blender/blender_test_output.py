@@ -91,7 +91,7 @@ class Output(unittest.TestCase):
 
     def test_a_border_ends_where_blender_rounds_it_to(self):
         """.7 of 100 are 70, though the number in the file is a little less than .7."""
-        from lodestone.bridge import picture
+        from lodestone.bridge import render_result
 
         render = self.scene.render
         render.image_settings.color_mode = "RGBA"
@@ -99,7 +99,7 @@ class Output(unittest.TestCase):
         render.use_border = render.use_crop_to_border = True
         render.border_min_x, render.border_max_x = 0.1, 0.7
         render.border_min_y, render.border_max_y = 0.35, 0.95
-        self.assertEqual(picture.border(render, 100, 40), (10, 14, 60, 24))
+        self.assertEqual(render_result.border(render, 100, 40), (10, 14, 60, 24))
         width, height, pixels = self.render()
         self.assertEqual((width, height), (60, 24))
         self.assertEqual(min(pixels[3::4]), 1.0)

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..core import kept_model, why
 from ..core.problems import Problems
-from . import camera, ids, picture
+from . import camera, ids, render_result
 from .settings import SceneSettings
 
 
@@ -17,7 +17,7 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> Any:
         return kept.view
     frame = camera.Frame.of(scene.render)
     seen = camera.extract(scene.camera.evaluated_get(depsgraph), frame, Problems())
-    left, bottom, *part = picture.border(scene.render, frame.width, frame.height)
+    left, bottom, *part = render_result.border(scene.render, frame.width, frame.height)
     return replace(
         kept.view,
         camera=seen,
