@@ -10,7 +10,7 @@ from mathutils import Matrix, Vector
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
 from .graph import feed
-from .images import ImageMeans
+from .image_means import ImageMeans
 from .node_values import NodeValues
 
 _KINDS = {

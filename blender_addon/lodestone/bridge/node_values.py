@@ -7,7 +7,7 @@ from typing import Any
 from ..core import expression as e
 from ..core.expression import Color
 from .image_sources import MISSING, Source
-from .images import ImageMeans
+from .image_means import ImageMeans
 from .node_expressions import NodeExpressions, mean_of
 
 

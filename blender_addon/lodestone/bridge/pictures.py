@@ -9,7 +9,7 @@ from typing import Any
 from ..core.expression import Color
 from ..core.native import lodestone_native as native
 from .image_sources import FILE, MISSING, PACKED, Source
-from .images import read_pixels, with_four_channels
+from .pixels import read_pixels, with_four_channels
 
 Texel = tuple[float, float, float, float]
 

@@ -17,7 +17,7 @@ from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
 from . import camera, groups, ids, lights, world
 from .ids import name_of
-from .images import ImageMeans
+from .image_means import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
 from .listed import Listed

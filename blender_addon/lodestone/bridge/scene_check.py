@@ -17,7 +17,7 @@ from ..core.last_check import Check
 from ..core.problems import Problems
 from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
-from .images import ImageHeads
+from .image_means import ImageHeads
 from .leaves import material_slots, override_of
 from .listed import Listed, Rows, by_itself, rows
 from .materials import Materials

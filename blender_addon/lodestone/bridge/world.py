@@ -11,11 +11,12 @@ from typing import Any
 import bpy
 from mathutils import Vector
 
-from ..core import exr
+from ..core import exr, srgb
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from .ids import name_of
-from .images import ImageHeads, ImageMeans, read_pixels, to_linear
+from .image_means import ImageHeads, ImageMeans
+from .pixels import read_pixels
 from .node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
 from .sky_texture import mean_of_sky
@@ -201,7 +202,7 @@ class _Reader:
             return None
         width, height, pixels, channels, encoded, _ = found
         if encoded:
-            table = [to_linear(i / 255.0) for i in range(256)]
+            table = srgb.DECODED
             pixels = array("f", (table[min(255, max(0, int(255.0 * p + 0.5)))] for p in pixels))
         wide = array("f", bytes(12 * width * height))
         for channel in range(3):

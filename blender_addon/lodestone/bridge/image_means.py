@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mean colors of images: what a texture counts as until textures themselves are drawn."""
+"""Mean colors of images: what stands for a texture wherever the texture itself cannot be drawn."""
 
 import os
 from array import array
-from typing import Any, NamedTuple
+from typing import Any
 
 import bpy
+
+from ..core import srgb
+from .pixels import read_pixels, with_four_channels
 
 SAMPLES = 1 << 14  # pixels looked at in a large image
 _STRIDE = 7919  # prime: samples do not line up in columns
 
 Color = tuple[float, float, float]
-
-
-def to_linear(value: float) -> float:
-    """One sRGB-encoded component to linear."""
-    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
-
-
-_LINEAR = [to_linear(i / 255.0) for i in range(256)]
 
 
 def mean_of_pixels(pixels: array, encoded: bool) -> Color | None:
@@ -32,7 +27,7 @@ def mean_of_pixels(pixels: array, encoded: bool) -> Color | None:
     else:
         chosen = list(range(0, 4 * count, 4))
     red = green = blue = weight = 0.0
-    table = _LINEAR
+    table = srgb.DECODED
     for at in chosen:
         alpha = pixels[at + 3]
         if alpha <= 0.0:
@@ -84,50 +79,8 @@ def _is_there(image: Any) -> bool:
         return False
 
 
-class Pixels(NamedTuple):
-    """Lowest row first."""
-
-    width: int
-    height: int
-    values: array  # 'f'
-    channels: int
-    encoded: bool  # in sRGB
-    floats: bool  # of an image that is not made of bytes
-
-
-def read_pixels(image: Any) -> Pixels | None:
-    """By Blender's own reader; None when it cannot be read. An image that was not loaded is not
-    kept."""
-    loaded = image.has_data
-    width, height = image.size  # loads it
-    channels = image.channels
-    count = width * height * channels
-    if count == 0 or len(image.pixels) != count:
-        return None
-    pixels = array("f", bytes(4 * count))
-    image.pixels.foreach_get(pixels)
-    floats = image.is_float
-    encoded = not floats and image.colorspace_settings.name == "sRGB"
-    if not loaded and not image.is_dirty and image.source != "GENERATED":
-        image.buffers_free()
-    return Pixels(width, height, pixels, channels, encoded, floats)
-
-
 def _mean(image: Any) -> Color | None:
     found = read_pixels(image)
     if found is None:
         return None
     return mean_of_pixels(with_four_channels(found), found.encoded)
-
-
-def with_four_channels(pixels: Pixels) -> array:
-    """RGBA of gray, gray and alpha, or RGB."""
-    values, channels = pixels.values, pixels.channels
-    if channels == 4:
-        return values
-    wide = array("f", [1.0]) * (len(values) // channels * 4)
-    for channel in range(3):
-        wide[channel::4] = values[(channel if channels == 3 else 0) :: channels]
-    if channels == 2:
-        wide[3::4] = values[1::2]
-    return wide
