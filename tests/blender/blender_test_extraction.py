@@ -8,22 +8,10 @@ import bpy
 from mathutils import Matrix
 
 import blender_scenes as scenes
+from blender_case import Case
 
 
-class Extraction(unittest.TestCase):
-    def setUp(self):
-        self.scene = scenes.fresh()
-        self.root = self.scene.collection
-
-    def extract(self):
-        """Extracts, compares with the depsgraph, and returns (extraction, occurrences)."""
-        extraction, request = scenes.extract()
-        self.addCleanup(extraction.model.close)
-        self.assertEqual(request.differences, [])
-        occurrences = extraction.model.occurrences()
-        self.assertEqual(len(occurrences), extraction.shown)
-        return extraction, occurrences
-
+class Extraction(Case):
     def leaves(self, extraction):
         return sorted(leaf.data for leaf in extraction.leaves)
 

@@ -123,41 +123,28 @@ class Functions(unittest.TestCase):
 
 
 class Loading(unittest.TestCase):
-    def test_a_missing_library_is_a_sentence(self):
+    def said_of(self, library):
+        """What a fresh process prints that wants this file as its library."""
         code = (
             "import lodestone_native as n\n"
             "try:\n n.version()\n"
             "except n.LodestoneError as error:\n print(error)\n"
         )
-        said = subprocess.run(
+        python = str(addon_path.ROOT / "backend" / "python")
+        return subprocess.run(
             ["/usr/bin/python3", "-c", code],
             capture_output=True,
             text=True,
             check=True,
-            env={
-                "PYTHONPATH": str(addon_path.ROOT / "backend" / "python"),
-                "LODESTONE_LIBRARY": "/nowhere/liblodestone.so",
-            },
+            env={"PYTHONPATH": python, "LODESTONE_LIBRARY": library},
         ).stdout
-        self.assertIn("/nowhere/liblodestone.so", said)
+
+    def test_a_missing_library_is_a_sentence(self):
+        missing = "/nowhere/liblodestone.so"
+        self.assertIn(missing, self.said_of(missing))
 
     def test_a_foreign_library_is_a_sentence(self):
-        code = (
-            "import lodestone_native as n\n"
-            "try:\n n.version()\n"
-            "except n.LodestoneError as error:\n print(error)\n"
-        )
-        said = subprocess.run(
-            ["/usr/bin/python3", "-c", code],
-            capture_output=True,
-            text=True,
-            check=True,
-            env={
-                "PYTHONPATH": str(addon_path.ROOT / "backend" / "python"),
-                "LODESTONE_LIBRARY": __file__,
-            },
-        ).stdout
-        self.assertIn("cannot be loaded", said)
+        self.assertIn("cannot be loaded", self.said_of(__file__))
 
 
 if __name__ == "__main__":
