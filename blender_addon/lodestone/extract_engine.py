@@ -8,7 +8,7 @@ import traceback
 
 import bpy
 
-from .bridge import camera, check, lenses, poses, quality, scene, shutter
+from .bridge import camera, extraction_check, lenses, poses, quality, scene, shutter
 from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .bridge.settings import SceneSettings
@@ -76,7 +76,9 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
                 if request.cameras:
                     request.modifiers = _modifiers(depsgraph, self.frame_set, request, extraction)
                 if request.compare:
-                    request.differences = check.compare_occurrences(depsgraph, extraction)
+                    request.differences = extraction_check.compare_occurrences(
+                        depsgraph, extraction
+                    )
             except BaseException:
                 extraction.model.close()
                 raise
