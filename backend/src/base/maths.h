@@ -39,6 +39,10 @@ inline double largest(const glm::dvec3& v) {
     return glm::max(v.x, glm::max(v.y, v.z));
 }
 
+inline double trace(const glm::dmat3& m) {
+    return m[0][0] + m[1][1] + m[2][2];
+}
+
 /// x -> linear * x + offset. Column-major inside (GLM), row-major 3x4 in the C interface.
 struct Affine {
     glm::dmat3 linear{1.0};

@@ -200,14 +200,14 @@ Item item_of(const Traits& traits, const Placement& placement) {
     Item item;
     item.box = transformed(traits.bound, placement.transform).box;
     const glm::dmat3 spread = placed(traits.spread, placement.transform.linear);
-    const double trace = spread[0][0] + spread[1][1] + spread[2][2];
-    const double size = std::sqrt(trace);
+    const double total = trace(spread);
+    const double size = std::sqrt(total);
     item.weight = size > 0 && std::isfinite(size) ? size : 1e-300;
     for (size_t i = 0; i < 4; ++i)
         item.features[i] = traits.look[static_cast<int>(i)] / kColorApart;
-    if (!(trace > 0) || !finite(spread))
+    if (!(total > 0) || !finite(spread))
         return item;
-    const glm::dmat3 shares = spread / trace;
+    const glm::dmat3 shares = spread / total;
     item.features[4] = std::log2(size) / kSizeApart;
     const Eigen eigen = eigen_symmetric(shares);
     size_t at = 5;

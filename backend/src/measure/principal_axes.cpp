@@ -124,10 +124,10 @@ double NormalMoments::in_frame(const glm::dmat3& axes) const {
 }
 
 glm::dmat3 principal_axes(const glm::dmat3& moments, const NormalMoments& normals) {
-    const double trace = moments[0][0] + moments[1][1] + moments[2][2];
+    const double total = trace(moments);
     // A point has no axes; a scale without units keeps the solver away from underflow.
     const Eigen eigen =
-        trace > 0 && std::isfinite(trace) ? eigen_symmetric(moments / trace) : Eigen{};
+        total > 0 && std::isfinite(total) ? eigen_symmetric(moments / total) : Eigen{};
     const glm::dvec3 values = glm::max(eigen.values, glm::dvec3(1e-12));
     const double first = values.y / values.x;
     const double second = values.z / values.y;

@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace lodestone::measure {
-namespace {
-
-double trace(const glm::dmat3& m) {
-    return m[0][0] + m[1][1] + m[2][2];
-}
-
-}  // namespace
 
 glm::dmat3 SurfaceInertia::inertia() const {
     return glm::dmat3(trace(moments)) - moments;

@@ -7,12 +7,11 @@
 namespace lodestone {
 
 double Attributes::radius_of_gyration() const {
-    const double trace = moments[0][0] + moments[1][1] + moments[2][2];
-    return visible_area > 0 ? std::sqrt(std::max(0.0, trace / visible_area)) : 0;
+    return visible_area > 0 ? std::sqrt(std::max(0.0, trace(moments) / visible_area)) : 0;
 }
 
 glm::dmat3 Attributes::inertia() const {
-    return glm::dmat3(moments[0][0] + moments[1][1] + moments[2][2]) - moments;
+    return glm::dmat3(trace(moments)) - moments;
 }
 
 }  // namespace lodestone
