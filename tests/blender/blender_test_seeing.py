@@ -124,12 +124,35 @@ class Seeing(unittest.TestCase):
 
         self.scene.lodestone.pixel_error_render = 0.0
         self.assertIn("Pixel Error 0", compare.refusal(bpy.context))
+        self.scene.lodestone.budget_render = 1  # which draws levels all the same
+        self.assertEqual(compare.refusal(bpy.context), "")
         self.scene.lodestone.pixel_error_render = 1.0
         self.assertEqual(compare.refusal(bpy.context), "")
         self.scene.camera = None
         self.assertIn("camera", compare.refusal(bpy.context))
         self.scene.render.engine = "CYCLES"
         self.assertIn("engine", compare.refusal(bpy.context))
+
+    def test_originals_are_not_compared_with_themselves_where_levels_are_off(self):
+        from lodestone.operators import compare
+
+        self.scene.lodestone.use_levels = False
+        self.assertIn("off", compare.refusal(bpy.context))
+
+    def test_why_this_level_tells_of_originals_where_levels_are_off(self):
+        from lodestone.bridge import kept_view
+
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.read_levels()
+
+        def title():
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            return kept_view.explained(self.scene, depsgraph, self.far).title
+
+        self.scene.lodestone.pixel_error_render = 16.0
+        self.assertNotIn("Original", title())
+        self.scene.lodestone.use_levels = False
+        self.assertIn("Original", title())
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..core import kept_model, why
 from ..core.problems import Problems
-from . import camera, ids, render_result
+from . import camera, ids, quality, render_result
 from .settings import SceneSettings
 
 
@@ -23,7 +23,7 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> Any:
         camera=seen,
         width=frame.width,
         height=frame.height,
-        pixel_error=SceneSettings(scene).pixel_error_render,
+        pixel_error=quality.pixel_error(SceneSettings(scene)),
         border=(left, frame.height - bottom - part[1], *part),
     )
 

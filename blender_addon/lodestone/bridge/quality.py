@@ -37,6 +37,11 @@ def budget(settings: Any) -> int:
     return settings.budget_render * 1_000_000 if settings.use_levels else 0
 
 
+def is_exact(settings: Any) -> bool:
+    """Whether renders draw the originals alone."""
+    return pixel_error(settings) == 0.0 and not budget(settings)
+
+
 def ray_classes(settings: Any) -> int:
     """Of renders, as native.Rays: those that may meet coarser levels than the camera's."""
     if not settings.use_levels:

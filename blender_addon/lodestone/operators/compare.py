@@ -13,6 +13,7 @@ from pathlib import Path
 import bpy
 
 from .. import handlers
+from ..bridge import quality
 from ..bridge.settings import SceneSettings
 from ..core import compare_plan, progress
 from ..panels import ENGINE
@@ -33,7 +34,7 @@ class Comparing:
     def __init__(self, scene):
         self.scene = scene.name
         self._folder = Path(tempfile.mkdtemp(prefix="lodestone-compare-"))
-        self.plan = compare_plan.Plan(self._folder, SceneSettings(scene).pixel_error_render)
+        self.plan = compare_plan.Plan(self._folder, quality.pixel_error(SceneSettings(scene)))
         self._step = contextlib.ExitStack()
         slots = _slots()
         self._slot = slots.active_index if slots is not None else 0
@@ -109,7 +110,10 @@ def refusal(context):
         return "Set the render engine to Lodestone POV-Ray"
     if scene.camera is None:
         return "Set a scene camera"
-    if SceneSettings(scene).pixel_error_render <= 0.0:
+    settings = SceneSettings(scene)
+    if not settings.use_levels:
+        return "Levels of Detail are off: there is nothing to compare"
+    if quality.is_exact(settings):
         return "Pixel Error 0 renders the originals: there is nothing to compare"
     if scene.render.use_sequencer and scene.sequence_editor and scene.sequence_editor.sequences:
         return "The sequencer makes this scene's picture: turn it off in Output > Post Processing"

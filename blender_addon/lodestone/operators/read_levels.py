@@ -7,6 +7,7 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 import bpy
 
 from .. import extract_engine, handlers
+from ..bridge import quality
 from ..bridge.settings import SceneSettings
 from ..core import kept_model, motion_file, store_path
 from ..core.native import lodestone_native as native
@@ -43,7 +44,7 @@ def read_levels(scene):
     try:
         extraction = extract_engine.extract_now(scene, asked)
         try:
-            pixel_error = SceneSettings(scene).pixel_error_render
+            pixel_error = quality.pixel_error(SceneSettings(scene))
             kept = make_kept(extraction, asked, store, pixel_error, scene.frame_current)
         except BaseException:
             extraction.model.close()
@@ -61,7 +62,7 @@ class Reading(sessions.Session):
         self._store = store_path.store_folder(bpy.data.filepath)
         self._scene = scene.name
         self._frame = scene.frame_current
-        self._pixel_error = SceneSettings(scene).pixel_error_render
+        self._pixel_error = quality.pixel_error(SceneSettings(scene))
         super().__init__(request(self._store))
 
     def was_read(self):
