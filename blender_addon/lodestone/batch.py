@@ -67,7 +67,7 @@ class Run:
         self.console = Console(len(work))
         self.reports: dict[int, dict] = {}
         self.log: batch_log.BatchLog | None = None
-        self.unwritten = False  # something that was asked for could not be written
+        self.unwritten: set[str] = set()  # names of what could not be written
         self._page_at = 0.0
         beside = options.log or options.html
         files = Path(beside).absolute().with_suffix(".files") if beside else None
@@ -135,7 +135,7 @@ class Run:
         try:
             self.log.add(line, **values)
         except OSError as error:
-            self._complain(f"the log cannot be written: {error}")
+            self._complain("log", error)
             self.log.close()
             self.log = None
 
@@ -163,11 +163,13 @@ class Run:
         try:
             write(path, value)
         except OSError as error:
-            self._complain(f"the {name} cannot be written: {error}")
+            self._complain(name, error)
 
-    def _complain(self, text: str) -> None:
-        self.unwritten = True
-        self.console.line(f"batch.py: {text}", error=True)
+    def _complain(self, name: str, error: OSError) -> None:
+        if name not in self.unwritten:  # the page is tried again and again
+            text = f"batch.py: the {name} cannot be written: {error.strerror or error}"
+            self.console.line(text, error=True)
+            self.unwritten.add(name)
 
 
 def main(arguments: list[str]) -> int:

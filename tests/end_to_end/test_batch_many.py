@@ -162,6 +162,17 @@ class Many(unittest.TestCase):
         program.chmod(0o755)
         self.environment["LODESTONE_POVRAY"] = str(program)
 
+    def test_a_page_that_cannot_be_written_is_complained_about_once(self):
+        page = self.folder / "nowhere" / "night.html"
+        self.run_batch("none.blend", "neither.blend", "--html", str(page))
+        self.assertEqual(self.said.count("the page cannot be written"), 1, self.said)
+        self.assertNotIn(".page-", self.said)
+
+    def test_a_folder_is_called_a_folder(self):
+        (self.folder / "folder.blend").mkdir()
+        self.run_batch(str(self.folder / "folder.blend"), "none.blend")
+        self.assertIn("is a folder", self.said)
+
     # ---- The night ----
 
     def test_twenty_files_are_killed_and_resumed_and_end_with_the_right_table(self):

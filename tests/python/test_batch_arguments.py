@@ -100,6 +100,10 @@ class Usage(unittest.TestCase):
         parse("build", "x/a.blend", "y/a.blend")
         self.refused("build", "x/a.blend", "y/a.blend", "--store", "s")
 
+    def test_one_file_named_twice_is_not_called_two_files(self):
+        for verb in (("render", "--out", "o"), ("build",)):
+            self.assertIn("twice", self.refused(verb[0], "x/a.blend", "x/a.blend", *verb[1:]))
+
     def test_resuming_needs_the_log_to_go_on_with(self):
         with contextlib.redirect_stderr(io.StringIO()) as said, self.assertRaises(SystemExit):
             parse_options(["build", "a.blend", "--resume"])

@@ -149,14 +149,13 @@ def _add_povray(verb: argparse.ArgumentParser) -> None:
 
 def jobs(options: argparse.Namespace) -> list[FileJob]:
     """One job for each file. Raises ValueError with a sentence on what does not fit together."""
+    if len({Path(file).absolute() for file in options.files}) < len(options.files):
+        raise ValueError("one file is named twice")
     names = [Path(file).stem for file in options.files]
     if len(set(names)) < len(names) and (options.store or options.verb != "build"):
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"two files are called {twice}: their results would share one name")
-    found = [_job(options, Path(file)) for file in options.files]
-    if len({job.file for job in found}) < len(found):
-        raise ValueError("one file is named twice")
-    return found
+    return [_job(options, Path(file)) for file in options.files]
 
 
 def _job(options: argparse.Namespace, file: Path) -> FileJob:

@@ -79,6 +79,8 @@ class FileTask:
             return self._refuse(ExitCode.FAILED, text + "--blender")
         if not os.path.isfile(job.file) or not os.access(job.file, os.R_OK):
             reason = "cannot be read" if os.path.exists(job.file) else "does not exist"
+            if os.path.isdir(job.file):
+                reason = "is a folder"
             return self._refuse(ExitCode.UNREADABLE, f"the file {reason}")
         carried = dict(self.found.pictures)
         if self.around.skip_existing:
