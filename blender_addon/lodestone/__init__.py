@@ -12,8 +12,7 @@ bl_info = {
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
     "location": "Properties > Render > Levels of Detail",
-    "description": "Levels of detail for objects and groups, and POV-Ray pictures that use just "
-    "the detail they need",
+    "description": "POV-Ray pictures that use just the detail they need",
     "category": "Render",
     "support": "COMMUNITY",
 }

@@ -74,8 +74,8 @@ class Words(unittest.TestCase):
     def test_nothing_saved_says_why(self):
         lines = panel.lines_of(self.numbers(own=0, touching=1200, shaped=3), 5)
         self.assertEqual(lines[0], "Nothing coarser may be used")
-        self.assertEqual(lines[1], "1,200 as seen: too near to something else")
-        self.assertEqual(lines[2], "3 as seen: would cover themselves")
+        self.assertEqual(lines[1], "1,200 as seen: too near to others")
+        self.assertEqual(lines[2], "3 as seen: cover themselves")
 
 
 class Drawn(unittest.TestCase):

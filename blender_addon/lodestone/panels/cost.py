@@ -20,12 +20,12 @@ class LODESTONE_RENDER_PT_cost(EnginePanel, Panel):
         if render is None or not render.actual_s:
             layout.label(text="Render a picture to see what it takes")
             return
-        split = layout.split(factor=0.4)
+        split = layout.split(factor=0.3)
         names, values = split.column(align=True), split.column(align=True)
-        names.label(text="POV-Ray's Time")
+        names.label(text="Time")
         expected, took = seconds(render.predicted_s), seconds(render.actual_s)
         values.label(text=f"expected {expected}, took {took}")
-        names.label(text="Its Memory")
+        names.label(text="Memory")
         expected = progress.memory(render.predicted_bytes)
         values.label(text=f"expected {expected}, took {progress.memory(render.actual_bytes)}")
 

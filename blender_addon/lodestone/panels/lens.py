@@ -37,7 +37,7 @@ class LODESTONE_EMPTY_PT_lens(Panel):
         column.prop(item, "empty_display_type", text="Shape")
         column.prop(item, "empty_display_size", text="Radius")
         if item.empty_display_type not in lenses.DISPLAY:
-            layout.label(text="A lens is a sphere or a cube: it counts as a sphere", icon="INFO")
+            layout.label(text="Neither sphere nor cube: counts as a sphere", icon="INFO")
         column.prop(lens, "filter")
         if lens.filter != "ALL":
             column.prop(lens, "collection")

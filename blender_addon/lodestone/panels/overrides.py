@@ -39,13 +39,23 @@ def draw_control(column, settings, control, overridden):
     below = control.parent != quality_tree.ROOT
     label = f"- {control.label}" if below else control.label
     if control.least is None and not overridden:
-        label = f"{label} ({quality.inherited_word(settings, control.key)})"
-    field.prop(settings, control.key, text=label)
+        _draw_inherited_word(field, settings, control.key, label)
+    else:
+        field.prop(settings, control.key, text=label)
     if overridden:
         back = row.operator("lodestone.inherit_control", text="", icon="LOOP_BACK")
         back.key = control.key
     else:
         row.label(text="", icon="BLANK1")
+
+
+def _draw_inherited_word(field, settings, key, label):
+    """A menu that shows what it inherits, as the numbers do."""
+    split = field.split(factor=0.4, align=True)
+    name = split.row()
+    name.alignment = "RIGHT"
+    name.label(text=label)
+    split.prop_menu_enum(settings, key, text=quality.inherited_word(settings, key))
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_overrides,))

@@ -27,12 +27,13 @@ class LODESTONE_RENDER_PT_levels(Panel):
         used = layout.column()
         used.active = settings.use_levels
         column = used.column(align=True)
-        column.prop(settings, "pixel_error_render", text="Pixel Error Render")
+        column.prop(settings, "pixel_error_render", text="Pixel Error")
         column.prop(settings, "pixel_error_viewport", text="Viewport")
         column = used.column(align=True)
-        column.prop(settings, "budget_render", text="Budget Render (MB)")
-        column.prop(settings, "budget_viewport", text="Viewport (M Triangles)")
-        used.prop(settings, "coarser_moving_dark")
+        column.prop(settings, "budget_render", text="Budget (MB)")
+        column.prop(settings, "budget_viewport", text="Viewport (M Tris)")
+        column = used.column(heading="Coarser When")
+        column.prop(settings, "coarser_moving_dark", text="Moving or Dark")
         layout.use_property_decorate = False
         layout.prop(settings, "deforming")
         layout.prop(settings, "build_on_render")

@@ -21,7 +21,7 @@ class LODESTONE_RENDER_PT_unseen(EnginePanel, Panel):
         layout = self.layout
         layout.use_property_split = True
         settings = context.scene.lodestone
-        exact = quality.pixel_error(settings) == 0.0 and not quality.budget(settings)
+        exact = quality.is_exact(settings)
         column = layout.column()
         column.active = not exact
         column.prop(settings, "off_screen")
@@ -29,7 +29,8 @@ class LODESTONE_RENDER_PT_unseen(EnginePanel, Panel):
         for one in unseen.CLASSES:
             boxes.prop(settings, one.key)
         if exact:
-            layout.label(text="Pixel Error is 0: everything is drawn as it is", icon="INFO")
+            why = "Pixel Error is 0" if settings.use_levels else "Levels are off"
+            layout.label(text=f"{why}: everything is drawn as it is", icon="INFO")
         elif quality.ray_classes(settings):
             _draw_found(layout, context)
 
@@ -66,8 +67,8 @@ def lines_of(numbers, seen):
             f"Off by at most {bound(numbers.largest_error_px)}",
         ]
     for number, why in (
-        (numbers.touching, "too near to something else"),
-        (numbers.shaped, "would cover themselves"),
+        (numbers.touching, "too near to others"),
+        (numbers.shaped, "cover themselves"),
     ):
         if number:
             lines.append(f"{number:,} as seen: {why}")

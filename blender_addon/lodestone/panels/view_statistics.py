@@ -11,7 +11,7 @@ from ..core import last_render, progress
 from ..core.native import lodestone_native as native
 
 _ARROW = "\N{RIGHTWARDS ARROW}"
-_WORDS = ("mesh", "box", "ellipsoid", "composite")
+_KINDS = {"mesh": "Meshes", "box": "Boxes", "ellipsoid": "Ellipsoids", "composite": "Composites"}
 
 
 class LODESTONE_RENDER_PT_levels_view(Panel):
@@ -38,7 +38,7 @@ class LODESTONE_RENDER_PT_levels_view(Panel):
         else:
             layout.label(text=found)
         if render is not None and render.without_levels:
-            text = f"{render.without_levels:,} without levels yet: Update Levels makes them"
+            text = f"{render.without_levels:,} without levels yet: Update Levels"
             layout.label(text=text, icon="INFO")
 
 
@@ -54,16 +54,17 @@ def _draw_live(layout, context, found):
     if settings.budget_render and settings.use_levels:
         _row(names, values, "Pixel Error", f"{found.pixel_error:.2f} px for the budget")
         if not found.fits:
-            layout.label(text="Even the coarsest levels take more than the budget", icon="ERROR")
+            layout.label(text="The coarsest levels exceed the budget", icon="ERROR")
 
 
 def _draw_viewport(layout, found):
     """What the 3D view's own Pixel Error and budget come to."""
     names, values = _columns(layout)
     text = _change(progress.count, found.triangles_before, found.triangles)
-    _row(names, values, "Triangles in 3D View", f"{text} at {found.pixel_error:.2f} px")
+    _row(names, values, "Triangles in 3D View", text)
+    _row(names, values, "Its Pixel Error", f"{found.pixel_error:.2f} px")
     if not found.fits:
-        layout.label(text="Even the coarsest levels are more than the budget", icon="ERROR")
+        layout.label(text="The coarsest levels exceed the budget", icon="ERROR")
 
 
 def _draw_last(layout, render):
@@ -91,8 +92,9 @@ def _change(written, before, after):
 
 
 def _draw_kinds(names, values, kinds):
-    text = ", ".join(f"{kinds[word]:,}" for word in _WORDS)
-    _row(names, values, "Meshes, Boxes, Ellipsoids, Composites", text)
+    for kind, name in _KINDS.items():
+        if kinds[kind]:
+            _row(names, values, name, f"{kinds[kind]:,}")
 
 
 def _draw_largest(names, values, error, name):

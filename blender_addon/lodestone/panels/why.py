@@ -21,7 +21,7 @@ class LODESTONE_OBJECT_PT_why(Panel):
         scene = context.scene
         kept = kept_model.get(scene.name)
         if kept is None:
-            layout.label(text="Known after a picture, or when the scene was read")
+            layout.label(text="Known after a picture or Read Scene")
             layout.operator("lodestone.read_levels", icon="FILE_REFRESH")
             return
         try:

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards the words of our panels: at the width that Properties have on a 1920 pixel screen, no name
+of a control ends in dots."""
+
+import tempfile
+import unittest
+from types import SimpleNamespace
+
+import blf
+import bpy
+
+import blender_scenes as scenes
+
+# Pixels at scale 1, as measured on screen: the column of names beside values that can be animated
+# and those that cannot, words beside a checkbox, and a whole row
+NAME, NAME_PLAIN, CHECKBOX, ROW = 88, 96, 107, 265
+PANELS = (
+    "LODESTONE_RENDER_PT_levels",
+    "LODESTONE_RENDER_PT_levels_view",
+    "LODESTONE_RENDER_PT_unseen",
+    "LODESTONE_RENDER_PT_overrides",
+    "LODESTONE_RENDER_PT_sampling",
+    "LODESTONE_RENDER_PT_cost",
+    "LODESTONE_OBJECT_PT_levels",
+    "LODESTONE_OBJECT_PT_why",
+    "LODESTONE_EMPTY_PT_lens",
+)
+
+
+class Layout:
+    """Stands for bpy.types.UILayout: notes what is drawn, as (words, pixels that there are)."""
+
+    def __init__(self, drawn, width=ROW, decorated=True):
+        self.drawn, self.width, self.use_property_decorate = drawn, width, decorated
+
+    def _part(self, width=None, heading=""):
+        self.drawn.append((heading, NAME))
+        return Layout(self.drawn, width or self.width, self.use_property_decorate)
+
+    def row(self, heading="", **_):
+        return self._part(heading=heading)
+
+    column = row
+
+    def box(self):
+        return self._part()
+
+    def split(self, factor=0.5, **_):
+        """Its first column is for names, the second for values."""
+        part = self._part()
+        widths = [round(self.width * factor), round(self.width * (1.0 - factor))]
+        part.row = part.column = lambda **_: self._part(widths.pop(0))
+        return part
+
+    def label(self, text="", icon="NONE", **_):
+        self.drawn.append((text, self.width - (20 if icon != "NONE" else 0)))
+
+    def prop(self, owner, name, text=None, **_):
+        known = owner.bl_rna.properties[name]
+        width = NAME if self.use_property_decorate else NAME_PLAIN
+        if known.type == "BOOLEAN":
+            width = CHECKBOX
+        self.drawn.append((known.name if text is None else text, width))
+
+    def prop_menu_enum(self, owner, name, text="", **_):
+        self.drawn.append((text, NAME))
+
+    def operator(self, name, text="", **_):
+        return SimpleNamespace()
+
+    operator_menu_enum = operator
+
+
+class Labels(unittest.TestCase):
+    def setUp(self):
+        scene = scenes.fresh()
+        scene.render.engine = "LODESTONE_POVRAY"
+        scenes.sun()
+        self.lens = scenes.link(bpy.data.objects.new("Lens", None))
+        self.ball = scenes.cube("Ball", data=scenes.bumpy_mesh())
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        bpy.ops.wm.save_as_mainfile(filepath=f"{self.folder.name}/labels.blend")
+        self.scene = bpy.context.scene
+        blf.size(0, 11, 72)
+
+    def too_long(self, item):
+        bpy.context.view_layer.objects.active = item
+        found = []
+        for name in PANELS:
+            kind = getattr(bpy.types, name)
+            if hasattr(kind, "poll") and not kind.poll(bpy.context):
+                continue
+            drawn = []
+            kind.draw(SimpleNamespace(layout=Layout(drawn)), bpy.context)
+            self.assertTrue(drawn, name)
+            found += [
+                (name, text, blf.dimensions(0, text)[0], width)
+                for text, width in drawn
+                if blf.dimensions(0, text)[0] > width
+            ]
+        return found
+
+    def test_no_name_is_cut_off_at_the_usual_width(self):
+        self.assertEqual(self.too_long(self.ball), [])
+        bpy.context.view_layer.objects.active = self.lens
+        bpy.ops.lodestone.detail_lens_enable()
+        self.lens.empty_display_type = "PLAIN_AXES"
+        self.assertEqual(self.too_long(self.lens), [])
+
+    def test_no_name_is_cut_off_whatever_is_set(self):
+        bpy.ops.lodestone.update_levels()
+        self.scene.lodestone.budget_render = 1
+        self.scene.lodestone.antialias = "FINAL"
+        for pixel_error in (0.0, 16.0):
+            self.scene.lodestone.pixel_error_render = pixel_error
+            self.assertEqual(self.too_long(self.ball), [])
+        self.scene.lodestone.use_levels = False
+        self.assertEqual(self.too_long(self.ball), [])
