@@ -204,6 +204,8 @@ class Batch(unittest.TestCase):
         self.assertGreater(before["povray"]["wall_s"], 0.0)
         self.assertEqual([one["object"] for one in found["worst"]], ["Ball"])
         self.assertEqual(report["levels_picture"], str(self.folder / "picture_levels.png"))
+        self.assertIn(f"SSIM {found['ssim']:.4f}; ", self.said)
+        self.assertIn("of 20.5 k triangles, POV-Ray ", self.said)
         text = page.read_text()
         self.assertIn(f"SSIM {found['ssim']:.4f}", text)
         self.assertIn("most: <bdi>Ball</bdi>", text)

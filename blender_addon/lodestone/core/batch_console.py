@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from . import progress
+from .batch_rows import Row
 from .problems import Problem
 from .text import printable
 
@@ -52,6 +53,9 @@ class Console:
         for picture in report.get("pictures", [report]):
             if picture.get("picture"):
                 self.line(printable(picture["picture"]))
+        compared = Row.of(report).compared
+        if compared and self._total == 1:  # of several the table tells
+            self.line(compared.sentence)
         if self._total > 1:
             took = f" in {progress.clock(report['wall_s'])}" if "wall_s" in report else ""
             again = " by an earlier run" if report.get("resumed") is True else ""

@@ -47,6 +47,14 @@ class Compared(NamedTuple):
             f"mean {255 * self.mean:.2f}, largest {255 * self.max:.0f} of 255, SSIM {self.ssim:.4f}"
         )
 
+    @property
+    def sentence(self) -> str:
+        (placed, drawn), (before, after) = self.triangles, self.seconds
+        return (
+            f"{self.difference}; {progress.count(drawn)} of {progress.count(placed)} triangles, "
+            f"POV-Ray {after:.1f} of {before:.1f} s"
+        )
+
 
 @dataclass(frozen=True)
 class Row:
