@@ -56,7 +56,7 @@ def _verdict(rows: list[dict]) -> list[str]:
         lines.append(
             f"- {row['picture']}: parse CPU 1/{1 / max(parse, 1e-9):.1f}, memory "
             f"1/{1 / max(memory, 1e-9):.1f}, all CPU 1/{_total(full) / max(1e-9, _total(row)):.1f} "
-            f"of full detail; SSIM {full['ssim'] - row['ssim']:+.3f} below it"
+            f"of full detail; SSIM {row['ssim']:.3f} instead of {full['ssim']:.3f}"
         )
     return lines
 
