@@ -229,7 +229,7 @@ def sheet(native, benches: list[Bench], out: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     names = list(ray_scenes.SCENES)
     parser.add_argument("--scenes", nargs="+", default=names, choices=names)
     parser.add_argument("--rounds", type=int, default=5)
