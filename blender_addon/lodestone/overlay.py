@@ -322,7 +322,7 @@ class LODESTONE_VIEW3D_PT_false_colors(bpy.types.Panel):
         column.active = chosen.seen_from == "CAMERA"
         column.prop(chosen, "opacity")
         column.operator("lodestone.read_levels", icon="FILE_REFRESH")
-        column.operator_menu_enum("lodestone.false_color_picture", "seen_from", icon="IMAGE_DATA")
+        layout.operator_menu_enum("lodestone.false_color_picture", "seen_from", icon="IMAGE_DATA")
 
 
 def _draw_header(self, context):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards the words of our panels: at the width that Properties have on a 1920 pixel screen, no name
+"""Guards the looks of our panels: at the width that Properties have on a 1920 pixel screen, no name
 of a control ends in dots."""
 
 import tempfile
@@ -32,10 +32,16 @@ class Layout:
 
     def __init__(self, drawn, width=ROW, decorated=True):
         self.drawn, self.width, self.use_property_decorate = drawn, width, decorated
+        self.parent, self.active, self.operators = None, True, {}
 
     def _part(self, width=None, heading=""):
         self.drawn.append((heading, NAME))
-        return Layout(self.drawn, width or self.width, self.use_property_decorate)
+        part = Layout(self.drawn, width or self.width, self.use_property_decorate)
+        part.parent, part.operators = self, self.operators
+        return part
+
+    def separator(self):
+        pass
 
     def row(self, heading="", **_):
         return self._part(heading=heading)
@@ -65,10 +71,14 @@ class Layout:
     def prop_menu_enum(self, owner, name, text="", **_):
         self.drawn.append((text, NAME))
 
-    def operator(self, name, text="", **_):
+    def operator(self, name, *_, **__):
+        self.operators[name] = self
         return SimpleNamespace()
 
     operator_menu_enum = operator
+
+    def looks_active(self):
+        return self.active and (self.parent is None or self.parent.looks_active())
 
 
 class Labels(unittest.TestCase):
@@ -117,3 +127,18 @@ class Labels(unittest.TestCase):
             self.assertEqual(self.too_long(self.ball), [])
         self.scene.lodestone.use_levels = False
         self.assertEqual(self.too_long(self.ball), [])
+
+    def test_what_works_in_the_popover_does_not_look_as_if_it_did_not(self):
+        layout = Layout([])
+        popover = bpy.types.LODESTONE_VIEW3D_PT_false_colors
+        shading = SimpleNamespace(type="SOLID")
+        context = SimpleNamespace(
+            scene=self.scene,
+            window_manager=bpy.context.window_manager,
+            engine=self.scene.render.engine,
+            space_data=SimpleNamespace(type="VIEW_3D", shading=shading),
+        )
+        popover.draw(SimpleNamespace(layout=layout), context)
+        self.assertEqual(context.window_manager.lodestone_overlay.mode, "NONE")
+        self.assertTrue(layout.operators["lodestone.false_color_picture"].looks_active())
+        self.assertFalse(layout.operators["lodestone.read_levels"].looks_active())
