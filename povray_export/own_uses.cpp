@@ -13,7 +13,7 @@ std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
                 continue;
             there[own.node] = own.alone ? 1 : 0;
             const quality::Node& node = cut.nodes[own.node];
-            OwnUse use{own.node, own.lod, node.world, 0, node.hidden, true};
+            OwnUse use{own.node, own.lod, cut.world(node), 0, node.hidden, true};
             if (!own.alone) {
                 use.in_place = of.rays;
                 use.hidden |= static_cast<RayMask>(kAllRays & ~of.rays);
@@ -23,7 +23,7 @@ std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
                 const Primitive& solid =
                     model.objects.at(node.object).representations.at(own.lod).primitive();
                 use.world =
-                    node.world * Affine{glm::dmat3(own.scale), (1 - own.scale) * solid.center};
+                    cut.world(node) * Affine{glm::dmat3(own.scale), (1 - own.scale) * solid.center};
             }
             out.push_back(use);
         }

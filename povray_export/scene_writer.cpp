@@ -213,13 +213,14 @@ private:
                 continue;
             if (nobody[index] != 0)
                 continue;
-            add_use({index, node.lod, position, 0, node.world, node.hidden}, !options_.false_color);
+            add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
+                    !options_.false_color);
             // Else gathering rays would look through a lamp, at what it lights behind itself.
             const std::optional<glm::dvec3> dull =
                 shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
                                      : std::nullopt;
             if (dull)
-                add_use({index, node.lod, position, 0, node.world,
+                add_use({index, node.lod, position, 0, cut_.world(node),
                          kAllRays & static_cast<RayMask>(~kRadiosityRays), kRadiosityRays, dull},
                         false);
         }

@@ -114,8 +114,8 @@ inline void expect_same(const quality::Cut& a, const quality::Cut& b) {
         ASSERT_EQ(one.coarsest, other.coarsest);
         ASSERT_EQ(one.finest, other.finest);
         ASSERT_EQ(one.hidden, other.hidden);
-        ASSERT_EQ(one.world.offset, other.world.offset);
-        ASSERT_EQ(one.world.linear, other.world.linear);
+        ASSERT_EQ(a.world(one).offset, b.world(other).offset);
+        ASSERT_EQ(a.world(one).linear, b.world(other).linear);
     }
     EXPECT_EQ(a.chosen, b.chosen);
     EXPECT_EQ(a.triangles, b.triangles);

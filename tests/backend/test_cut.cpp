@@ -115,8 +115,8 @@ TEST(Cut, EveryChoiceIsTheCheapestThatIsGoodEnough) {
         for (const uint32_t index : cut.chosen) {
             const quality::Node& node = cut.nodes[index];
             const Object& object = model.objects[node.object];
-            const double z =
-                lodestone::distance(transformed(object.bound(), node.world), view.camera.position);
+            const double z = lodestone::distance(transformed(object.bound(), cut.world(node)),
+                                                 view.camera.position);
             const auto good = [&](size_t lod) {
                 return quality::good_enough(view, object.representations[lod].summary.error, 1, z);
             };
@@ -212,7 +212,7 @@ TEST(Cut, ManyOccurrencesOfDeepSharing) {
     EXPECT_EQ(cut.chosen.size(), 32768u);
     size_t seen = 0;
     for_each_occurrence(model, [&](const Occurrence& occurrence) {
-        EXPECT_EQ(occurrence.world.offset, cut.nodes[cut.chosen[seen]].world.offset);
+        EXPECT_EQ(occurrence.world.offset, cut.world(cut.nodes[cut.chosen[seen]]).offset);
         ++seen;
     });
     EXPECT_EQ(seen, 32768u);

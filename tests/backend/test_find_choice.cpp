@@ -50,7 +50,7 @@ TEST(FindChoice, OfManyOccurrencesTheOneThatIsThereIsFound) {
         const quality::FoundChoice found =
             quality::find_choice(model, cut, 0, moved(3.0 * i, 0, 0));
         ASSERT_EQ(found.drawn, Drawn::Itself) << i;
-        EXPECT_NEAR(cut.nodes[found.node].world.offset.x, 3.0 * i, 1e-12);
+        EXPECT_NEAR(cut.world(cut.nodes[found.node]).offset.x, 3.0 * i, 1e-12);
         EXPECT_EQ(cut.nodes[found.node].object, 0u);
     }
 }
@@ -68,7 +68,7 @@ TEST(FindChoice, WhatAGroupStandsForIsFoundInIt) {
     const quality::FoundChoice found = quality::find_choice(model, cut, 0, moved(9, 0, 0));
     ASSERT_EQ(found.drawn, Drawn::InGroup);
     EXPECT_EQ(cut.nodes[found.node].object, 1u);
-    EXPECT_NEAR(cut.nodes[found.node].world.offset.x, 6, 1e-12);
+    EXPECT_NEAR(cut.world(cut.nodes[found.node]).offset.x, 6, 1e-12);
 }
 
 TEST(FindChoice, AnOpenedGroupIsTold) {

@@ -252,7 +252,7 @@ TEST(RayCut, NoSampledEdgeOfAShadowIsFartherOffThanPixelError) {
         if (rays.own.empty() || cut.nodes[rays.own[0].node].lod != 0)
             continue;
         ++found;
-        const glm::dvec3 center = cut.nodes[rays.own[0].node].world.offset;
+        const glm::dvec3 center = cut.world(cut.nodes[rays.own[0].node]).offset;
         const auto on_ground = [&](const glm::dvec3& point) {
             return light + (point - light) * (light.z / (light.z - point.z));
         };

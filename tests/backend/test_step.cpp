@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards a cut that goes along with the camera: it is, to the last bit, the one that would be made anew.
 #include "backend/forest.h"
+#include "quality/budget.h"
 #include "quality/step.h"
 
 #include <functional>
@@ -34,9 +35,12 @@ double walk(
     quality::Cut cut;
     double looked = 0;
     double all = 0;
+    size_t most = 0;
     for (int step = 0; step < steps; ++step) {
         stepper.step(view, cut);
         expect_same(cut, quality::choose(*table, view));
+        most = std::max(most, cut.nodes.size());
+        EXPECT_LE(cut.transforms.size(), most) << "those of what is gone are used again";
         if (testing::Test::HasFailure()) {
             ADD_FAILURE() << "at step " << step;
             return 1;
@@ -148,6 +152,92 @@ TEST(Step, IsTheCutMadeAnewWhileLensesMove) {
         most = std::max(most, looked);
     }
     EXPECT_LT(most, 0.9);
+}
+
+TEST(Step, IsTheCutMadeAnewWhileAllThatBendsComesAndGoes) {
+    // Half of the steps change a modifier, so that cuts are stepped with, between and after them.
+    for (uint32_t seed = 400; seed < 430; ++seed) {
+        Forest forest(seed);
+        View view = forest.view();
+        view.camera.orthographic = false;
+        view.modifiers.lenses = {bent::lens(0, 100, 5), bent::lens(50, 60, 2)};
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.position = {0, 0, 100};
+        forest.model.lights = {lamp};
+        walk(forest, view, 60, [&](View& next) {
+            Modifiers& bends = next.modifiers;
+            DetailLens& lens = bends.lenses[forest.any() < 0.5 ? 0 : 1];
+            switch (static_cast<int>(24 * forest.any())) {
+                case 0:
+                    lens.falloff = 0.5 + 4 * forest.any();
+                    break;
+                case 1:
+                    lens.transform.linear *= 0.5 + forest.any();
+                    break;
+                case 2:
+                    lens.filter = static_cast<LensFilter>(2.99 * forest.any());
+                    lens.objects = {static_cast<ObjectIndex>(8 * forest.any()),
+                                    static_cast<ObjectIndex>(12 * forest.any())};
+                    break;
+                case 3:
+                    lens.shape = lens.shape == LensShape::Box ? LensShape::Sphere : LensShape::Box;
+                    break;
+                case 4:
+                    bends.screen_lenses = {bent::screen_lens(640 * forest.any(), 180, 90, 3)};
+                    break;
+                case 5:
+                    bends.screen_lenses.clear();
+                    break;
+                case 6:
+                    bends.depth = forest.any() < 0.5 ? 1 : 1.6;
+                    break;
+                case 7:
+                    bends.off_screen = static_cast<OffScreen>(2.99 * forest.any());
+                    break;
+                case 8:
+                    bends.ray_classes = forest.any() < 0.5 ? 0 : kShadowRays | kReflectionRays;
+                    break;
+                case 9:
+                    bends.when_dark = !bends.when_dark;
+                    break;
+                case 10:
+                    bends.when_moving = !bends.when_moving;
+                    bends.closing = next.camera;
+                    bends.closing->position.x += 1;
+                    break;
+                case 11:
+                    next.border = forest.any() < 0.5 ? std::optional<Border>()
+                                                     : std::optional<Border>({10, 20, 300, 200});
+                    break;
+                default:
+                    break;
+            }
+        });
+    }
+}
+
+TEST(Step, IsTheCutOfABudgetAtTheThresholdThatItFinds) {
+    for (uint32_t seed = 500; seed < 515; ++seed) {
+        Forest forest(seed);
+        const auto table = table_of(forest.model);
+        quality::Stepper stepper(table);
+        quality::Cut cut;
+        View view = forest.view();
+        view.camera.orthographic = false;
+        for (int step = 0; step < 10; ++step) {
+            const uint64_t triangles = 500 + static_cast<uint64_t>(20000 * forest.any());
+            const quality::Budgeted found = quality::choose_within(*table, view, {triangles, 0});
+            View at = view;
+            at.pixel_error = found.pixel_error;
+            stepper.step(at, cut);
+            expect_same(cut, found.cut);
+            view.camera.position.x += forest.any() - 0.5;
+            at.camera = view.camera;
+            stepper.step(at, cut);
+            expect_same(cut, quality::choose(*table, at));
+        }
+    }
 }
 
 TEST(Step, IsTheCutMadeAnewWhileALensThatHidesMoves) {

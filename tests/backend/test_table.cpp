@@ -199,7 +199,7 @@ TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
         for (const uint32_t index : cut.chosen) {
             const quality::Reason reason = quality::why(forest.model, view, cut, index);
             const quality::Node& node = cut.nodes[index];
-            EXPECT_EQ(reason.chosen.error_px, quality::error_on_screen(table, view, node));
+            EXPECT_EQ(reason.chosen.error_px, quality::error_on_screen(table, view, cut, node));
             EXPECT_FALSE(reason.chosen.error_px * reason.chosen.total >
                          view.pixel_error * (1 + 1e-12));
             EXPECT_GE(reason.chosen.total, 1.0 / 64);

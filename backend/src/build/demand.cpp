@@ -83,8 +83,9 @@ public:
 private:
     double error_allowed(const quality::Node& node, const View& view) const {
         const Object& object = model_.objects[node.object];
-        const double z = distance(transformed(object.bound(), node.world), view.camera.position);
-        const double enlarged = stretch(node.world);
+        const Affine& world = cut_.world(node);
+        const double z = distance(transformed(object.bound(), world), view.camera.position);
+        const double enlarged = stretch(world);
         const double counted = counted_error(1, object.role == Role::Environment, 0);
         return enlarged > 0 ? view.pixel_error * quality::pixel_size(view, z) / enlarged / counted
                             : 0;

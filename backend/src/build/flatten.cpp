@@ -73,7 +73,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         const Object& object = model.objects[node.object];
         const Representation& representation = object.representations[node.lod];
         flat.child_error =
-            std::max(flat.child_error, representation.summary.error * stretch(node.world));
+            std::max(flat.child_error, representation.summary.error * stretch(cut.world(node)));
         Mesh part = representation.summary.kind == Kind::Mesh
                         ? *source(representation)
                         : tessellated(representation, kDrawnSubdivisions);
@@ -87,7 +87,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         }
         for (uint16_t& slot : part.slots)
             slot = slot < moved.size() ? moved[slot] : uint16_t{0};
-        append(flat.mesh, part, node.world);
+        append(flat.mesh, part, cut.world(node));
         flat.occurrence.resize(flat.mesh.triangles.size(), static_cast<uint32_t>(flat.occurrences));
         ++flat.occurrences;
     }

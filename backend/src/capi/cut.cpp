@@ -147,8 +147,8 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
             out.object = {node.object, cut->generation};
             out.lod = node.lod;
             out.kind = static_cast<int32_t>(node.kind);
-            out.error_px = quality::error_on_screen(*cut->table, cut->view, node);
-            node.world.to_rows(out.world);
+            out.error_px = quality::error_on_screen(*cut->table, cut->view, cut->cut, node);
+            cut->cut.world(node).to_rows(out.world);
         }
     });
 }

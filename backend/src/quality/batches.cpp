@@ -49,10 +49,10 @@ std::vector<Below> count_below(const Model& model, const Cut& cut) {
     return below;
 }
 
-void count_in(Hasher& hasher, const Model& model, const Node& node, const Piece& piece,
-              const std::vector<glm::dvec3>& colors) {
+void count_in(Hasher& hasher, const Model& model, const Node& node, const Affine& world,
+              const Piece& piece, const std::vector<glm::dvec3>& colors) {
     double rows[12];
-    node.world.to_rows(rows);
+    world.to_rows(rows);
     hasher.value(shown(model, node).summary.hash).bytes(rows, sizeof rows);
     hasher.value(piece.first).value(piece.count);
     if (!colors.empty())
@@ -200,7 +200,7 @@ public:
                     close(open);
                 const Piece piece{static_cast<uint32_t>(i), first,
                                   std::min(all - first, kMostInBatch)};
-                count_in(open.hasher, model_, node, piece, colors_);
+                count_in(open.hasher, model_, node, cut_.world(node), piece, colors_);
                 open.batch.pieces.push_back(piece);
                 open.batch.triangles += piece.count;
                 first += piece.count;
@@ -273,11 +273,11 @@ BatchMesh mesh_of(const Model& model, const Cut& cut, const Batch& batch,
         if (!colors.empty())
             paints = {Paint{colors.at(piece.choice), 1, false, false}};
         if (representation.summary.kind == Kind::Mesh) {
-            painter.add(representation.mesh(), piece, node.world, paints);
+            painter.add(representation.mesh(), piece, cut.world(node), paints);
             continue;
         }
         const Mesh mesh = shown_mesh(representation);
-        painter.add(mesh, {piece.choice, 0, mesh.triangles.size()}, node.world, paints);
+        painter.add(mesh, {piece.choice, 0, mesh.triangles.size()}, cut.world(node), paints);
     }
     return out;
 }

@@ -33,23 +33,24 @@ std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
     return out;
 }
 
-bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
+bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
          double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
+    const Node& node = placed.node;
     sight.stretch = enlarge;
     factors.importance = node.importance;
     factors.demand = demand;
     if (!field.bends(path) && view.modifiers.criterion != Criterion::Area) {
-        sight.z = distance_of(local, node.world, enlarge, view.camera.position);
+        sight.z = distance_of(local, placed.world, enlarge, view.camera.position);
         sight.pixel = field.pixel(sight.z);
         sight.total = total_refinement(node.importance * demand);
         return true;
     }
-    const Bound bound = transformed(local, node.world, enlarge);
+    const Bound bound = transformed(local, placed.world, enlarge);
     sight.z = distance(bound, view.camera.position);
     sight.pixel = field.pixel(sight.z);
     if (field.bends(path)) {
         const FactorField::Effect effect =
-            field.at(node.object, group, local, node.world, bound, sight.z, path);
+            field.at(node.object, group, local, placed.world, bound, sight.z, path);
         if (effect.gone)
             return false;
         factors = effect.factors;
@@ -65,14 +66,15 @@ bool see(const View& view, FactorField& field, const Node& node, bool group, con
     return true;
 }
 
-bool place(const Table& table, const Node& group, const TableChild& placed, Node& node,
-           double& enlarge, double& demand) {
-    node.object = placed.object;
+bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
+           Placed& placed, double& enlarge, double& demand) {
+    Node& node = placed.node;
+    node.object = child.object;
     node.hidden = group.hidden;
     node.importance = group.importance;
     demand = 1;
-    if (placed.wish != 0) {
-        const TableWish& wish = table.wish(placed.wish);
+    if (child.wish != 0) {
+        const TableWish& wish = table.wish(child.wish);
         node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
         if (node.hidden == kAllRays)
             return false;
@@ -85,12 +87,12 @@ bool place(const Table& table, const Node& group, const TableChild& placed, Node
         node.coarsest = 0;
         node.finest = 0;
     }
-    node.world.offset = group.world.linear * placed.offset + group.world.offset;
-    if (placed.linear == kUnturned) {
-        node.world.linear = group.world.linear;
+    placed.world.offset = around.linear * child.offset + around.offset;
+    if (child.linear == kUnturned) {
+        placed.world.linear = around.linear;
     } else {
-        node.world.linear = group.world.linear * table.linear(placed.linear);
-        enlarge = stretch(node.world);
+        placed.world.linear = around.linear * table.linear(child.linear);
+        enlarge = stretch(placed.world);
     }
     return true;
 }
@@ -127,14 +129,28 @@ Decision decide(const Table& table, const View& view, uint32_t index, const Node
     return made;
 }
 
+void Visited::clear() {
+    nodes.clear();
+    transforms.clear();
+    seen.clear();
+}
+
+void Visited::reserve(size_t count) {
+    nodes.reserve(count);
+    transforms.reserve(count);
+    seen.reserve(count);
+}
+
 bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
     job_.check();
     const size_t expected = table_.expected();
     cut.nodes.reserve(expected);
     cut.chosen.reserve(expected);
+    cut.transforms.reserve(expected);
     budget_ = &budget;
     cut_ = &cut;
     nodes_ = &cut.nodes;
+    transforms_ = &cut.transforms;
     visit_root(root);
     visit_all();
     if (too_dear())
@@ -144,24 +160,25 @@ bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
     return true;
 }
 
-void Chooser::run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& seen) {
+void Chooser::run(uint32_t root, Visited& out) {
     job_.check();
-    nodes_ = &nodes;
-    seen_ = &seen;
+    nodes_ = &out.nodes;
+    transforms_ = &out.transforms;
+    seen_ = &out.seen;
     visit_root(root);
     visit_all();
 }
 
-void Chooser::open(const Node& group, const Seen& known, const FactorField::Path& path,
-                   std::vector<Node>& nodes, std::vector<Seen>& seen) {
-    nodes_ = &nodes;
-    seen_ = &seen;
-    const auto index = static_cast<uint32_t>(nodes.size());
-    nodes.push_back(group);
-    nodes.back().opened = true;
-    nodes.back().lod = 0;
-    nodes.back().kind = Kind::Assembly;
-    seen.push_back(known);
+void Chooser::open(const Placed& group, const Seen& known, const FactorField::Path& path,
+                   Visited& out) {
+    nodes_ = &out.nodes;
+    transforms_ = &out.transforms;
+    seen_ = &out.seen;
+    Placed opened = group;
+    opened.node.opened = true;
+    opened.node.lod = 0;
+    opened.node.kind = Kind::Assembly;
+    const uint32_t index = append(opened, known);
     push_children(this->known(known.row), index, known.stretch, path, 0);
     visit_all();
 }
@@ -177,8 +194,8 @@ Chooser::Known Chooser::known(uint32_t row) const {
 }
 
 void Chooser::visit_root(uint32_t root) {
-    Node top;
-    top.object = table_.object(root).object;
+    Placed top;
+    top.node.object = table_.object(root).object;
     FactorField::Path path = field_.root();
     visit(known(root), top, 1, path, 0);
 }
@@ -206,37 +223,50 @@ void Chooser::visit_all() {
 }
 
 void Chooser::visit_child(const Entry& entry) {
-    const TableChild& placed = table_.child(entry.child);
+    const TableChild& child = table_.child(entry.child);
     const Node& group = (*nodes_)[entry.parent];
+    const Affine& around = (*transforms_)[entry.parent];
     const Frame& above = frames_[entry.depth - 1];
-    Node node;
-    node.parent = entry.parent;
-    node.placement = entry.position;
+    Placed placed;
+    placed.node.parent = entry.parent;
+    placed.node.placement = entry.position;
     double enlarge = above.stretch;
     double demand = 1;
-    if (!place(table_, group, placed, node, enlarge, demand))
+    if (!place(table_, group, around, child, placed, enlarge, demand))
         return;
     path_.lenses = above.path.lenses;
     if (view_.modifiers.when_moving)
-        path_ = field_.below(above.path, group.world,
+        path_ = field_.below(above.path, around,
                              table_.model()
                                  .objects[group.object]
                                  .representations[0]
                                  .assembly()
                                  .placements[entry.position]);
-    visit({placed.row, demand, placed.finest_error, placed.first_child, placed.child_count,
-           placed.first_row, placed.first_level},
-          node, enlarge, path_, entry.depth);
+    visit({child.row, demand, child.finest_error, child.first_child, child.child_count,
+           child.first_row, child.first_level},
+          placed, enlarge, path_, entry.depth);
 }
 
-void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField::Path& path,
+/// Of the nodes; their transforms are in the same order.
+uint32_t Chooser::append(Placed& placed, const Seen& seen) {
+    const auto index = static_cast<uint32_t>(nodes_->size());
+    placed.node.transform = index;
+    nodes_->push_back(placed.node);
+    transforms_->push_back(placed.world);
+    if (seen_ != nullptr)
+        seen_->push_back(seen);
+    return index;
+}
+
+void Chooser::visit(const Known& known, Placed& placed, double enlarge, FactorField::Path& path,
                     uint32_t depth) {
+    Node& node = placed.node;
     const TableRow& row = table_.row(known.row);
     if (!row.drawable)
         return;
     Sight sight;
     Factors factors;
-    if (!see(view_, field_, node, row.group, table_.bound(known.row), known.demand, enlarge, path,
+    if (!see(view_, field_, placed, row.group, table_.bound(known.row), known.demand, enlarge, path,
              sight, factors))
         return;
     Decision made;
@@ -249,22 +279,17 @@ void Chooser::visit(const Known& known, Node& node, double enlarge, FactorField:
         made = decide(table_, view_, known.row, node, sight);
     if (!made.drawn)
         return;
-    const auto index = static_cast<uint32_t>(nodes_->size());
     if (made.opened) {
         node.opened = true;
-        nodes_->push_back(node);
-        if (seen_ != nullptr)
-            seen_->push_back({known.row, 0, enlarge, sight.total});
+        const uint32_t index = append(placed, {known.row, 0, enlarge, sight.total});
         push_children(known, index, enlarge, path, depth);
         return;
     }
     const TableLevel& level = *made.level;
     node.lod = level.lod;
     node.kind = level.kind;
-    nodes_->push_back(node);
-    if (seen_ != nullptr)
-        seen_->push_back(
-            {known.row, static_cast<uint32_t>(&level - &table_.level(0)), enlarge, sight.total});
+    const auto number = static_cast<uint32_t>(&level - &table_.level(0));
+    const uint32_t index = append(placed, {known.row, number, enlarge, sight.total});
     if (cut_ == nullptr)
         return;
     take(index, level, error_on_screen(sight, level.error) / factors.off_screen);

@@ -20,14 +20,20 @@ inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
 /// Throws Error(InvalidArgument) for a view that makes no sense.
 void refuse_nonsense(const View& view);
 
+/// A node and where it is, before they are kept apart.
+struct Placed {
+    Node node;
+    Affine world;
+};
+
 /// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
-bool see(const View& view, FactorField& field, const Node& node, bool group, const Bound& local,
+bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
          double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors);
 
-/// What a group, opened, places: the node, where it is and by whom it is seen, its stretch (from the
+/// What a group, opened, places (`around`: where it is): the node, where it is and by whom it is seen, its stretch (from the
 /// group's) and its object's demand. False: nothing would show it.
-bool place(const Table& table, const Node& group, const TableChild& placed, Node& node,
-           double& enlarge, double& demand);
+bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
+           Placed& placed, double& enlarge, double& demand);
 
 /// Whether levels are judged by their errors.
 inline bool by_error(const View& view) {
@@ -47,12 +53,22 @@ struct Decision {
 Decision decide(const Table& table, const View& view, uint32_t row, const Node& node,
                 const Sight& sight);
 
-/// What stepping a cut keeps of a node.
+/// What stepping a cut keeps of a node, beside its transform.
 struct Seen {
     uint32_t row = 0;
     uint32_t level = 0;  // of the table; of a chosen one
     double stretch = 1;
     double total = 1;  // as Sight's
+};
+
+/// What was visited, in the order of a cut; transforms and what is kept in the order of the nodes.
+struct Visited {
+    std::vector<Node> nodes;
+    std::vector<Affine> transforms;
+    std::vector<Seen> seen;
+
+    void clear();
+    void reserve(size_t count);
 };
 
 /// Visits what is drawn and the groups above it, depth first, each once.
@@ -68,11 +84,10 @@ public:
     bool run(uint32_t root, const Budget& budget, Cut& cut);
 
     /// Appends the nodes alone, and what is kept of each.
-    void run(uint32_t root, std::vector<Node>& nodes, std::vector<Seen>& seen);
+    void run(uint32_t root, Visited& out);
     /// The same for what is below a group: itself, opened, and the nodes below. `path`: of what it
-    /// places. Their parents are indices in `nodes`, its own is left as it is.
-    void open(const Node& group, const Seen& known, const FactorField::Path& path,
-              std::vector<Node>& nodes, std::vector<Seen>& seen);
+    /// places. Their parents are indices in `out`, its own is left as it is.
+    void open(const Placed& group, const Seen& known, const FactorField::Path& path, Visited& out);
 
 private:
     struct Entry {
@@ -100,8 +115,9 @@ private:
 
     void visit_root(uint32_t root);
     void visit_child(const Entry& entry);
-    void visit(const Known& known, Node& node, double enlarge, FactorField::Path& path,
+    void visit(const Known& known, Placed& placed, double enlarge, FactorField::Path& path,
                uint32_t depth);
+    uint32_t append(Placed& placed, const Seen& seen);
     void push_children(const Known& known, uint32_t index, double enlarge,
                        const FactorField::Path& path, uint32_t depth);
     Known known(uint32_t row) const;
@@ -118,8 +134,9 @@ private:
     const Budget* budget_ = nullptr;
     Cut* cut_ = nullptr;                  // whose sums are made; null: none are
     std::vector<Node>* nodes_ = nullptr;  // what is appended to
-    std::vector<Seen>* seen_ = nullptr;
-    FactorField::Path path_;  // of what is visited; of motion only where that counts
+    std::vector<Affine>* transforms_ = nullptr;
+    std::vector<Seen>* seen_ = nullptr;  // null: nothing is kept
+    FactorField::Path path_;             // of what is visited; of motion only where that counts
     std::vector<Entry> stack_;
     std::vector<Frame> frames_;  // by depth
     std::vector<bool> drawn_;    // by TableLevel::distinct

@@ -22,8 +22,8 @@ CostSweep::CostSweep(const Table& table, const View& view, const Job& job)
 std::optional<double> CostSweep::least_that_fits(uint32_t root, const Budget& budget) {
     tally_.clear(table_);
     certain_tally_.clear(table_);
-    Node top;
-    top.object = table_.object(root).object;
+    Placed top;
+    top.node.object = table_.object(root).object;
     visit(root, top, table_.object(root).demand, 1, field_.root(), finest_);
     std::optional<double> found;
     for (;;) {
@@ -54,15 +54,15 @@ bool CostSweep::too_many() const {
 }
 
 /// Finds what a node is drawn by from the threshold of now down to `low`.
-void CostSweep::visit(uint32_t index, const Node& node, double demand, double enlarge,
+void CostSweep::visit(uint32_t index, const Placed& placed, double demand, double enlarge,
                       FactorField::Path path, double low) {
     if ((visited_.size() & 1023u) == 0)
         job_.check();
     const TableRow& row = table_.row(index);
     Sight sight;
     Factors factors;
-    if (!row.drawable || !see(view_, field_, node, row.group, table_.bound(index), demand, enlarge,
-                              path, sight, factors))
+    if (!row.drawable || !see(view_, field_, placed, row.group, table_.bound(index), demand,
+                              enlarge, path, sight, factors))
         return;
     // Between two of these decide() decides alike.
     thresholds_.assign(1, low);
@@ -79,12 +79,12 @@ void CostSweep::visit(uint32_t index, const Node& node, double demand, double en
         add(level, level.opens_from);
     }
     std::sort(thresholds_.begin(), thresholds_.end(), std::greater<>());
-    Visited made;
+    Ranged made;
     made.range = static_cast<uint32_t>(ranges_.size());
     bool opens = false;
     for (const double threshold : thresholds_) {
         view_.pixel_error = threshold;
-        const Decision decision = decide(table_, view_, index, node, sight);
+        const Decision decision = decide(table_, view_, index, placed.node, sight);
         if (!decision.drawn)
             return;
         const TableLevel* level = decision.opened ? nullptr : decision.level;
@@ -98,7 +98,7 @@ void CostSweep::visit(uint32_t index, const Node& node, double demand, double en
     made.lasts = low <= finest_ && (!row.group || row.lasting);
     if (opens) {
         made.group = static_cast<uint32_t>(groups_.size());
-        groups_.push_back({node, enlarge, path, index});
+        groups_.push_back({placed, enlarge, path, index});
     }
     visited_.push_back(made);
     enter(static_cast<uint32_t>(visited_.size() - 1));
@@ -110,27 +110,27 @@ void CostSweep::open(const Opening& opening) {
     for (uint32_t i = 0; i < std::min(object.child_count, kAheadOfSweep); ++i)
         table_.fetch(object.first_child + i);
     for (uint32_t i = 0; i < object.child_count; ++i) {
-        const TableChild& placed = table_.child(object.first_child + i);
-        Node node;
-        node.placement = i;
+        const TableChild& child = table_.child(object.first_child + i);
+        Placed placed;
+        placed.node.placement = i;
         double enlarge = group.stretch;
         double demand = 1;
-        if (!place(table_, group.node, placed, node, enlarge, demand))
+        if (!place(table_, group.placed.node, group.placed.world, child, placed, enlarge, demand))
             continue;
         FactorField::Path path = group.path;
         if (view_.modifiers.when_moving)
-            path = field_.below(group.path, group.node.world,
+            path = field_.below(group.path, group.placed.world,
                                 table_.model()
-                                    .objects[group.node.object]
+                                    .objects[group.placed.node.object]
                                     .representations[0]
                                     .assembly()
                                     .placements[i]);
-        visit(placed.row, node, demand, enlarge, path, opening.low);
+        visit(child.row, placed, demand, enlarge, path, opening.low);
     }
 }
 
 void CostSweep::enter(uint32_t index) {
-    const Visited& visited = visited_[index];
+    const Ranged& visited = visited_[index];
     const Range& range = ranges_[visited.range];
     count(visited, range, true);
     if (range.level == nullptr)
@@ -139,11 +139,11 @@ void CostSweep::enter(uint32_t index) {
         turns_.push({range.low, index});
 }
 
-void CostSweep::leave(const Visited& visited) {
+void CostSweep::leave(const Ranged& visited) {
     count(visited, ranges_[visited.range], false);
 }
 
-void CostSweep::count(const Visited& visited, const Range& range, bool more) {
+void CostSweep::count(const Ranged& visited, const Range& range, bool more) {
     nodes_ += more ? 1 : -1;
     if (range.level == nullptr)
         return;

@@ -31,14 +31,14 @@ private:
         double low = 0;
         const TableLevel* level = nullptr;  // null: opened
     };
-    struct Visited {
+    struct Ranged {
         uint32_t range = 0;  // the one that it is in
         uint32_t end = 0;
         uint32_t group = 0;  // in groups_; of one that may be opened
         bool lasts = false;  // down to the finest it or something below it is drawn
     };
     struct Group {
-        Node node;
+        Placed placed;
         double stretch = 1;
         FactorField::Path path;  // of what it places
         uint32_t row = 0;
@@ -53,12 +53,12 @@ private:
         bool operator<(const Turn& other) const { return at < other.at; }
     };
 
-    void visit(uint32_t row, const Node& node, double demand, double enlarge,
+    void visit(uint32_t row, const Placed& placed, double demand, double enlarge,
                FactorField::Path path, double low);
     void open(const Opening& opening);
     void enter(uint32_t visited);
-    void leave(const Visited& visited);
-    void count(const Visited& visited, const Range& range, bool more);
+    void leave(const Ranged& visited);
+    void count(const Ranged& visited, const Range& range, bool more);
     bool too_many() const;
 
     const Table& table_;
@@ -70,7 +70,7 @@ private:
     double now_ = kInfinity;  // the threshold, from above
     double coarsest_ = kInfinity;
     std::vector<Range> ranges_;
-    std::vector<Visited> visited_;
+    std::vector<Ranged> visited_;
     std::deque<Group> groups_;
     std::vector<Opening> openings_;  // to be made
     std::priority_queue<Turn> turns_;

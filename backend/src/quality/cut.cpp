@@ -50,18 +50,19 @@ Cut choose(const Table& table, const View& view, const Job& job) {
     return choose_within_budget(table, view, {}, job).value();
 }
 
-double error_on_screen(const Table& table, const View& view, const Node& node) {
+double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node) {
     if (node.opened)
         return 0;
     const uint32_t index = table.find(node.object);
     const TableRow& row = table.row(index);
-    const double enlarge = stretch(node.world);
+    const Affine& world = cut.world(node);
+    const double enlarge = stretch(world);
     for (uint32_t i = 0; i < row.level_count; ++i) {
         const TableLevel& level = table.level(row.first_level + i);
         if (level.lod == node.lod)
             return error_on_screen(
                 view, level.error, enlarge,
-                distance_of(table.bound(index), node.world, enlarge, view.camera.position));
+                distance_of(table.bound(index), world, enlarge, view.camera.position));
     }
     fail(Status::InvalidArgument, "the cut was made from another table");
 }
@@ -78,7 +79,7 @@ Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index)
         const Node& node = cut.nodes[way[i]];
         if (i + 1 < way.size()) {
             const Node& group = cut.nodes[node.parent];
-            path = field.below(path, group.world,
+            path = field.below(path, cut.world(group),
                                model.objects.at(group.object)
                                    .representations.at(0)
                                    .assembly()
@@ -88,8 +89,9 @@ Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index)
         Sight seen;
         const Sight* sight = &seen;
         const Object& object = model.objects.at(node.object);
-        if (!see(view, field, node, object.group(), object.bound(), object.demand,
-                 stretch(node.world), path, seen, factors))
+        const Affine& world = cut.world(node);
+        if (!see(view, field, {node, world}, object.group(), object.bound(), object.demand,
+                 stretch(world), path, seen, factors))
             fail(Status::InvalidArgument, "the cut was made for another view");
         const size_t first = i == 0 ? node.lod + size_t{1} : size_t{1};
         for (size_t lod = first; lod < object.representations.size(); ++lod) {

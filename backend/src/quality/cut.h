@@ -26,14 +26,16 @@ struct Node {
     uint32_t finest = 0;
     Kind kind = Kind::Assembly;  // of the choice
     bool opened = false;
-    RayMask hidden = 0;     // ray classes that do not see it: its placements' together
-    double importance = 1;  // its placements' together
-    Affine world;
+    RayMask hidden = 0;      // ray classes that do not see it: its placements' together
+    uint32_t transform = 0;  // in Cut::transforms; nodes share none
+    double importance = 1;   // its placements' together
 };
 
 struct Cut {
     std::vector<Node> nodes;       // depth-first, in order of placements
     std::vector<uint32_t> chosen;  // indices of the nodes that are drawn, rising
+    /// object -> world, in any order, some of none: nodes that move take 40 bytes, not 136, with them.
+    std::vector<Affine> transforms;
 
     uint64_t triangles = 0;  // placed
     uint64_t bytes = 0;      // POV-Ray's memory: distinct representations and occurrences
@@ -41,6 +43,8 @@ struct Cut {
     double largest_error_px = 0;
     uint32_t largest_error_node = kNoParent;
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
+
+    const Affine& world(const Node& node) const { return transforms[node.transform]; }
 };
 
 /// What a cut may cost at most; 0: any number.
@@ -71,7 +75,7 @@ std::optional<Cut> choose_within_budget(const Table& table, const View& view, co
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
 
 /// Of a chosen node of a cut for this view, in pixels; 0 of an opened one.
-double error_on_screen(const Table& table, const View& view, const Node& node);
+double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node);
 
 /// Why a node is drawn as it is.
 struct Reason {

@@ -57,21 +57,22 @@ void look_through(const Table& table, const View& view, const std::vector<Detail
             groups.pop_back();
         if (groups.back().node != node.parent)
             continue;
-        const TableRow& row = table.row(seen[i].row);
-        const Bound local = table.bound(seen[i].row);
+        Seen& known = seen[node.transform];
+        const Affine& world = cut.world(node);
+        const TableRow& row = table.row(known.row);
+        const Bound local = table.bound(known.row);
         Reached here = groups.back();
         here.node = i;
-        here.changed = reach
-                           .at(node.object, true, transformed(local, node.world, seen[i].stretch),
-                               here.changed)
-                           .below;
+        here.changed =
+            reach.at(node.object, true, transformed(local, world, known.stretch), here.changed)
+                .below;
         if (here.changed.begin == here.changed.end)
             continue;
         Sight sight;
         Factors factors;
-        see(view, field, node, row.group, local, table.object(seen[i].row).demand, seen[i].stretch,
-            here.path, sight, factors);
-        seen[i].total = sight.total;
+        see(view, field, {node, world}, row.group, local, table.object(known.row).demand,
+            known.stretch, here.path, sight, factors);
+        known.total = sight.total;
         reached.push_back(i);
         if (node.opened)
             groups.push_back(here);

@@ -40,7 +40,7 @@ std::vector<Bound> bounds_of(const Model& model, const Cut& cut) {
         if (!node.opened)
             bounds[i] = transformed(
                 model.objects.at(node.object).representations.at(node.lod).summary.bound,
-                node.world);
+                cut.world(node));
         if (node.parent != kNoParent && !bounds[i].empty())
             bounds[node.parent] =
                 bounds[node.parent].empty() ? bounds[i] : merged(bounds[node.parent], bounds[i]);
@@ -66,7 +66,7 @@ public:
             FactorField::Path& path = paths_[index];
             path = node.parent == kNoParent ? field_.root() : paths_[node.parent];
             factors = field_
-                          .at(node.object, object.group(), object.bound(), node.world, bound,
+                          .at(node.object, object.group(), object.bound(), cut_.world(node), bound,
                               distance(bound, view_.camera.position), path)
                           .factors;
         }
@@ -172,7 +172,7 @@ private:
         const uint32_t finest = node.opened ? 0 : node.lod;
         Bound all = bounds_[index];
         for (uint32_t lod = finest + 1; lod < levels; ++lod)
-            all = merged(all, transformed(level(node, lod).summary.bound, node.world));
+            all = merged(all, transformed(level(node, lod).summary.bound, cut_.world(node)));
         const double z = distance(all, view_.camera.position);
         factors.off_screen =
             std::min(off_screen_->coarser(all, z),
@@ -180,7 +180,7 @@ private:
                                       : kMostImportance);
         if (!(factors.off_screen > 1))
             return false;
-        const double enlarge = stretch(node.world);
+        const double enlarge = stretch(cut_.world(node));
         for (uint32_t lod = levels; lod-- > finest + 1;) {
             const Summary& summary = level(node, lod).summary;
             if (!usable(node, lod) || summary.cost.triangles > triangles_[index] ||
@@ -236,7 +236,7 @@ private:
         const double most = view_.pixel_error / total * edge.any;
         if (!(most > 0))
             return RayState::Need;
-        const double enlarge = stretch(node.world);
+        const double enlarge = stretch(cut_.world(node));
         RayChoice best{index, 0, 1, kInfinity, 0, false, false};
         for (const uint32_t lod : solids) {
             const Shape shape = shape_of_(drawn, &level(node, lod));

@@ -52,18 +52,18 @@ bool Walk::same_pixels(double a, double b) {
     return std::abs(a - b) <= kTurned * b;
 }
 
-Sight Walk::sight_of(const Node& node, const Seen& seen) const {
+Sight Walk::sight_of(const Affine& world, const Seen& seen) const {
     Sight sight;
-    sight.z = distance_of(table.bound(seen.row), node.world, seen.stretch, view.camera.position);
+    sight.z = distance_of(table.bound(seen.row), world, seen.stretch, view.camera.position);
     sight.pixel = pixel * std::max(sight.z, view.camera.near_clip);
     sight.stretch = seen.stretch;
     sight.total = seen.total;
     return sight;
 }
 
-double Walk::margin(const Node& node, const Seen& seen, double z) const {
+double Walk::margin(const Affine& world, const Seen& seen, double z) const {
     const Bound bound = table.bound(seen.row);
-    return kOfPlaces * (glm::length(view.camera.position) + glm::length(node.world(bound.center)) +
+    return kOfPlaces * (glm::length(view.camera.position) + glm::length(world(bound.center)) +
                         bound.radius * seen.stretch + z) +
            kOfTravel * travel;
 }
@@ -81,8 +81,9 @@ void Slack::grow(size_t most) {
     }
 }
 
-void Slack::set(size_t index, const Walk& walk, const Node& node, const Seen& seen,
+void Slack::set(size_t index, const Walk& walk, const Placed& placed, const Seen& seen,
                 const Sight& sight, const Decision& made) {
+    const Node& node = placed.node;
     const TableRow& row = walk.table.row(seen.row);
     const double per_metre = walk.view.pixel_error * walk.frame;
     bool numbers = true;
@@ -122,7 +123,7 @@ void Slack::set(size_t index, const Walk& walk, const Node& node, const Seen& se
     const double nearer = low <= near * (1 - kRounding) ? kInfinity : z - low * (1 + kRounding);
     const double farther = high * (1 - kRounding) - z;
     const double slack = std::min(nearer, farther);
-    const double off = walk.margin(node, seen, z);
+    const double off = walk.margin(placed.world, seen, z);
     expires_[index] = numbers && slack > 0 ? below(walk.travel + slack - off) : kExpired;
     sizes_[index] = made.opened ? -1 : above(made.level->error * seen.stretch / walk.frame);
     places_[index] = below(z + walk.travel - off);
@@ -166,10 +167,11 @@ void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen, Cut& c
         const Node& node = cut.nodes[index];
         if (node.opened)
             return;
-        const Sight sight = walk.sight_of(node, seen[index]);
-        const double z = sight.z;
-        places_[index] = below(z + walk.travel - walk.margin(node, seen[index], z));
-        const TableLevel& level = walk.table.level(seen[index].level);
+        const Affine& world = cut.world(node);
+        const Seen& known = seen[node.transform];
+        const Sight sight = walk.sight_of(world, known);
+        places_[index] = below(sight.z + walk.travel - walk.margin(world, known, sight.z));
+        const TableLevel& level = walk.table.level(known.level);
         const double error = error_on_screen(sight, level.error);
         if (error > cut.largest_error_px ||
             (error == cut.largest_error_px && index < cut.largest_error_node && error > 0)) {

@@ -20,9 +20,9 @@ struct Walk {
     /// False: so far that what is known is worth nothing.
     bool to(const View& next);
 
-    Sight sight_of(const Node& node, const Seen& seen) const;
+    Sight sight_of(const Affine& world, const Seen& seen) const;
     /// How far rounding may be off in distances of a node, and in sums of them and the travel.
-    double margin(const Node& node, const Seen& seen, double z) const;
+    double margin(const Affine& world, const Seen& seen, double z) const;
     /// Whether two sizes of pixels are one but for rounding, as when a camera turns.
     static bool same_pixels(double a, double b);
 };
@@ -34,15 +34,16 @@ public:
     void resize(size_t count);
     void grow(size_t most);
     /// From where to where a node's decision holds, and so for how long.
-    void set(size_t index, const Walk& walk, const Node& node, const Seen& seen, const Sight& sight,
-             const Decision& made);
+    void set(size_t index, const Walk& walk, const Placed& placed, const Seen& seen,
+             const Sight& sight, const Decision& made);
     void copy(const Slack& from, size_t index, size_t to);
     /// Nodes [begin, end) move to `to`; what lies there is lost.
     void move(size_t begin, size_t end, size_t to);
     /// Nodes whose slack is eaten.
     void find_expired(double travel, std::vector<uint32_t>& expired) const;
     /// The first of the largest errors on screen. Errors grow no faster than the eye may have come
-    /// nearer; only what may then be the largest is computed. `guess`: a node, or none.
+    /// nearer; only what may then be the largest is computed. `seen`: by Node::transform; `guess`: a
+    /// node, or none.
     void find_largest(const Walk& walk, const std::vector<Seen>& seen, Cut& cut, uint32_t guess);
 
 private:

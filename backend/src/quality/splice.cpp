@@ -26,12 +26,14 @@ void grow(std::vector<Value>& values, size_t most) {
 void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
     const size_t most = cut.nodes.size() + fresh.nodes.size();
     spare_chosen_.clear();
+    grow(kept.free, kept.free.size() + cut.nodes.size());
     if (in_place(edits)) {
         spare_chosen_.reserve(edits.size());
         return;
     }
     grow(cut.nodes, most);
-    grow(kept.seen, most);
+    grow(cut.transforms, cut.transforms.size() + fresh.nodes.size());
+    grow(kept.seen, kept.seen.size() + fresh.nodes.size());
     kept.slack.grow(most);
     spare_chosen_.reserve(most);
     runs_.reserve(edits.size() + 1);
@@ -39,6 +41,10 @@ void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& c
 
 void Splicer::replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
     spare_chosen_.clear();
+    for (const Edit& edit : edits) {
+        for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)
+            kept.free.push_back(cut.nodes[i].transform);
+    }
     if (!in_place(edits)) {
         move_all(edits, fresh, cut, kept);
         return;
@@ -61,7 +67,6 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
     const uint32_t wanted = count + runs_.back().shift;
     const uint32_t room = std::max(count, wanted);
     cut.nodes.resize(room);
-    kept.seen.resize(room);
     kept.slack.resize(room);
     const auto moved = [&](uint32_t index) {
         if (index == kNoParent)
@@ -72,16 +77,13 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
         return index + (after - 1)->shift;
     };
     const auto move = [&](const Run& run) {
-        const auto one = [&](auto* all) {
-            if (run.shift != 0)
-                std::memmove(all + (run.begin + run.shift), all + run.begin,
-                             (run.end - run.begin) * sizeof(*all));
-        };
-        static_assert(std::is_trivially_copyable_v<Node> && std::is_trivially_copyable_v<Seen>);
-        one(kept.seen.data());
-        if (run.shift != 0)
+        static_assert(std::is_trivially_copyable_v<Node>);
+        if (run.shift != 0) {
+            Node* nodes = cut.nodes.data();
+            std::memmove(nodes + (run.begin + run.shift), nodes + run.begin,
+                         (run.end - run.begin) * sizeof(Node));
             kept.slack.move(run.begin, run.end, run.begin + run.shift);
-        one(cut.nodes.data());
+        }
         uint32_t before = kNoParent;  // siblings in a run have a parent before it, or in it
         uint32_t now = kNoParent;
         for (uint32_t i = run.begin + run.shift; run.begin > 0 && i < run.end + run.shift; ++i) {
@@ -109,7 +111,6 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
             move(runs_[i]);
     }
     cut.nodes.resize(wanted);
-    kept.seen.resize(wanted);
     kept.slack.resize(wanted);
     spare_chosen_.clear();
     auto chosen = cut.chosen.begin();
@@ -141,7 +142,16 @@ void Splicer::insert(const Edit& edit, uint32_t place, uint32_t parent, const Fr
         const uint32_t to = place + (from - edit.begin);
         Node& node = cut.nodes[to] = fresh.nodes[from];
         node.parent = from == edit.begin ? parent : node.parent - edit.begin + place;
-        kept.seen[to] = fresh.seen[from];
+        if (kept.free.empty()) {
+            node.transform = static_cast<uint32_t>(cut.transforms.size());
+            cut.transforms.emplace_back();
+            kept.seen.emplace_back();
+        } else {
+            node.transform = kept.free.back();
+            kept.free.pop_back();
+        }
+        cut.transforms[node.transform] = fresh.transforms[from];
+        kept.seen[node.transform] = fresh.seen[from];
         kept.slack.copy(fresh.slack, from, to);
         if (!node.opened)
             spare_chosen_.push_back(to);

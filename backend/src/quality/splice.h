@@ -14,15 +14,16 @@ struct Edit {
     uint32_t end = 0;
 };
 
-/// What is kept of each node of a cut besides it.
+/// What is kept of a cut besides it. What is as large as a transform stays where it is when nodes move.
 struct Kept {
-    std::vector<Seen> seen;
-    Slack slack;
+    std::vector<Seen> seen;      // by Node::transform
+    std::vector<uint32_t> free;  // transforms of no node
+    Slack slack;                 // by node
 };
 
 /// Nodes that were visited, each beside what is kept of it.
-struct Fresh : Kept {
-    std::vector<Node> nodes;
+struct Fresh : Visited {
+    Slack slack;
 };
 
 class Splicer {

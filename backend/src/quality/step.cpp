@@ -58,18 +58,16 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     walk_.emplace(*table_, view);
     field_ = std::make_unique<FactorField>(table_->model(), walk_->view);
     const uint32_t root = table_->find(table_->model().root);
-    fresh_.nodes.clear();
-    fresh_.seen.clear();
-    const size_t expected = table_->expected();
-    fresh_.nodes.reserve(expected);
-    fresh_.seen.reserve(expected);
-    Chooser(*table_, nullptr, walk_->view, *field_, job).run(root, fresh_.nodes, fresh_.seen);
+    fresh_.clear();
+    fresh_.reserve(table_->expected());
+    Chooser(*table_, nullptr, walk_->view, *field_, job).run(root, fresh_);
     fresh_.slack.resize(0);
     look_at_fresh(0);
     tally_.clear(*table_);
     edits_.clear();
     Cut made;
     made.nodes.swap(fresh_.nodes);
+    made.transforms.swap(fresh_.transforms);
     for (size_t i = 0; i < made.nodes.size(); ++i) {
         if (!made.nodes[i].opened)
             made.chosen.push_back(static_cast<uint32_t>(i));
@@ -77,9 +75,11 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     }
     made.kinds = named(tally_.kinds());
     kept_.seen.swap(fresh_.seen);
+    kept_.free.clear();
     std::swap(kept_.slack, fresh_.slack);
     kept_.slack.find_largest(*walk_, kept_.seen, made, kNoParent);
-    fresh_.nodes.swap(cut.nodes);  // for its memory
+    fresh_.nodes.swap(cut.nodes);  // for their memory
+    fresh_.transforms.swap(cut.transforms);
     cut = std::move(made);
     table_->expect(cut.nodes.size());
     looked_at_ = cut.nodes.size();
@@ -132,11 +132,11 @@ bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cu
 void Stepper::look_at_fresh(size_t begin) {
     fresh_.slack.resize(fresh_.nodes.size());
     for (size_t i = begin; i < fresh_.nodes.size(); ++i) {
-        const Node& node = fresh_.nodes[i];
+        const Placed placed{fresh_.nodes[i], fresh_.transforms[i]};
         const Seen& seen = fresh_.seen[i];
-        const Sight sight = walk_->sight_of(node, seen);
-        fresh_.slack.set(i, *walk_, node, seen, sight,
-                         decide(*table_, walk_->view, seen.row, node, sight));
+        const Sight sight = walk_->sight_of(placed.world, seen);
+        fresh_.slack.set(i, *walk_, placed, seen, sight,
+                         decide(*table_, walk_->view, seen.row, placed.node, sight));
     }
 }
 
@@ -150,11 +150,11 @@ FactorField::Path Stepper::path_below(const Cut& cut, uint32_t node) {
         way.push_back(at);
     for (size_t i = way.size(); i-- > 0;) {
         const Node& here = cut.nodes[way[i]];
-        const Seen& seen = kept_.seen[way[i]];
+        const Seen& seen = kept_.seen[here.transform];
         const TableRow& row = table_->row(seen.row);
         Sight sight;
         Factors factors;
-        see(walk_->view, *field_, here, row.group, table_->bound(seen.row),
+        see(walk_->view, *field_, {here, cut.world(here)}, row.group, table_->bound(seen.row),
             table_->object(seen.row).demand, seen.stretch, path, sight, factors);
     }
     return path;
@@ -162,8 +162,7 @@ FactorField::Path Stepper::path_below(const Cut& cut, uint32_t node) {
 
 void Stepper::find_edits(const Cut& cut, const Job& job) {
     edits_.clear();
-    fresh_.nodes.clear();
-    fresh_.seen.clear();
+    fresh_.clear();
     fresh_.slack.resize(0);
     Chooser chooser(*table_, nullptr, walk_->view, *field_, job);
     uint32_t next = 0;  // behind what was closed
@@ -171,11 +170,12 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
         if (index < next)
             continue;
         const Node& node = cut.nodes[index];
-        const Seen& seen = kept_.seen[index];
-        const Sight sight = walk_->sight_of(node, seen);
+        const Placed placed{node, cut.world(node)};
+        const Seen& seen = kept_.seen[node.transform];
+        const Sight sight = walk_->sight_of(placed.world, seen);
         const Decision made = decide(*table_, walk_->view, seen.row, node, sight);
         if (made.opened == node.opened && (made.opened || made.level->lod == node.lod)) {
-            kept_.slack.set(index, *walk_, node, seen, sight, made);
+            kept_.slack.set(index, *walk_, placed, seen, sight, made);
             continue;
         }
         Edit edit;
@@ -191,13 +191,14 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
         }
         next = index + edit.removed;
         if (made.opened) {
-            chooser.open(node, seen, path_below(cut, index), fresh_.nodes, fresh_.seen);
+            chooser.open(placed, seen, path_below(cut, index), fresh_);
         } else {
             Node drawn = node;
             drawn.opened = false;
             drawn.lod = made.level->lod;
             drawn.kind = made.level->kind;
             fresh_.nodes.push_back(drawn);
+            fresh_.transforms.push_back(placed.world);
             Seen now = seen;
             now.level = static_cast<uint32_t>(made.level - &table_->level(0));
             fresh_.seen.push_back(now);
@@ -218,7 +219,7 @@ void Stepper::commit(Cut& cut) {
     const auto kinds = tally_.kinds();
     for (const Edit& edit : edits_) {
         for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)
-            count(cut.nodes[i], kept_.seen[i], false, cut);
+            count(cut.nodes[i], kept_.seen[cut.nodes[i].transform], false, cut);
         for (uint32_t i = edit.begin; i < edit.end; ++i)
             count(fresh_.nodes[i], fresh_.seen[i], true, cut);
     }

@@ -65,11 +65,12 @@ Surface surface_of(const Model& model, const Cut& cut, const std::vector<uint32_
         const Node& node = cut.nodes.at(cut.chosen[i]);
         if ((node.hidden & kCameraRays) != 0)
             return;
+        const Affine& world = cut.world(node);
         const Mesh mesh = shown(model.objects.at(node.object), levels[i]);
         parts[i].reserve(3 * mesh.triangles.size());
         for (const Triangle& triangle : mesh.triangles) {
             for (int corner = 0; corner < 3; ++corner)
-                parts[i].emplace_back(node.world(glm::dvec3(mesh.positions.at(triangle[corner]))));
+                parts[i].emplace_back(world(glm::dvec3(mesh.positions.at(triangle[corner]))));
         }
     });
     Surface surface;
