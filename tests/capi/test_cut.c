@@ -88,6 +88,65 @@ static void test_nonsense_is_refused_by_name(void) {
     lds_model_destroy(model);
 }
 
+/* A new cut and a step say the same of a view. */
+static lds_status both_of(lds_model* model, const lds_view* view) {
+    const lds_view usual = view_before(30, 640, 360);
+    lds_cut* stepped = NULL;
+    EXPECT(lds_cut_create(model, &usual, NULL, &stepped) == LDS_OK);
+    EXPECT(lds_cut_step(model, stepped, &usual, NULL) == LDS_OK);
+    lds_cut* anew = NULL;
+    const lds_status status = lds_cut_create(model, view, NULL, &anew);
+    EXPECT(lds_cut_step(model, stepped, view, NULL) == status);
+    EXPECT(status == LDS_OK || strlen(lds_last_error_text()) > 0);
+    EXPECT(lds_cut_choice_count(stepped) == 2); /* also where it has stayed as it was */
+    EXPECT(status != LDS_OK || lds_cut_choice_count(anew) == 2);
+    lds_cut_destroy(anew);
+    lds_cut_destroy(stepped);
+    return status;
+}
+
+static void test_views_of_nonsense_are_refused_and_odd_ones_are_not(void) {
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const double bad[] = {NAN, INFINITY, -INFINITY, -1, 0};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        lds_view view = view_before(30, 640, 360);
+        view.camera.near_clip = bad[i];
+        EXPECT(both_of(model, &view) == LDS_ERROR_INVALID_ARGUMENT);
+        view = view_before(30, 640, 360);
+        view.pixel_error = bad[i]; /* 0: the originals */
+        EXPECT(both_of(model, &view) == (bad[i] == 0 ? LDS_OK : LDS_ERROR_INVALID_ARGUMENT));
+        double* const frame[] = {view.camera.position, view.camera.direction, view.camera.right,
+                                 view.camera.up};
+        for (size_t k = 0; k < 4; ++k) {
+            view = view_before(30, 640, 360);
+            for (int axis = 0; axis < 3; ++axis)
+                frame[k][axis] = bad[i];
+            /* All -1 is a skewed frame, and all 0 a place. */
+            const int fine = bad[i] == -1 || (bad[i] == 0 && k == 0);
+            EXPECT(both_of(model, &view) == (fine ? LDS_OK : LDS_ERROR_INVALID_ARGUMENT));
+        }
+    }
+    lds_view view = view_before(30, 640, 360);
+    memcpy(view.camera.direction, view.camera.right, sizeof view.camera.right);
+    EXPECT(both_of(model, &view) == LDS_ERROR_INVALID_ARGUMENT); /* it looks along the picture */
+    view = view_before(30, 640, 360);
+    view.camera.right[0] *= -1; /* mirrored */
+    EXPECT(both_of(model, &view) == LDS_OK);
+    view = view_before(0, 640, 360); /* inside of everything */
+    EXPECT(both_of(model, &view) == LDS_OK);
+    view = view_before(1e300, 640, 360);
+    EXPECT(both_of(model, &view) == LDS_OK);
+    lds_lens many[1024];
+    for (int i = 0; i < 1024; ++i)
+        many[i] = lens_of(i % 2, 4); /* half of them of radius 0 */
+    lds_modifiers modifiers = lds_modifiers_default();
+    modifiers.lenses = many;
+    modifiers.lens_count = 1024;
+    EXPECT(status_of(model, &modifiers) == LDS_OK);
+    lds_model_destroy(model);
+}
+
 static void test_a_budget_says_what_fits(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
@@ -292,6 +351,7 @@ int main(void) {
     test_a_cut_is_stale_once_its_groups_are_structured();
     test_a_view_without_modifiers_is_one_of_version_1();
     test_nonsense_is_refused_by_name();
+    test_views_of_nonsense_are_refused_and_odd_ones_are_not();
     test_a_budget_says_what_fits();
     test_a_reason_names_every_factor();
     test_a_cut_goes_along_with_the_camera();
