@@ -294,9 +294,9 @@ TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
     // Each of these makes all that was kept worthless, or is no perspective camera's distance at all.
     Forest forest(7);
     const auto table = table_of(forest.model);
-    quality::Stepper stepper(table);
-    quality::Cut cut;
     for (int i = 0; i < 160; ++i) {
+        quality::Stepper stepper(table);
+        quality::Cut cut;
         View view = forest.view();
         view.modifiers = {};
         const View first = view;
@@ -340,6 +340,28 @@ TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
             expect_same(cut, quality::choose(*table, at));
         }
     }
+}
+
+TEST(Step, KeepsNothingWhileStepsAreInVain) {
+    // Leaps change everything, again and again; slow motion afterwards is followed again.
+    const Model model = bent::pairs(400);
+    const auto table = table_of(model);
+    quality::Stepper stepper(table);
+    quality::Cut cut;
+    for (int leap = 0; leap < 200; ++leap) {
+        stepper.step(models::view_from(leap % 2 == 0 ? 30 : 300), cut);
+        expect_same(cut, quality::choose(*table, models::view_from(leap % 2 == 0 ? 30 : 300)));
+        EXPECT_EQ(stepper.looked_at(), cut.nodes.size());
+    }
+    size_t followed = 0;
+    for (int step = 0; step < 100; ++step) {
+        const View view = models::view_from(200 + 1e-4 * step);
+        stepper.step(view, cut);
+        expect_same(cut, quality::choose(*table, view));
+        followed += stepper.looked_at() == 0 ? 1 : 0;
+    }
+    EXPECT_GE(followed, 60u);
+    EXPECT_LE(followed, 90u) << "nothing was kept of the last leaps";
 }
 
 TEST(Step, RefusesNonsenseAndKeepsTheCut) {

@@ -9,8 +9,12 @@
 namespace lodestone::quality {
 namespace {
 
-// Where more than one in so many is expired, choosing anew is sooner.
-constexpr size_t kLeastShare = 2;
+// Where more than one in so many is expired, choosing anew is sooner; some are never too many.
+constexpr size_t kLeastShare = 8;
+constexpr size_t kSome = 64;
+// Choosing anew takes 1.6 times as long with what is kept for steps. After a step that was in vain
+// nothing is kept once, after the next three times, and so on up to this often.
+constexpr uint32_t kMostPlain = 31;
 
 /// Nothing that bends quality depends on the eye.
 bool rigid(const Modifiers& modifiers) {
@@ -27,8 +31,15 @@ void Stepper::step(const View& view, Cut& cut, const Job& job) {
     refuse_nonsense(view);
     if (table_->kinds() != view.kinds)
         fail(Status::Internal, "the table was made for other kinds");
-    if (!known_ || !steps(view) || !move(view, cut, job))
-        choose_anew(view, cut, job);
+    if (known_) {
+        if (steps(view) && move(view, cut, job)) {
+            in_vain_ = 0;
+            return;
+        }
+        in_vain_ = std::min(2 * in_vain_ + 1, kMostPlain);
+        plain_ = in_vain_;
+    }
+    choose_anew(view, cut, job);
 }
 
 /// Whether the view differs from the last alone in where the eye is, what way it looks, and in lenses
@@ -50,7 +61,9 @@ bool Stepper::steps(const View& view) const {
 void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     known_ = false;
     field_.reset();
-    if (!rigid(view.modifiers) || view.camera.orthographic) {  // nothing kept could be used
+    const bool plain = plain_ > 0;
+    plain_ -= plain ? 1 : 0;
+    if (plain || !rigid(view.modifiers) || view.camera.orthographic) {
         cut = choose(*table_, view, job);
         looked_at_ = cut.nodes.size();
         return;
@@ -96,7 +109,7 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
     kept_.slack.find_expired(walk_->travel, expired_);
     if (!change_lenses(view.modifiers.lenses, cut))
         return false;
-    if (kLeastShare * expired_.size() > cut.nodes.size())
+    if (expired_.size() > std::max(kSome, cut.nodes.size() / kLeastShare))
         return false;
     looked_at_ = expired_.size();
     find_edits(cut, job);
