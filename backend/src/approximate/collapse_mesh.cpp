@@ -271,7 +271,8 @@ void shrink(CollapseMesh& mesh) {
     }
 }
 
-Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made) {
+Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made,
+             std::span<const glm::vec3> corner_normals) {
     constexpr double kMost = std::numeric_limits<float>::max();
     Mesh out;
     out.triangles.reserve(mesh.live);
@@ -291,6 +292,9 @@ Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made) {
                 normal = &face;
             else if (mesh.has_normals)
                 normal = &mesh.normals[wedge];
+            const size_t at = 3 * i + static_cast<size_t>(corner);
+            if (!corner_normals.empty() && corner_normals[at] != glm::vec3(0.0f))
+                normal = &corner_normals[at];
             // A vertex may end just outside the input's box, which may be as large as floats go.
             const glm::dvec3 place =
                 glm::clamp(mesh.center + mesh.points[vertex] * mesh.scale, -kMost, kMost);

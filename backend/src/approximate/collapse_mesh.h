@@ -75,7 +75,9 @@ void compact(CollapseMesh& mesh, Adjacency* adjacency = nullptr);
 void shrink(CollapseMesh& mesh);
 
 /// Back to metres; vertices are split only where attributes differ. `vertices`, when given, gets
-/// the vertex of `mesh` that each of the result's was.
-Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr);
+/// the vertex of `mesh` that each of the result's was. `corner_normals`: empty, or three a triangle,
+/// each shown in place of its wedge's unless it is zero.
+Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr,
+             std::span<const glm::vec3> corner_normals = {});
 
 }  // namespace lodestone::approximate

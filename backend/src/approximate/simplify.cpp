@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/simplify.h"
 
+#include "approximate/corner_normals.h"
 #include "approximate/fit.h"
 #include "approximate/pass.h"
 
@@ -45,9 +46,9 @@ Mesh first_triangles(const Mesh& mesh, size_t count) {
 }
 
 /// The vertices that ended up in each place, from the collapses so far.
-TracedLevel traced(CollapseMesh& mesh) {
+TracedLevel traced(CollapseMesh& mesh, std::span<const glm::vec3> normals) {
     TracedLevel level;
-    level.mesh = extract(mesh, &level.places);
+    level.mesh = extract(mesh, &level.places, normals);
     std::vector<uint32_t> place_of(mesh.merged.size(), kNone);  // by first number
     for (uint32_t v = 0; v < mesh.ids.size(); ++v)
         place_of[mesh.ids[v]] = v;
@@ -124,7 +125,9 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
             if (puts_back && reached)
                 options_of_fit.insert = std::min(spare, (targets[next] - working.live) / 2);
             fit(working, mesh, adjacency, options_of_fit, job);
-            results.push_back(taken(working));
+            if (options_of_fit.insert > 0 && !working.normals.empty())
+                adjacency.build(working);
+            results.push_back(taken(working, corner_normals(working, mesh, adjacency, job)));
             last = working.live;
         }
         if (!reached)
@@ -140,7 +143,9 @@ std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targe
                                  const SimplifyOptions& options, const Job& job) {
     return chain<Mesh>(
         mesh, {}, false, targets, options, job, [](const Mesh& given) { return given; },
-        [](const CollapseMesh& working) { return extract(working); });
+        [](const CollapseMesh& working, std::span<const glm::vec3> normals) {
+            return extract(working, nullptr, normals);
+        });
 }
 
 std::vector<TracedLevel> simplify_traced(const Mesh& mesh,
@@ -152,8 +157,7 @@ std::vector<TracedLevel> simplify_traced(const Mesh& mesh,
             fail(Status::InvalidArgument, "a pose of ", positions.size(), " positions for ",
                  mesh.positions.size(), " vertices");
     }
-    return chain<TracedLevel>(mesh, others, true, targets, options, job, untouched,
-                              [](CollapseMesh& working) { return traced(working); });
+    return chain<TracedLevel>(mesh, others, true, targets, options, job, untouched, traced);
 }
 
 Mesh simplify(const Mesh& mesh, size_t triangles, const SimplifyOptions& options, const Job& job) {
