@@ -19,12 +19,19 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
     struct Matrix {
         float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
         float mass = 0, most = 0;
+        glm::vec3 times(const glm::vec3& p) const {
+            return {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z,
+                    xz * p.x + yz * p.y + zz * p.z};
+        }
     };
     const size_t count = mesh.points.size();
     std::vector<Matrix> matrices(count);
+    std::vector<glm::vec3> pulls(count, glm::vec3(0.0f));  // where nothing has moved yet, at first
     for (const FitSample& s : samples) {
         const Triangle& c = mesh.triangles[s.triangle];
+        const glm::vec3 pull = (s.area * s.miss) * s.toward;
         for (int i = 0; i < 3; ++i) {
+            pulls[c[i]] += s.weights[i] * pull;
             const float w = s.area * s.weights[i] * s.weights[i];
             Matrix& m = matrices[c[i]];
             m.xx += w * s.toward.x * s.toward.x;
@@ -64,24 +71,20 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
         m = std::isfinite(f) ? inverse : Matrix{};
     }
     moves.assign(count, glm::vec3(0.0f));
-    std::vector<glm::vec3> pulls(count);
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        std::fill(pulls.begin(), pulls.end(), glm::vec3(0.0f));
-        for (const FitSample& s : samples) {
-            const Triangle& c = mesh.triangles[s.triangle];
-            const glm::vec3 moved =
-                s.weights[0] * moves[c.x] + s.weights[1] * moves[c.y] + s.weights[2] * moves[c.z];
-            const glm::vec3 pull = (s.area * (s.miss - glm::dot(moved, s.toward))) * s.toward;
-            for (int i = 0; i < 3; ++i)
-                pulls[c[i]] += s.weights[i] * pull;
+        if (iteration > 0) {
+            std::fill(pulls.begin(), pulls.end(), glm::vec3(0.0f));
+            for (const FitSample& s : samples) {
+                const Triangle& c = mesh.triangles[s.triangle];
+                const glm::vec3 moved = s.weights[0] * moves[c.x] + s.weights[1] * moves[c.y] +
+                                        s.weights[2] * moves[c.z];
+                const glm::vec3 pull = (s.area * (s.miss - glm::dot(moved, s.toward))) * s.toward;
+                for (int i = 0; i < 3; ++i)
+                    pulls[c[i]] += s.weights[i] * pull;
+            }
         }
-        for (size_t v = 0; v < count; ++v) {
-            const Matrix& m = matrices[v];
-            const glm::vec3& p = pulls[v];
-            moves[v] += glm::vec3(m.xx * p.x + m.xy * p.y + m.xz * p.z,
-                                  m.xy * p.x + m.yy * p.y + m.yz * p.z,
-                                  m.xz * p.x + m.yz * p.y + m.zz * p.z);
-        }
+        for (size_t v = 0; v < count; ++v)
+            moves[v] += matrices[v].times(pulls[v]);
     }
     for (size_t v = 0; v < count; ++v) {
         const float square = glm::dot(moves[v], moves[v]);
