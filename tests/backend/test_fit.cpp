@@ -49,8 +49,8 @@ std::vector<glm::vec3> corners_of(const Mesh& mesh) {
 
 /// Mean distance of samples of the original from a mesh brought to a target and fitted.
 double mean_after(const Mesh& source, size_t target, const FitOptions& options) {
-    CollapseMesh mesh = open(source, {});
     Adjacency adjacency;
+    CollapseMesh mesh = open(source, {}, {}, &adjacency);
     Reducer(mesh, {}).reduce(
         target, {}, [] {}, adjacency);
     fit(mesh, source, adjacency, options, {});
@@ -83,8 +83,8 @@ TEST(Fit, TrianglesWithVerticesOfTheirOwnAreFittedLikeWeldedOnes) {
 
 TEST(Fit, BothSidesOfATextureSeamHaveTheirPlace) {
     const Mesh mesh = shapes::seamed_cylinder(64, 40);
-    CollapseMesh working = open(mesh, {});
     Adjacency adjacency;
+    CollapseMesh working = open(mesh, {}, {}, &adjacency);
     Reducer(working, {})
         .reduce(
             800, {}, [] {}, adjacency);

@@ -24,12 +24,13 @@ namespace {
 /// A mesh brought to a target, fitted, with its samples.
 struct Reduced {
     Mesh source;
-    CollapseMesh mesh;
     Adjacency adjacency;
+    CollapseMesh mesh;
     FitSamples samples;
     std::unique_ptr<FitPlaces> places;
 
-    Reduced(const Mesh& from, size_t target) : source(from), mesh(open(source, {})) {
+    Reduced(const Mesh& from, size_t target)
+        : source(from), mesh(open(source, {}, {}, &adjacency)) {
         SimplifyOptions options;
         options.mode = SimplifyMode::Best;
         Reducer(mesh, options)

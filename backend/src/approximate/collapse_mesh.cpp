@@ -135,7 +135,7 @@ void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<
 
 }  // namespace
 
-CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
+CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, Adjacency* adjacency) {
     CollapseMesh mesh;
     mesh.has_normals = !source.normals.empty();
     Box3 box;
@@ -173,7 +173,8 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     job.check();
     split_layers(mesh);
     job.check();
-    split_fans(mesh);
+    Adjacency lists;
+    split_fans(mesh, lists);
     job.check();
     find_parts(mesh);
     mesh.facets.resize(mesh.triangles.size());
@@ -192,6 +193,11 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others) {
     mesh.flat_normals = mesh.has_normals && shows_faces(mesh, source);
     make_wedges(mesh, source);
     job.check();
+    const std::vector<uint32_t>& starts = lists.first;
+    if (std::adjacent_find(starts.begin(), starts.end()) != starts.end())
+        compact(mesh, &lists);
+    if (adjacency != nullptr)
+        *adjacency = std::move(lists);
     return mesh;
 }
 

@@ -61,11 +61,12 @@ struct CollapseMesh {
 /// Positions of the input's vertices in other frames, each as many as it has and finite.
 using OtherPositions = std::span<const std::vector<glm::vec3>>;
 
-/// Leaves out triangles with non-finite vertices and those with two corners in one place. Not
-/// compact: vertices that nothing uses are still there.
-CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {});
-
 struct Adjacency;
+
+/// Leaves out triangles with non-finite vertices and those with two corners in one place. Compact;
+/// fills `adjacency`, when given.
+CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {},
+                  Adjacency* adjacency = nullptr);
 
 /// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when given,
 /// which takes less time than building it afterwards.

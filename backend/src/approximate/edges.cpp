@@ -388,12 +388,13 @@ uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Eff
 }
 
 void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
-                 uint32_t limit, const Job& job) {
+                 uint32_t limit, double held, const Job& job) {
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
         Chunk& chunk = chunks_[i];
-        const size_t most = size_t{2} * (chunk.last - chunk.first);
-        std::vector<Candidate> taken(most / 2 + 1);
+        const uint32_t vertices = chunk.last - chunk.first;
+        const auto most = static_cast<size_t>(held * vertices);
+        std::vector<Candidate> taken(vertices + 1);
         size_t count = 0;
         const auto take = [&](const Candidate& candidate) {
             taken[count] = candidate;

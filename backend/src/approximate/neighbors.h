@@ -89,6 +89,19 @@ public:
         return true;
     }
 
+    /// After find_fan() has found one: it is no several fans. `count`: triangles of the ring.
+    bool is_one(size_t count) const {
+        uint32_t at = end_;
+        for (size_t i = 1; i < count; ++i) {
+            if (open_ && at == begin_)
+                return false;
+            at = before_[at];
+            if (!open_ && at == end_)
+                return false;
+        }
+        return true;
+    }
+
     /// Of an open fan: the neighbors across its two borders, by the triangles on them.
     uint32_t first_corner() const { return to_[begin_]; }
     uint32_t last_corner() const { return from_[end_]; }

@@ -50,6 +50,19 @@ void Parts::measure(const CollapseMesh& mesh, double weight) {
     parts_.pop_back();
 }
 
+void Parts::count(const CollapseMesh& mesh) {
+    if (parts_.empty())
+        return;
+    std::vector<uint32_t> counts(mesh.part_count, 0);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (!mesh.dead(i))
+            ++counts[mesh.parts[mesh.triangles[i].x]];
+    }
+    for (Part& part : parts_)
+        part.triangles = counts[part.part];
+    std::erase_if(parts_, [](const Part& part) { return part.triangles == 0; });
+}
+
 size_t Parts::remove(CollapseMesh& mesh, const std::vector<uint8_t>& doomed) const {
     size_t gone = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -14,10 +14,12 @@ struct Part {
 
 class Parts {
 public:
-    /// Collects the parts still there; with one left the list is empty (it is never removed).
+    /// Collects the parts; with one the list is empty (it is never removed).
     /// The cost is `weight` x the second moment of its area about its centroid: what squeezing it
-    /// to a point does.
+    /// to a point does. Asked before the first pass to a target: collapses must not make a part look smaller.
     void measure(const CollapseMesh& mesh, double weight);
+    /// What is left of them before another pass.
+    void count(const CollapseMesh& mesh);
 
     /// Cheapest first, without the dearest (which stays whatever happens).
     const std::vector<Part>& removable() const { return parts_; }

@@ -41,6 +41,11 @@ constexpr size_t kRounds = 4;
 constexpr double kGone = 0.8;
 /// A pass that takes less than this share of what it is to take was given too few candidates.
 constexpr double kPoor = 0.35;
+/// Candidates that a chunk holds for each of its vertices, the cheapest: with all that are within
+/// the limit, where the surface is plain its chunks go before dearer ones do. Enough for any share
+/// as long as most of them can be collapsed; where they cannot, more.
+constexpr double kHeld = 1.15;
+constexpr double kMostHeld = 2;
 /// So many edges ahead memory is asked for what they need.
 constexpr size_t kLists = 12;
 constexpr size_t kTriangles = 4;
@@ -270,7 +275,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const size_t before = mesh_.live;
     if (effort == Effort::Anything)
         drop_copies(mesh_);
-    compact(mesh_, &adjacency_);
+    if (begun_ || effort == Effort::Anything)
+        compact(mesh_, &adjacency_);
     if (mesh_.live <= target)
         return before - mesh_.live;
     edges_.build(mesh_, adjacency_, options_, !begun_, job);
@@ -280,9 +286,14 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
                 mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
         }
     }
+    if (!options_.keep_topology) {
+        if (measured_)
+            parts_.count(mesh_);
+        else
+            parts_.measure(mesh_, options_.part_weight);
+        measured_ = true;
+    }
     begun_ = true;
-    if (!options_.keep_topology)
-        parts_.measure(mesh_, options_.part_weight);
 
     const size_t start = mesh_.live;
     const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
@@ -300,7 +311,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         limit = std::min(
             limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
     }
-    edges_.take(mesh_, adjacency_, effort, limit, job);
+    const bool usual = effort == Effort::Careful && reach_ == 1;
+    edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
     Batch(*this, effort, start, want, limit).run(job);
     // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
@@ -313,6 +325,8 @@ bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>&
     const Effort last = options_.keep_topology ? Effort::Rough : Effort::Anything;
     Effort effort = Effort::Careful;
     int slow_passes = 0;
+    adjacency_ = std::move(adjacency);
+    measured_ = false;
     while (mesh_.live > target) {
         const size_t wanted = mesh_.live - target;
         const size_t gone = pass(target, effort, job);

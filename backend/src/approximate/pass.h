@@ -21,11 +21,12 @@ struct Pace {
 
 class Reducer {
 public:
+    /// `mesh` must be compact.
     Reducer(CollapseMesh& mesh, const SimplifyOptions& options);
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
-    /// `after_pass` is called after every pass.
-    /// The mesh is compact then; `adjacency` gets its lists.
+    /// `after_pass` is called after every pass. `adjacency` holds the mesh's lists, at first and, as
+    /// the mesh is compact again, at the end.
     bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
                 Adjacency& adjacency);
 
@@ -41,6 +42,7 @@ private:
     Edges edges_;
     Parts parts_;
     bool begun_ = false;
+    bool measured_ = false;      // parts, as they were before the first pass to a target
     double reach_ = 1;           // so many times more candidates
     std::vector<uint8_t> used_;  // as an end in this pass, by vertex
 };

@@ -80,8 +80,7 @@ void split_layers(CollapseMesh& mesh) {
     }
 }
 
-void split_fans(CollapseMesh& mesh) {
-    Adjacency adjacency;
+void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
     adjacency.build(mesh);
     Marks seen;
     seen.resize(mesh.points.size());
@@ -98,9 +97,9 @@ void split_fans(CollapseMesh& mesh) {
         for (uint32_t v = first; v < std::min(vertices, first + kChunk); ++v) {
             for (const uint32_t t : adjacency.ahead(v))
                 __builtin_prefetch(&mesh.triangles[t]);
-            const std::span<uint32_t> ring = adjacency.around(v);
-            whole[v] =
-                neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None && neighbors.order(ring);
+            const std::span<const uint32_t> ring = adjacency.around(v);
+            whole[v] = neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+                       neighbors.is_one(ring.size());
         }
     });
     for (uint32_t v = 0; v < vertices; ++v) {
@@ -138,6 +137,8 @@ void split_fans(CollapseMesh& mesh) {
             }
         }
     }
+    if (mesh.points.size() > vertices)
+        adjacency.build(mesh);
 }
 
 void drop_copies(CollapseMesh& mesh) {

@@ -12,8 +12,9 @@ namespace lodestone::approximate {
 /// lowest vertices.
 void split_layers(CollapseMesh& mesh);
 
-/// A vertex whose triangles form several fans that share no edge gets one copy per fan.
-void split_fans(CollapseMesh& mesh);
+/// A vertex whose triangles form several fans that share no edge gets one copy per fan. `adjacency`
+/// gets the lists of the mesh as it is then.
+void split_fans(CollapseMesh& mesh, Adjacency& adjacency);
 
 /// Marks all but the first of coinciding triangles dead, whichever side they show.
 void drop_copies(CollapseMesh& mesh);

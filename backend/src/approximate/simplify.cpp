@@ -10,7 +10,7 @@
 namespace lodestone::approximate {
 namespace {
 
-constexpr FitOptions kFastFit{8, 0.5, 1, 1, 4, false};
+constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false};
 constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true};
 /// Mode best collapses this share of the triangles too many and puts them back where they are missed
 /// most: what is farthest off is a few spots.
@@ -96,7 +96,8 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     }
     if (next == targets.size())
         return results;
-    CollapseMesh working = open(mesh, job, others);
+    Adjacency adjacency;
+    CollapseMesh working = open(mesh, job, others, &adjacency);
     if (working.live == 0) {
         for (; next < targets.size() && !tracked; ++next)
             results.push_back(whole(first_triangles(mesh, targets[next])));
@@ -105,7 +106,6 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     const size_t start = working.live;
     const size_t goal = targets.back();
     Reducer reducer(working, options);
-    Adjacency adjacency;
     const bool best = options.mode == SimplifyMode::Best;
     for (; next < targets.size(); ++next) {
         // What every place has to come from an input vertex for is left alone.
