@@ -85,6 +85,14 @@ Mesh drilled_plate(uint32_t cells) {
     return mesh;
 }
 
+/// Vertices at one position are one.
+Mesh welded(Mesh mesh) {
+    const std::vector<uint32_t> first = weld(mesh);
+    for (Triangle& t : mesh.triangles)
+        t = Triangle(first[t.x], first[t.y], first[t.z]);
+    return mesh;
+}
+
 SimplifyOptions keeping(SimplifyMode mode) {
     SimplifyOptions options;
     options.mode = mode;
@@ -105,6 +113,21 @@ TEST(Topology, TorusKeepsItsHandleHoweverFewTrianglesAreWanted) {
             EXPECT_EQ(found.non_manifold, 0u) << target;
             EXPECT_GE(out.triangles.size(), 14u) << "no torus has fewer";
             EXPECT_LE(out.triangles.size(), 200u) << target;
+        }
+    }
+}
+
+TEST(Topology, TunnelsThatCloseMakeNoEdgeNonManifold) {
+    const Mesh plate = drilled_plate(21);
+    for (const SimplifyMode mode : {SimplifyMode::Fast, SimplifyMode::Best}) {
+        for (const size_t target : {1000u, 600u, 300u, 100u}) {
+            SimplifyOptions options;
+            options.mode = mode;
+            const Mesh out = simplify(plate, target, options);
+            EXPECT_LE(out.triangles.size(), target);
+            const Topology found = topology_of(welded(out));
+            EXPECT_EQ(found.open, 0u) << target;
+            EXPECT_EQ(found.non_manifold, 0u) << target;
         }
     }
 }

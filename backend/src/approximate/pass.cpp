@@ -2,6 +2,7 @@
 #include "approximate/pass.h"
 
 #include "approximate/edge_costs.h"
+#include "approximate/pinches.h"
 #include "approximate/sheets.h"
 #include "base/parallel.h"
 
@@ -287,11 +288,14 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         }
     }
     if (!options_.keep_topology) {
-        if (measured_)
+        if (cut_)
+            find_parts(mesh_);
+        if (measured_ && !cut_)
             parts_.count(mesh_);
         else
             parts_.measure(mesh_, options_.part_weight);
         measured_ = true;
+        cut_ = false;
     }
     begun_ = true;
 
@@ -314,6 +318,8 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const bool usual = effort == Effort::Careful && reach_ == 1;
     edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
     Batch(*this, effort, start, want, limit).run(job);
+    if (effort >= Effort::Topology)
+        cut_ = cut_pinches(mesh_);
     // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
     reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);

@@ -43,6 +43,7 @@ private:
     Parts parts_;
     bool begun_ = false;
     bool measured_ = false;      // parts, as they were before the first pass to a target
+    bool cut_ = false;           // parts may have become several
     double reach_ = 1;           // so many times more candidates
     std::vector<uint8_t> used_;  // as an end in this pass, by vertex
 };

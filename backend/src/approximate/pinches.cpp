@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "approximate/pinches.h"
+
+#include "approximate/adjacency.h"
+#include "approximate/neighbors.h"
+#include "base/disjoint_sets.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace lodestone::approximate {
+namespace {
+
+/// Fans within fans, and rows of edges: each round takes the innermost, or the ends.
+constexpr int kMostNested = 8;
+constexpr int kMostSweeps = 16;
+/// So much of the way to the middle of its fan a copy moves, that it is at a place of its own.
+constexpr double kApart = 1.0 / 64;
+
+/// The fans around one vertex.
+class PinchCutter {
+public:
+    explicit PinchCutter(CollapseMesh& mesh) : mesh_(mesh) {}
+    /// Gives all fans that close but one vertices of their own. False: there were none.
+    bool cut(uint32_t vertex, std::span<const uint32_t> ring);
+
+private:
+    /// A side of a triangle at the vertex.
+    struct Side {
+        uint32_t neighbor;
+        uint32_t at;  // in the ring
+        bool leaving;
+    };
+    /// What is not shared by two triangles, where a fan ends.
+    struct FanEnds {
+        uint32_t count = 0;
+        uint32_t neighbor = kNone;
+        uint32_t leaving = 0;
+        bool split = false;  // ends at two edges that others end at, too
+        bool closes() const { return !split && (count == 0 || (count == 2 && leaving == 1)); }
+    };
+    void find_fans(uint32_t vertex);
+    uint32_t copy(uint32_t vertex);
+    /// fan_ from a vertex to its copy.
+    void give(uint32_t vertex, uint32_t to);
+    uint32_t copy_wedge(uint32_t wedge, uint32_t to);
+    /// Moves the copy that fan_ has, unless a triangle would turn over.
+    void set_apart(uint32_t fresh);
+
+    CollapseMesh& mesh_;
+    std::vector<uint32_t> ring_;     // of the vertex, what is left of it
+    std::vector<uint32_t> parents_;  // fans, as sets of the ring's triangles
+    std::vector<Side> sides_;
+    std::vector<FanEnds> ends_;                                 // by root
+    std::vector<std::pair<uint32_t, uint32_t>> by_fan_;         // root and triangle
+    std::vector<uint32_t> fan_;                                 // triangles of one
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> wedges_;  // by copy and the one it had
+};
+
+void PinchCutter::find_fans(uint32_t vertex) {
+    const auto count = static_cast<uint32_t>(ring_.size());
+    sides_.clear();
+    for (uint32_t i = 0; i < count; ++i) {
+        const Ends ends = ends_of(mesh_.triangles[ring_[i]], vertex);
+        sides_.push_back({ends.next, i, true});
+        sides_.push_back({ends.last, i, false});
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.neighbor, a.at) < std::tie(b.neighbor, b.at);
+    });
+    parents_.resize(count);
+    std::iota(parents_.begin(), parents_.end(), 0u);
+    const auto each_edge = [&](const auto& visit) {
+        for (size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+            while (end < sides_.size() && sides_[end].neighbor == sides_[begin].neighbor)
+                ++end;
+            visit(begin, end);
+        }
+    };
+    each_edge([&](size_t begin, size_t end) {
+        if (end - begin == 2)
+            join(parents_, sides_[begin].at, sides_[begin + 1].at);
+    });
+    ends_.assign(count, {});
+    each_edge([&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end && end - begin > 2; ++i) {
+            FanEnds& fan = ends_[root_of(parents_, sides_[i].at)];
+            fan.split |= fan.count > 0 && fan.neighbor != sides_[i].neighbor;
+            fan.neighbor = sides_[i].neighbor;
+            fan.leaving += sides_[i].leaving;
+            ++fan.count;
+        }
+    });
+}
+
+uint32_t PinchCutter::copy(uint32_t vertex) {
+    const auto fresh = static_cast<uint32_t>(mesh_.points.size());
+    const auto id = static_cast<uint32_t>(mesh_.merged.size());
+    mesh_.points.push_back(glm::dvec3(mesh_.points[vertex]));
+    for (OtherPose& other : mesh_.others)
+        other.points.push_back(glm::dvec3(other.points[vertex]));
+    mesh_.parts.push_back(uint32_t{mesh_.parts[vertex]});
+    mesh_.sources.push_back(uint32_t{mesh_.sources[mesh_.ids[vertex]]});
+    mesh_.ids.push_back(id);
+    mesh_.merged.push_back(id);
+    return fresh;
+}
+
+void PinchCutter::give(uint32_t vertex, uint32_t to) {
+    for (const uint32_t t : fan_) {
+        const int corner = corner_of(mesh_.triangles[t], vertex);
+        mesh_.triangles[t][corner] = to;
+        if (!mesh_.wedges.empty()) {
+            uint32_t& wedge = mesh_.wedges[t][corner];
+            wedge = copy_wedge(wedge, to);
+        }
+    }
+    set_apart(to);
+}
+
+uint32_t PinchCutter::copy_wedge(uint32_t wedge, uint32_t to) {
+    const auto [entry, fresh] = wedges_.try_emplace({to, wedge}, kNone);
+    const auto copy_of = [&](auto& values) {
+        if (values.empty())
+            return;
+        const auto value = values[wedge];
+        entry->second = static_cast<uint32_t>(values.size());
+        values.push_back(value);
+    };
+    if (fresh) {
+        copy_of(mesh_.normals);
+        copy_of(mesh_.uvs);
+        copy_of(mesh_.colors);
+    }
+    return entry->second;
+}
+
+void PinchCutter::set_apart(uint32_t fresh) {
+    glm::dvec3 middle(0.0);
+    for (const uint32_t t : fan_) {
+        const Triangle& c = mesh_.triangles[t];
+        middle += (mesh_.points[c.x] + mesh_.points[c.y] + mesh_.points[c.z]) / 3.0;
+    }
+    middle /= static_cast<double>(fan_.size());
+    const glm::dvec3 before = mesh_.points[fresh];
+    mesh_.points[fresh] += kApart * (middle - before);
+    for (const uint32_t t : fan_) {
+        if (!(glm::dot(mesh_.facet_of(mesh_.triangles[t]), glm::dvec3(mesh_.facets[t])) > 0)) {
+            mesh_.points[fresh] = before;
+            return;
+        }
+    }
+    for (const uint32_t t : fan_)
+        mesh_.facets[t] = glm::vec3(mesh_.facet_of(mesh_.triangles[t]));
+}
+
+bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring) {
+    ring_.assign(ring.begin(), ring.end());
+    wedges_.clear();
+    for (int nested = 0; nested < kMostNested; ++nested) {
+        find_fans(vertex);
+        by_fan_.clear();
+        for (uint32_t i = 0; i < ring_.size(); ++i)
+            by_fan_.emplace_back(root_of(parents_, i), ring_[i]);
+        std::sort(by_fan_.begin(), by_fan_.end());
+        // One keeps the vertex: the first that does not close, else the first.
+        uint32_t keeps = 0;
+        while (keeps < ring_.size() && (parents_[keeps] != keeps || ends_[keeps].closes()))
+            ++keeps;
+        keeps = keeps < ring_.size() ? keeps : 0;
+        ring_.clear();
+        const size_t all = by_fan_.size();
+        for (size_t begin = 0, end = 0; begin < all; begin = end) {
+            const uint32_t fan = by_fan_[begin].first;
+            fan_.clear();
+            for (; end < all && by_fan_[end].first == fan; ++end)
+                fan_.push_back(by_fan_[end].second);
+            if (fan == keeps || !ends_[fan].closes())
+                ring_.insert(ring_.end(), fan_.begin(), fan_.end());
+            else
+                give(vertex, copy(vertex));
+        }
+        if (ring_.size() == all)
+            break;
+    }
+    return ring_.size() < ring.size();
+}
+
+}  // namespace
+
+bool cut_pinches(CollapseMesh& mesh) {
+    const size_t before = mesh.points.size();
+    bool cut = true;
+    for (int sweep = 0; cut && sweep < kMostSweeps; ++sweep) {
+        cut = false;
+        Adjacency adjacency;
+        adjacency.build(mesh);
+        Neighbors neighbors;
+        PinchCutter cutter(mesh);
+        const auto vertices = static_cast<uint32_t>(mesh.points.size());
+        for (uint32_t v = 0; v < vertices; ++v) {
+            const std::span<const uint32_t> ring = adjacency.around(v);
+            const bool one = neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+                             neighbors.is_one(ring.size());
+            if (!one && cutter.cut(v, ring))
+                cut = true;
+        }
+    }
+    return mesh.points.size() > before;
+}
+
+}  // namespace lodestone::approximate
