@@ -124,3 +124,23 @@ TEST(Fit, CreasesDoNotDrawWhatLiesBesideThemAway) {
     std::cout << squares << " -> " << distances << '\n';
     EXPECT_LT(distances, 0.98 * squares);
 }
+
+// Corners stuck out of a ball 3.4 times as far as the middles of sides lay inside.
+TEST(Fit, CoarseRoundThingsAreNotSeenLarger) {
+    const Mesh ball = shapes::sphere(1, 5);
+    SimplifyOptions options;
+    options.mode = SimplifyMode::Best;
+    const Mesh coarse = simplify(ball, 128, options);
+    double out = 0;
+    for (const glm::vec3& p : coarse.positions)
+        out += glm::length(p) - 1;
+    out /= static_cast<double>(coarse.positions.size());
+    double in = 0;
+    for (const Triangle& t : coarse.triangles) {
+        const glm::vec3 sum = coarse.positions[t.x] + coarse.positions[t.y] + coarse.positions[t.z];
+        in += 1 - glm::length(sum) / 3;
+    }
+    in /= static_cast<double>(coarse.triangles.size());
+    std::cout << out << " out, " << in << " in\n";
+    EXPECT_LT(out, 3 * in);
+}

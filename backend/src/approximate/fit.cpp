@@ -16,6 +16,23 @@ constexpr size_t kFewSamples = 1000;
 constexpr size_t kSamplesToFlip = 3;
 /// Sweeps, times the square root of the original's triangles for each vertex.
 constexpr double kSweeps = 0.7;
+/// For each sweep beyond the least, samples that a closed part lies outside of count so much more.
+constexpr float kOutside = 0.1f;
+
+/// Of each part: 1 closed, 0 a flat sheet, which has no inside. Area vectors of what is closed have
+/// no sum.
+std::vector<float> closed_share(const CollapseMesh& mesh) {
+    std::vector<glm::vec3> sums(mesh.part_count, glm::vec3(0.0f));
+    std::vector<float> areas(mesh.part_count, 0);
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const uint32_t part = mesh.parts[mesh.triangles[t].x];
+        sums[part] += mesh.facets[t];
+        areas[part] += glm::length(mesh.facets[t]);
+    }
+    for (size_t part = 0; part < areas.size(); ++part)
+        areas[part] = areas[part] > 0 ? 1 - glm::length(sums[part]) / areas[part] : 0;
+    return areas;
+}
 
 /// What misses by more than the mean of its kind (surface, outline) counts in proportion to the
 /// distance, not to its square: least squares of reweighted samples. What fits already is then not
@@ -34,6 +51,15 @@ void weigh_by_distance(FitSamples& samples) {
         const float mean = means[s.source == kNone];
         if (std::abs(s.miss) > mean)
             s.area *= mean / std::abs(s.miss);
+    }
+}
+
+/// What lies outside of the original shows in silhouettes, what lies inside does not.
+void weigh_outside(FitSamples& samples, const CollapseMesh& mesh, const std::vector<float>& closed,
+                   float more) {
+    for (FitSample& s : samples) {
+        if (s.source != kNone && s.miss < 0)
+            s.area *= 1 + more * closed[mesh.parts[mesh.triangles[s.triangle].x]];
     }
 }
 
@@ -84,6 +110,8 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         static_cast<double>(source.triangles.size()) / static_cast<double>(mesh.points.size());
     const int sweeps = std::clamp(static_cast<int>(std::lround(kSweeps * std::sqrt(coarse))),
                                   options.least_sweeps, options.most_sweeps);
+    const float outside = kOutside * static_cast<float>(sweeps - options.least_sweeps);
+    const std::vector<float> closed = outside > 0 ? closed_share(mesh) : std::vector<float>();
     FitSamples samples;
     std::vector<glm::vec3> moves;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -100,6 +128,8 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         sample_outline(places, adjacency, job, samples);
         if (options.careful)
             weigh_by_distance(samples);
+        if (outside > 0)
+            weigh_outside(samples, mesh, closed, outside);
         solve_fit(mesh, samples, options.iterations, moves);
         move(places, adjacency, moves);
     }
