@@ -116,8 +116,10 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
                     const Whole& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one that
     // shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or more):
-    // the most solids that may pay are looked for among those.
+    // the most solids that may pay are looked for among those. Fewer are hardly ever much nearer: where
+    // not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
+    constexpr double kFewerNearer = 0.75;
     constexpr uint32_t kFewRays = 1024;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
@@ -129,12 +131,18 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     few.rays = kFewRays;
     few.measured = 0;
     size_t pays = 0;
+    std::vector<Candidate> rough;  // fewest solids first
     for (const approximate::Clustered& level :
-         approximate::composites(mesh, judge.skin(), judge.attributes(), few, job)) {
-        Candidate rough = candidate_of(level);
-        judge.compare_pictures(rough, {}, job);
-        if (would_pay(rough, kNearer * rough.error, candidates, whole))
-            pays = rough.composite->solids.size();
+         approximate::composites(mesh, judge.skin(), judge.attributes(), few, job))
+        rough.push_back(candidate_of(level));
+    for (bool hopeless = false; pays == 0 && !hopeless && !rough.empty(); rough.pop_back()) {
+        judge.compare_pictures(rough.back(), {}, job);
+        const double error = kNearer * rough.back().error;
+        if (would_pay(rough.back(), error, candidates, whole))
+            pays = rough.back().composite->solids.size();
+        hopeless = std::none_of(rough.begin(), rough.end(), [&](const Candidate& other) {
+            return would_pay(other, kFewerNearer * error, candidates, whole);
+        });
     }
     std::vector<approximate::Clustered> levels;
     if (pays > 0) {
