@@ -2,6 +2,8 @@
 // Guards composites: as much surface as the original, nested, matched cluster by cluster.
 #include "approximate/composite.h"
 #include "approximate/stand_in_material.h"
+#include "approximate/visible_solids.h"
+#include "approximate/whole.h"
 #include "backend/foliage.h"
 #include "backend/with_rays.h"
 #include "measure/visible.h"
@@ -191,6 +193,31 @@ TEST_F(Composites, TheWholeIsMatchedInAreaCentroidAndTensor) {
             EXPECT_LT(std::sqrt(square), 0.01);
         }
     }
+}
+
+TEST_F(Composites, AreaAndCentroidAreThoseThatAllRaysSee) {
+    // Rounds stop within .1 and .05 % of them.
+    const glm::dmat3 straight(1.0);
+    Composite composite{{{false, {{0, 0, 1}, straight, {1, 0.8, 0.9}}, 0},
+                         {true, {{0.9, 0.2, 1.2}, straight, {0.5, 0.4, 0.6}}, 1},
+                         {false, {{0.2, 0.7, 0.6}, straight, {0.5, 0.6, 0.4}}, 2}}};
+    const approximate::VisibleSolids visible(32768, 1);
+    const measure::SurfaceInertia before = visible.of(composite, 1, {});
+    Attributes wanted;
+    wanted.visible_area = 1.05 * before.area;
+    wanted.centroid = before.center + glm::dvec3(0.1, -0.05, 0.08);
+    wanted.moments = 1.1 * before.moments;
+    approximate::match_whole(composite, wanted, -10, visible, true, 12, {});
+    const measure::SurfaceInertia now = visible.of(composite, 1, {});
+    EXPECT_NEAR(now.area / wanted.visible_area, 1, 1e-5);
+    EXPECT_LT(glm::length(now.center - wanted.centroid), 1e-5);
+}
+
+TEST_F(Composites, OfACubeNoSolidSinksWhenTheWholeIsMoved) {
+    const Mesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
+    for (const Clustered& level :
+         approximate::composites(cube, nullptr, attributes_of(cube, 3), {1}))
+        EXPECT_GE(bound_of(level.composite).box.low.z, -1e-6) << level.composite.solids.size();
 }
 
 TEST_F(Composites, NoSolidReachesBelowTheGround) {

@@ -22,11 +22,11 @@ struct Clustered {
 
 struct CompositeOptions {
     uint64_t seed = 1;
-    uint32_t rays = 49152;      // that each of the last rounds of matching casts, a twelfth before
-    bool shape = true;          // match centroid and variances of the whole, not its area alone
-    int rounds = 12;            // of matching on the way, at most
-    uint32_t measured = 49152;  // rays that measure the mesh once more for this; 0: as `wanted` is
-    size_t most = 32;           // parts
+    uint32_t rays = 131072;      // of the last step of matching; rounds before: a quarter, a 32nd
+    bool shape = true;           // match centroid and variances of the whole, not its area alone
+    int rounds = 12;             // of matching on the way, at most
+    uint32_t measured = 131072;  // rays that measure the mesh once more for this; 0: as `wanted` is
+    size_t most = 32;            // parts
 };
 
 /// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:

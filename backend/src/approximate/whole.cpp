@@ -32,12 +32,48 @@ struct Miss {
         : area(of_area), centroid(of_centroid), shape(of_shape) {}
 };
 
+/// Area and centroid as all rays see them, set right by scaling and moving the solids alike, which
+/// hides nothing more of any. What stands keeps its foot and follows along Z by half, so all go
+/// farther.
+void settle(Composite& composite, const Attributes& wanted, double floor,
+            const VisibleSolids& visible, const Job& job) {
+    constexpr double kStands = 1e-6;  // radii of gyration
+    constexpr double kMostScale = 1.02;
+    std::vector<measure::SurfaceInertia> each;
+    const measure::SurfaceInertia now = visible.of(composite, 1, job, &each);
+    if (now.empty())
+        return;
+    const double scale =
+        std::clamp(std::sqrt(wanted.visible_area / now.area), 1 / kMostScale, kMostScale);
+    const glm::dvec3 pivot(now.center.x, now.center.y, floor);
+    std::vector<bool> stands;
+    double follows = 0;  // of a move along Z
+    for (size_t i = 0; i < each.size(); ++i) {
+        const Solid& solid = composite.solids[i];
+        stands.push_back(reach_of(solid.primitive, solid.box).low <=
+                         floor + kStands * wanted.radius_of_gyration());
+        follows += each[i].area / now.area * (stands[i] ? 0.5 : 1);
+    }
+    glm::dvec3 move = wanted.centroid - (pivot + scale * (now.center - pivot));
+    move.z /= std::clamp(follows, 0.5, 1.0);
+    for (size_t i = 0; i < each.size(); ++i) {
+        Primitive& primitive = composite.solids[i].primitive;
+        const bool box = composite.solids[i].box;
+        primitive.center = pivot + scale * (primitive.center - pivot) + move;
+        primitive.half_size *= scale;
+        if (stands[i])
+            primitive = standing_on(primitive, box, floor);
+        primitive = kept_above(primitive, box, floor);
+    }
+}
+
 }  // namespace
 
 void match_whole(Composite& composite, const Attributes& wanted, double floor,
                  const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
     // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
-    constexpr double kFew = 1.0 / 12;
+    constexpr double kFew = 1.0 / 32;
+    constexpr double kMany = 1.0 / 4;
     constexpr int kLast = 3;
     const Miss rough{0.004, 0.004, 0.004};
     const Miss exact{0.001, 0.0005, 0.001};
@@ -59,13 +95,13 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
     bool size = true;
     std::vector<measure::SurfaceInertia> each;
     for (int round = 0; last < kLast; ++round) {
-        measure::SurfaceInertia now = visible.of(composite, last > 0 ? 1 : kFew, job, &each);
+        measure::SurfaceInertia now = visible.of(composite, last > 0 ? kMany : kFew, job, &each);
         if (now.empty())
             break;
         size = size && (last > 0 || round < kPatience);
         if (last == 0 && (within(Miss(missing_of(now, wanted, size)), rough) || round >= rounds)) {
             ++last;
-            now = visible.of(composite, 1, job, &each);
+            now = visible.of(composite, kMany, job, &each);
             if (now.empty())
                 break;
         } else if (last > 0) {
@@ -92,6 +128,8 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
     }
     if (!best.solids.empty())
         composite = std::move(best);
+    if (shape)
+        settle(composite, wanted, floor, visible, job);
 }
 
 }  // namespace lodestone::approximate
