@@ -144,3 +144,28 @@ TEST(Fit, CoarseRoundThingsAreNotSeenLarger) {
     std::cout << out << " out, " << in << " in\n";
     EXPECT_LT(out, 3 * in);
 }
+
+// Bricks of four triangles became tetrahedra: from the side half of a wall showed the mortar behind.
+TEST(Fit, BricksOfFewTrianglesStayFlat) {
+    Mesh wall;
+    for (int i = 0; i < 30; ++i) {
+        const Mesh brick = shapes::box({0.3 * i, 0, 0}, {0.3 * i + 0.27, 0.022, 0.09});
+        const auto first = static_cast<uint32_t>(wall.positions.size());
+        wall.positions.insert(wall.positions.end(), brick.positions.begin(), brick.positions.end());
+        for (const Triangle& t : brick.triangles)
+            wall.triangles.push_back({t.x + first, t.y + first, t.z + first});
+    }
+    const Mesh coarse = simplify(separate(wall), 30 * 5, {});
+    ASSERT_GE(coarse.triangles.size(), 100u);
+    double seen = 0;
+    double tilted = 0;
+    for (const Triangle& t : coarse.triangles) {
+        const glm::vec3 facet =
+            glm::normalize(glm::cross(coarse.positions[t.y] - coarse.positions[t.x],
+                                      coarse.positions[t.z] - coarse.positions[t.x]));
+        (std::max({std::abs(facet.x), std::abs(facet.y), std::abs(facet.z)}) > 0.99f ? seen
+                                                                                     : tilted) += 1;
+    }
+    std::cout << seen << " along axes, " << tilted << " tilted\n";
+    EXPECT_LT(tilted, 0.1 * seen);
+}

@@ -18,6 +18,8 @@ constexpr size_t kSamplesToFlip = 3;
 constexpr double kSweeps = 0.7;
 /// For each sweep beyond the least, samples that a closed part lies outside of count so much more.
 constexpr float kOutside = 0.1f;
+constexpr uint32_t kFewTriangles = 8;
+constexpr float kClosed = 0.99f;
 
 /// Of each part: 1 closed, 0 a flat sheet, which has no inside. Area vectors of what is closed have
 /// no sum.
@@ -32,6 +34,18 @@ std::vector<float> closed_share(const CollapseMesh& mesh) {
     for (size_t part = 0; part < areas.size(); ++part)
         areas[part] = areas[part] > 0 ? 1 - glm::length(sums[part]) / areas[part] : 0;
     return areas;
+}
+
+/// Parts that enclose something with so few triangles that they cannot be near all of it: least
+/// squares would turn a board's slab into a tetrahedron, nearer in the mean and seen to be wrong.
+std::vector<bool> too_few(const CollapseMesh& mesh, const std::vector<float>& closed) {
+    std::vector<uint32_t> triangles(mesh.part_count, 0);
+    for (const glm::uvec3& triangle : mesh.triangles)
+        ++triangles[mesh.parts[triangle.x]];
+    std::vector<bool> few(mesh.part_count);
+    for (size_t part = 0; part < few.size(); ++part)
+        few[part] = triangles[part] <= kFewTriangles && closed[part] > kClosed;
+    return few;
 }
 
 /// What misses by more than the mean of its kind (surface, outline) counts in proportion to the
@@ -64,12 +78,14 @@ void weigh_outside(FitSamples& samples, const CollapseMesh& mesh, const std::vec
 }
 
 /// As far as no triangle turns over.
-void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::vec3>& moves) {
+void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::vec3>& moves,
+          const std::vector<bool>& still) {
     CollapseMesh& mesh = places.mesh();
     std::vector<glm::vec3>& points = places.points();
     for (uint32_t v = 0; v < points.size(); ++v) {
         glm::vec3 move = moves[v];
-        if (!std::isfinite(move.x + move.y + move.z) || glm::dot(move, move) == 0)
+        if (still[mesh.parts[v]] || !std::isfinite(move.x + move.y + move.z) ||
+            glm::dot(move, move) == 0)
             continue;
         const std::span<const uint32_t> ring = adjacency.around(v);
         const glm::dvec3 before = mesh.points[v];
@@ -111,7 +127,8 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
     const int sweeps = std::clamp(static_cast<int>(std::lround(kSweeps * std::sqrt(coarse))),
                                   options.least_sweeps, options.most_sweeps);
     const float outside = kOutside * static_cast<float>(sweeps - options.least_sweeps);
-    const std::vector<float> closed = outside > 0 ? closed_share(mesh) : std::vector<float>();
+    const std::vector<float> closed = closed_share(mesh);
+    const std::vector<bool> still = too_few(mesh, closed);
     FitSamples samples;
     std::vector<glm::vec3> moves;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -131,7 +148,7 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         if (outside > 0)
             weigh_outside(samples, mesh, closed, outside);
         solve_fit(mesh, samples, options.iterations, moves);
-        move(places, adjacency, moves);
+        move(places, adjacency, moves, still);
     }
     // Nothing moves after it: what misses most then misses less.
     insert_vertices(places, adjacency, samples, options.insert, job);
