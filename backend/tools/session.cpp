@@ -40,10 +40,10 @@ Progress::Progress(const char* what) {
             if (interrupted != 0)
                 cancel = 1;
             if (terminal && tick % 4 == 0) {
-                constexpr int kWidth = 40;
-                const int full = static_cast<int>(fraction * kWidth);
+                constexpr int kBar = 40;
+                const int full = static_cast<int>(fraction * kBar);
                 std::fprintf(stderr, "\r%s [%.*s%*s] %3.0f %%", what, full,
-                             "########################################", kWidth - full, "",
+                             "########################################", kBar - full, "",
                              100 * fraction);
                 std::fflush(stderr);
             }

@@ -121,7 +121,8 @@ void PinchCutter::give(uint32_t vertex, uint32_t to) {
 }
 
 uint32_t PinchCutter::copy_wedge(uint32_t wedge, uint32_t to) {
-    const auto [entry, fresh] = wedges_.try_emplace({to, wedge}, kNone);
+    const auto made = wedges_.try_emplace({to, wedge}, kNone);
+    const auto entry = made.first;
     const auto copy_of = [&](auto& values) {
         if (values.empty())
             return;
@@ -129,7 +130,7 @@ uint32_t PinchCutter::copy_wedge(uint32_t wedge, uint32_t to) {
         entry->second = static_cast<uint32_t>(values.size());
         values.push_back(value);
     };
-    if (fresh) {
+    if (made.second) {
         copy_of(mesh_.normals);
         copy_of(mesh_.uvs);
         copy_of(mesh_.colors);
