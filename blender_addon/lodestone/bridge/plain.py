@@ -26,7 +26,7 @@ _ASKED = attrgetter(
     "rigid_body",
     "library",
     "animation_data",
-    "instance_type",
+    "is_instancer",
     "is_holdout",
     "is_shadow_catcher",
     "visible_camera",
@@ -35,7 +35,7 @@ _ASKED = attrgetter(
     "visible_diffuse",
     "visible_transmission",
 )
-_PLAIN = (None, None, "NONE", False, False, True, True, True, True, True)
+_PLAIN = (None, None, False, False, False, True, True, True, True, True)
 _LOOSE = (None, None, *_PLAIN)
 _DATA, _NAME, _ORIGINAL = attrgetter("data"), attrgetter("name"), attrgetter("original")
 _MODIFIERS, _CONSTRAINTS = attrgetter("modifiers"), attrgetter("constraints")

@@ -13,6 +13,8 @@ from itertools import compress
 from operator import attrgetter
 from typing import Any
 
+import bpy
+
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
 from . import camera, groups, ids, lights, world
@@ -184,15 +186,22 @@ def surroundings(
     )
 
 
+def _cameras(scene: Any) -> list[Any]:
+    """The scene's own camera, then the others by name."""
+    own = scene.camera
+    if own is not None and own.type == "CAMERA" and sum(c.users for c in bpy.data.cameras) == 1:
+        return [own]  # nobody else uses one: no need to look through all objects
+    objects = scene.objects[:]
+    items = list(compress(objects, map("CAMERA".__eq__, map(_TYPE, objects))))
+    return sorted(items, key=lambda item: (item != own, name_of(item)))
+
+
 def _add_cameras(model: Any, depsgraph: Any) -> None:
     """All of the scene, its own one first, for programs that render the store. What is not exact
     about one is told when it is used."""
     scene = depsgraph.scene  # the original: an evaluated scene's objects are originals as well
     frame = camera.Frame.of(depsgraph.scene_eval.render)
-    objects = scene.objects[:]
-    items = list(compress(objects, map("CAMERA".__eq__, map(_TYPE, objects))))
-    items.sort(key=lambda item: (item != scene.camera, name_of(item)))
-    for item in items:
+    for item in _cameras(scene):
         item = item.evaluated_get(depsgraph)
         matrix = item.matrix_world
         if all(math.isfinite(value) for row in matrix for value in row):
