@@ -44,6 +44,7 @@ Model rich_model() {
     const Primitive third{{1, 2, 3}, glm::dmat3(1.0), {1.0 / 3, 0.25, 0.125}};
     add(Kind::Composite, 0.8,
         std::make_shared<const Composite>(Composite{{{true, third, 0}, {false, third, 0}}}));
+    model.objects[0].representations.back().summary.sealed = true;
     model.objects[0].build_hash = 0x0123456789abcdef;
     Camera camera;
     camera.name = "far";
@@ -109,6 +110,7 @@ void expect_same(const Model& a, const Model& b) {
             EXPECT_EQ(r.summary.kind, s.summary.kind);
             EXPECT_EQ(r.summary.error, s.summary.error);
             EXPECT_EQ(r.summary.max_error, s.summary.max_error);
+            EXPECT_EQ(r.summary.sealed, s.summary.sealed);
             EXPECT_EQ(r.summary.hash, s.summary.hash);
             EXPECT_EQ(r.summary.bound.radius, s.summary.bound.radius);
             EXPECT_EQ(r.summary.bound.box.low, s.summary.bound.box.low);

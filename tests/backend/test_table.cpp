@@ -109,6 +109,20 @@ TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
               "pair 0/left 2, pair 0/right 2");
 }
 
+TEST(Table, ASealedStandInIsNotOpenedThoughItsChildrenCostLess) {
+    Model model = models::row_of_balls(2);
+    models::add_level(model, bent::kBall, 0.1, shapes::sphere(1, 1));
+    models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));
+    models::add_level(model, bent::kPair, 0.15, shapes::sphere(1, 1));
+    model.objects[bent::kPair].representations[1].summary.sealed = true;
+    summarize_assemblies(model, bottom_up(model));
+    EXPECT_EQ(bent::drawn(model, models::view_from(1 + 0.2 * 640 + 0.1)), "pair 0 1");
+    EXPECT_EQ(bent::drawn(model, models::view_from(1000)), "pair 0 1");
+    // It is still opened where it is not good enough.
+    EXPECT_EQ(bent::drawn(model, models::view_from(1 + 0.15 * 640 - 0.1)),
+              "pair 0/left 1, pair 0/right 1");
+}
+
 TEST(Table, ChangesNoCutWhetherWholeOrMadeOnTheWay) {
     size_t openings = 0;
     for (uint32_t seed = 0; seed < 40; ++seed) {

@@ -20,6 +20,7 @@ struct Candidate {
     std::vector<Material> materials;  // by slot
     bool pictured = false;            // compared by pictures, and as bright as they are
     bool matched = false;             // likewise, but its error is a distance, if that is larger
+    bool sealed = false;              // as Summary's
     bool unproven = false;  // nobody has looked yet whether it shows as much as the finest
 };
 

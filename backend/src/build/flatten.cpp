@@ -166,6 +166,7 @@ Drawn drawn_within(const Model& model, ObjectIndex group, double error,
         const Summary& summary = model.objects[node.object].representations[node.lod].summary;
         drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
                        bytes_each(summary.kind, summary.cost.bytes, uses[node.object]);
+        drawn.alone += static_cast<double>(kBytesPerOccurrence + summary.cost.bytes);
     }
     return drawn;
 }

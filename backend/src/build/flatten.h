@@ -34,6 +34,7 @@ std::vector<uint64_t> uses_of(const Model& model);
 struct Drawn {
     uint64_t triangles = 0;  // of the flat mesh
     double bytes = 0;        // in POV-Ray
+    double alone = 0;        // likewise, with all of each representation's: as the cut counts
 };
 
 /// Bytes: a share of every representation (its bytes over its object's uses, for all occurrences

@@ -50,6 +50,7 @@ void add(Object& object, std::vector<Candidate>&& made, Model& model, Palette& p
         representation.summary.kind = candidate.kind;
         representation.summary.error = candidate.error;
         representation.summary.max_error = candidate.max_error;
+        representation.summary.sealed = candidate.sealed;
         if (candidate.kind == Kind::Mesh)
             representation.payload = std::move(candidate.mesh);
         else if (candidate.kind == Kind::Composite)

@@ -30,6 +30,8 @@ constexpr double kFlat = 0.05;
 // Below this mean opacity nothing solid stands for it: it would hide what shines through.
 constexpr double kLeastOpacity = 0.9;
 constexpr int kMeasuredSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
+// Of the pixel size from which on whole pictures agree, what is near in space may have as an error.
+constexpr double kPictures = 0.5;
 
 Mesh tessellated(const Candidate& primitive) {
     return primitive.kind == Kind::Box
@@ -226,7 +228,6 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     constexpr double kNear = 1.0 / 12;
     // What glows, and what is clear, has no part in the correction: further rounds are nearer.
     constexpr int kRounds = 3;
-    constexpr double kPictures = 0.5;
     const bool glows = std::any_of(materials_.begin(), materials_.end(), emits);
     if (candidate.pictured || candidate.matched || environment_ ||
         (!glows && used_to < kNear * size_))
@@ -264,6 +265,18 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
                                             : kPictures * pictures_->of(traced, current).error;
     candidate.error = std::max(candidate.error, seen + child_error_);
     candidate.max_error = std::max(candidate.max_error, seen + child_error_);
+}
+
+bool Judge::looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,
+                        double error, const Job& job) {
+    constexpr double kMostOff = 0.1;
+    if (!pictures_)
+        take_pictures_of(finest, measure::AgreementReference::kCoarseSide, job);
+    const ray::SkinPtr skin = skin_of(materials);
+    const auto traced = pictures_->trace(drawn, skin, job);
+    const measure::Agreement seen = pictures_->of(traced, skin);
+    const double light = (seen.light.x + seen.light.y + seen.light.z) / 3;
+    return std::abs(light - 1) <= kMostOff && kPictures * seen.error + child_error_ <= error;
 }
 
 std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,

@@ -81,6 +81,11 @@ public:
     /// on pictures agree: what is near something else may have been all that closed a gap.
     void match_brightness(Candidate& candidate, const Mesh& finest, double used_to, const Job& job);
 
+    /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
+    /// in pictures of pixels of that error.
+    bool looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,
+                     double error, const Job& job);
+
     /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
     std::vector<double> visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
                                        size_t tags, const Job& job) const;

@@ -204,6 +204,26 @@ std::vector<Candidate> kept_of(std::vector<Candidate>& all,
     }
 }
 
+/// Seals those of a group's levels (finest first) that the cut would open for children which cost
+/// less, but do not look like the group where the next level takes over. The same children serve from
+/// less error on, where they look no worse.
+void seal(std::vector<Candidate>& levels, const Model& model, ObjectIndex group, const Mesh& finest,
+          const std::vector<uint64_t>& uses, const MeshSource& source, Judge& judge,
+          const Job& job) {
+    constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
+    double next = kFarthest * model.objects[group].bound().radius;
+    for (size_t i = levels.size(); i-- > 0;) {
+        const double error = std::nextafter(std::max(next, levels[i].error), 0.0);
+        next = levels[i].error;
+        const auto own = static_cast<double>(bytes_of(levels[i]) + kBytesPerOccurrence);
+        if (drawn_within(model, group, error, uses, job).alone >= own)
+            continue;
+        const Flat children = flatten(model, group, error, source, job);
+        levels[i].sealed =
+            !judge.looks_alike(children.mesh, children.materials, finest, error, job);
+    }
+}
+
 uint64_t seed_of(const Object& object, const Settings& settings) {
     return Hasher().value(object.source_hash).value(settings.seed).result();
 }
@@ -211,7 +231,7 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }  // namespace
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 21;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 22;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
@@ -355,6 +375,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
                                job);
     }
+    seal(useful, model, group, reference.mesh, uses, source, judge, job);
     out.candidates = std::move(useful);
     return out;
 }

@@ -53,6 +53,9 @@ struct Summary {
     Bound bound;           // object's frame
     Cost cost;
     Hash hash = 0;  // of the payload and its materials: equal hashes draw the same
+    /// Of a group's stand-in: its children do not look like the group together where this is used,
+    /// so that it is not opened for them where they cost less.
+    bool sealed = false;
 };
 
 /// Bytes of a representation for each of `uses` occurrences, besides those of the occurrence itself.

@@ -86,6 +86,7 @@ uint32_t Table::add(ObjectIndex index) {
         level.distinct =
             distinct_.emplace(summary.hash, static_cast<uint32_t>(distinct_.size())).first->second;
         level.kind = summary.kind;
+        level.sealed = summary.sealed;
         levels_.push_back(level);
     }
     made.level_count = (static_cast<uint32_t>(levels_.size()) - made.first_level) & kMostLevels;
@@ -177,7 +178,7 @@ void Table::set_openings(uint32_t row) {
     std::vector<double> steps;  // errors at which a child changes
     for (uint32_t i = group.level_count; i-- > 0;) {
         const TableLevel level = levels_[group.first_level + i];
-        if (level.bytes + kBytesPerOccurrence <= kLeastBytes * placements.size())
+        if (level.sealed || level.bytes + kBytesPerOccurrence <= kLeastBytes * placements.size())
             continue;
         if (steps.empty()) {
             expand(row);

@@ -15,13 +15,15 @@ struct TableLevel {
     double error = 0;  // metres, object's frame
     /// From this error on its group's children cost less (in bytes, those of shared representations
     /// counted each time) than this stand-in; infinite: never. Children are farther than their group
-    /// and ask for no less error than it does, so what is then chosen below costs less indeed.
+    /// and ask for no less error than it does, so what is then chosen below costs less indeed. Never
+    /// where it is sealed.
     double opens_from = 0;
     uint64_t bytes = 0;
     uint64_t triangles = 0;
     uint32_t lod = 0;
     uint32_t distinct = 0;  // equal numbers draw the same
     Kind kind = Kind::Mesh;
+    bool sealed = false;
 };
 
 /// What is particular of a placement, or of its object; of nearly all nothing is.

@@ -136,6 +136,8 @@ Json out(const Representation& r) {
         json["low"] = out(s.bound.box.low);
         json["high"] = out(s.bound.box.high);
     }
+    if (s.sealed)
+        json["sealed"] = true;
     if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
         json["primitive"] = out(r.primitive());
     } else if (s.kind == Kind::Composite) {

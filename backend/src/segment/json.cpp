@@ -238,6 +238,7 @@ Representation representation(const Json& json, size_t object_count, size_t mate
     if (s.error < 0 || s.max_error < 0)
         fail(Status::BadFile, "a representation has a negative error");
     s.hash = hash(json, "hash");
+    s.sealed = json.value("sealed", false);
     s.bound.center = vector(json, "center");
     s.bound.radius = number(json, "radius");
     if (json.contains("low")) {
