@@ -18,6 +18,7 @@ constexpr size_t kSamplesToFlip = 3;
 constexpr double kSweeps = 0.7;
 /// For each sweep beyond the least, samples that a closed part lies outside of count so much more.
 constexpr float kOutside = 0.1f;
+/// Parts of no more triangles, and of at least this closed_share(), are not moved.
 constexpr uint32_t kFewTriangles = 8;
 constexpr float kClosed = 0.99f;
 
