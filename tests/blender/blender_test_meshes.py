@@ -76,6 +76,20 @@ class Meshes(unittest.TestCase):
                 self.source_hash(mine), self.source_hash(self.blenders(item)), item.name
             )
 
+    def test_a_mesh_under_edit_is_what_blender_shows(self):
+        bpy.ops.mesh.primitive_monkey_add()
+        monkey = bpy.context.object
+        before = self.extracted(monkey)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.quads_convert_to_tris()
+        bpy.ops.transform.resize(value=(2, 2, 2))
+        under_edit = self.extracted(monkey)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        after = self.extracted(monkey)
+        self.assertEqual(max(after.positions), 2 * max(before.positions))
+        self.assertEqual(self.source_hash(under_edit), self.source_hash(after))
+
     def test_split_normals_are_kept(self):
         bpy.ops.mesh.primitive_monkey_add()
         monkey = bpy.context.object

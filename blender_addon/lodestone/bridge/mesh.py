@@ -16,11 +16,26 @@ def extract(instance_object: Any, wanted: Sequence[Wanted]) -> Any:
     """FaceBuffers of an evaluated object (mesh, curve, text, surface, metaball), or None when it
     has no faces; `wanted` is what the material of each slot needs. Only while the object is valid:
     inside the loop over depsgraph instances."""
+    if _holds_its_faces(instance_object):
+        return _buffers(instance_object.data, instance_object, wanted)
     mesh = instance_object.to_mesh()
     try:
         return None if mesh is None else _buffers(mesh, instance_object, wanted)
     finally:
         instance_object.to_mesh_clear()
+
+
+def _holds_its_faces(shown: Any) -> bool:
+    """Whether its mesh can be read where it is; what to_mesh() makes is a copy, which takes longer
+    to make than to read. Under edit it is no mesh yet, modifiers may leave it to the graphics card,
+    and finding split normals writes into it."""
+    data = shown.data
+    return (
+        shown.type == "MESH"
+        and not shown.modifiers
+        and not data.is_editmode
+        and not compat.splits_normals(data)
+    )
 
 
 def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
