@@ -96,7 +96,7 @@ def find(listed: Listed, environment: set[Any], motion: Motion, tick: Callable[[
 
 def _plain(objects: list[Any], data: list[Any], motion: Motion) -> list[bool]:
     """What nearly all plain objects have in common is asked in columns; the rest one by one."""
-    asked, own = list(map(_ASKED, objects)), ids.have_settings(objects)
+    own = ids.have_settings(objects)
     plain = list(
         map(
             all,
@@ -104,7 +104,7 @@ def _plain(objects: list[Any], data: list[Any], motion: Motion) -> list[bool]:
                 map(is_, map(type, data), repeat(bpy.types.Mesh)),
                 map(not_, own),
                 map(not_, map(_MODIFIERS, objects)),
-                map(_LOOSE.__eq__, asked),
+                map(_LOOSE.__eq__, map(_ASKED, objects)),
                 map(not_, map(_CONSTRAINTS, objects)),
             ),
         )
@@ -112,7 +112,7 @@ def _plain(objects: list[Any], data: list[Any], motion: Motion) -> list[bool]:
     for at in list(compress(count(), map(not_, plain))):
         item = objects[at]
         plain[at] = (
-            asked[at][2:] == _PLAIN
+            _ASKED(item)[2:] == _PLAIN
             and type(data[at]) is bpy.types.Mesh
             and not own[at]
             and not item.modifiers
