@@ -73,11 +73,13 @@ public:
             share_values();
     }
 
-    std::string text(const std::string& identifier) {
+    std::string text(const std::string& identifier, std::string_view before) {
         if (kept_.empty())
             return "";
         std::string out;
-        out.reserve(200 + positions_.size() * (smooth_ ? 48 : 24) + kept_.size() * 28);
+        out.reserve(200 + before.size() + positions_.size() * (smooth_ ? 48 : 24) +
+                    kept_.size() * 28);
+        out += before;
         out += "#declare " + identifier + " = mesh2{\n";
         append_list(out, "vertex_vectors", positions_.size(), [&](char* at, size_t i) {
             return write_point(at, lattice_, points_[positions_.vertices[i]]);
@@ -362,8 +364,8 @@ private:
 }  // namespace
 
 std::string mesh_text(const Mesh& mesh, const MeshTextures* textures, const std::string& identifier,
-                      const Job& job) {
-    return MeshText(mesh, textures, job).text(identifier);
+                      const Job& job, std::string_view before) {
+    return MeshText(mesh, textures, job).text(identifier, before);
 }
 
 }  // namespace lodestone::povray

@@ -4,8 +4,6 @@
 #include "povray_export/mesh_writer.h"
 #include "povray_export/number.h"
 
-#include <optional>
-
 namespace lodestone::povray {
 namespace {
 
@@ -88,15 +86,11 @@ std::string representation_text(const Model& model, const Representation& repres
         return solids_text(model, representation, identifier, options, pictures);
     const Mesh& mesh = representation.mesh();
     check(mesh);
-    std::optional<MeshTextures> textures;
-    if (options.textures)
-        textures.emplace(model, representation, options, pictures, job);
-    std::string text =
-        mesh_text(mesh, textures.has_value() ? &*textures : nullptr, identifier, job);
-    if (text.empty())
-        return text;
-    const bool left_out = textures.has_value() && textures->bumps_left_out();
-    return pictures.declarations() + (left_out ? kBumpsLeftOut : "") + text;
+    if (!options.textures)
+        return mesh_text(mesh, nullptr, identifier, job);
+    const MeshTextures textures(model, representation, options, pictures, job);
+    const char* left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
+    return mesh_text(mesh, &textures, identifier, job, pictures.declarations() + left_out);
 }
 
 }  // namespace lodestone::povray
