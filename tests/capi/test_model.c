@@ -378,6 +378,15 @@ static void test_choices_carry_the_path_of_placements(void) {
     }
     EXPECT(choices[0].world[3] != choices[1].world[3]);
     EXPECT(strcmp(lds_cut_choice_path(cut, 2), "") == 0);
+    lds_level_use use = {{0, 0}, 9, 9, 9};
+    size_t count = 9;
+    EXPECT(lds_cut_level_uses(cut, &use, 1, &count) == LDS_OK && count == 1);
+    EXPECT(use.object.index == cube.index && use.object.generation == cube.generation);
+    EXPECT(use.lod == 0 && use.unused == 0 && use.occurrences == 2);
+    EXPECT(lds_cut_level_uses(cut, NULL, 0, &count) == LDS_OK && count == 1);
+    EXPECT(lds_cut_level_uses(cut, NULL, 1, &count) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_level_uses(NULL, &use, 1, &count) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_cut_level_uses(cut, &use, 1, NULL) == LDS_ERROR_INVALID_ARGUMENT);
     lds_cut_destroy(cut);
     lds_model_destroy(model);
 }

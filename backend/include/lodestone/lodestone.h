@@ -923,6 +923,16 @@ typedef struct lds_choice {
 LDS_API size_t lds_cut_choice_count(const lds_cut* cut);
 LDS_API lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices,
                                        size_t capacity);
+/* How many occurrences each level is drawn by, by object and LOD number, rising. out_count: of
+   how many; the first capacity of them are copied. */
+typedef struct lds_level_use {
+    lds_object object;
+    uint32_t lod;
+    uint32_t unused; /* 0 */
+    uint64_t occurrences;
+} lds_level_use;
+LDS_API lds_status lds_cut_level_uses(const lds_cut* cut, lds_level_use* out_uses, size_t capacity,
+                                      size_t* out_count);
 /* Names of the placements from the root, joined by '/'. */
 LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
 

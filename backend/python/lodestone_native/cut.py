@@ -2,9 +2,7 @@
 """The cut: which representation of every occurrence a view uses."""
 
 import ctypes
-import struct
 from array import array
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
@@ -94,10 +92,11 @@ class Cut(Handle):
 
     def counts(self) -> dict[tuple[Object, int], int]:
         """How often which LOD number of which object is chosen."""
-        rest = ctypes.sizeof(structs.Choice) - 3 * ctypes.sizeof(ctypes.c_uint32)
-        counted = Counter(struct.iter_unpack(f"=12s{rest}x", self._buffer()))
-        found = {struct.unpack("=3I", key): number for (key,), number in counted.items()}
-        return {(Object(*key[:2]), key[2]): number for key, number in found.items()}
+        count, ask = ctypes.c_size_t(), library().lds_cut_level_uses
+        check(ask(self.handle, None, 0, ctypes.byref(count)))
+        buffer = (structs.LevelUse * count.value)()
+        check(ask(self.handle, buffer, len(buffer), ctypes.byref(count)))
+        return {(Object(*use.object.key), use.lod): use.occurrences for use in buffer}
 
     def reason(self, position: int) -> Any:
         """Why a choice is what it is: fields as lds_reason's."""

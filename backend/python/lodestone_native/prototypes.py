@@ -86,6 +86,7 @@ PROTOTYPES = (
     ("lds_cut_get_summary", I, [C, P(s.CutSummary)]),
     ("lds_cut_choice_count", Z, [C]),
     ("lds_cut_choice_copy", I, [C, P(s.Choice), Z]),
+    ("lds_cut_level_uses", I, [C, P(s.LevelUse), Z, P(Z)]),
     ("lds_cut_choice_path", T, [C, Z]),
     ("lds_cut_choice_reason", I, [M, C, Z, P(s.Reason)]),
     ("lds_cut_get_rays", I, [C, U, P(s.RaySummary)]),

@@ -153,6 +153,20 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
     });
 }
 
+lds_status lds_cut_level_uses(const lds_cut* cut, lds_level_use* out_uses, size_t capacity,
+                              size_t* out_count) {
+    return guard([&] {
+        require(cut, "cut");
+        require(out_count, "out_count");
+        if (capacity > 0)
+            require(out_uses, "out_uses");
+        const std::vector<quality::LevelUse> uses = quality::level_uses(cut->cut);
+        for (size_t i = 0; i < std::min(capacity, uses.size()); ++i)
+            out_uses[i] = {{uses[i].object, cut->generation}, uses[i].lod, 0, uses[i].occurrences};
+        *out_count = uses.size();
+    });
+}
+
 const char* lds_cut_choice_path(lds_cut* cut, size_t position) {
     if (cut == nullptr || position >= cut->cut.chosen.size())
         return "";

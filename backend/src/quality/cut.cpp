@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 namespace lodestone::quality {
 namespace {
@@ -48,6 +50,28 @@ std::optional<Cut> choose_within_budget(const Table& table, const View& view, co
 
 Cut choose(const Table& table, const View& view, const Job& job) {
     return choose_within_budget(table, view, {}, job).value();
+}
+
+std::vector<LevelUse> level_uses(const Cut& cut) {
+    constexpr unsigned kLodBits = 32;
+    std::unordered_map<uint64_t, uint64_t> uses;
+    std::pair<const uint64_t, uint64_t>* last = nullptr;  // neighbors are often drawn alike
+    for (const uint32_t index : cut.chosen) {
+        const Node& node = cut.nodes[index];
+        const uint64_t key = uint64_t{node.object} << kLodBits | node.lod;
+        if (last == nullptr || last->first != key)
+            last = &*uses.try_emplace(key, 0).first;
+        ++last->second;
+    }
+    std::vector<LevelUse> found;
+    found.reserve(uses.size());
+    for (const auto& [key, occurrences] : uses)
+        found.push_back(
+            {static_cast<ObjectIndex>(key >> kLodBits), static_cast<uint32_t>(key), occurrences});
+    std::sort(found.begin(), found.end(), [](const LevelUse& a, const LevelUse& b) {
+        return std::pair(a.object, a.lod) < std::pair(b.object, b.lod);
+    });
+    return found;
 }
 
 double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node) {

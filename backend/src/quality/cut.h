@@ -74,6 +74,16 @@ std::optional<Cut> choose_within_budget(const Table& table, const View& view, co
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
 
+/// How many occurrences a level of an object is drawn by.
+struct LevelUse {
+    ObjectIndex object = kNoObject;
+    uint32_t lod = 0;
+    uint64_t occurrences = 0;
+};
+
+/// Of all levels that a cut draws, by object and LOD number, rising.
+std::vector<LevelUse> level_uses(const Cut& cut);
+
 /// Of a chosen node of a cut for this view, in pixels; 0 of an opened one.
 double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node);
 

@@ -3,7 +3,16 @@
 
 from .base import Object, Sized, record, text_in, text_out
 from .build import BuildOptions, BuildReport
-from .cut import Budget, BudgetReport, Choice, CutSummary, RayChoice, RaySummary, Reason
+from .cut import (
+    Budget,
+    BudgetReport,
+    Choice,
+    CutSummary,
+    LevelUse,
+    RayChoice,
+    RaySummary,
+    Reason,
+)
 from .grouping import LooseOptions, LooseReport, StructureOptions, StructureReport
 from .material import Bake, BakeStep, Material, Picture, Texture
 from .measure import Attributes, MeasureOptions, SimplifyOptions, SimplifyReport
@@ -38,6 +47,7 @@ __all__ = (
     "ExportReport",
     "FacesView",
     "Lens",
+    "LevelUse",
     "Light",
     "LooseOptions",
     "LooseReport",

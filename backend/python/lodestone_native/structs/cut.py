@@ -47,6 +47,15 @@ class Choice(Structure):
     ]
 
 
+class LevelUse(Structure):
+    _fields_ = [
+        ("object", Object),
+        ("lod", c_uint32),
+        ("unused", c_uint32),
+        ("occurrences", c_uint64),
+    ]
+
+
 class Reason(Sized):
     _fields_ = [
         ("struct_size", c_uint32),
