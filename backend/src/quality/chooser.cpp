@@ -279,17 +279,17 @@ void Chooser::visit(const Known& known, Placed& placed, double enlarge, FactorFi
         made = decide(table_, view_, known.row, node, sight);
     if (!made.drawn)
         return;
+    const Seen seen(table_, known.row, sight, made);
     if (made.opened) {
         node.opened = true;
-        const uint32_t index = append(placed, {known.row, 0, enlarge, sight.total});
+        const uint32_t index = append(placed, seen);
         push_children(known, index, enlarge, path, depth);
         return;
     }
     const TableLevel& level = *made.level;
     node.lod = level.lod;
     node.kind = level.kind;
-    const auto number = static_cast<uint32_t>(&level - &table_.level(0));
-    const uint32_t index = append(placed, {known.row, number, enlarge, sight.total});
+    const uint32_t index = append(placed, seen);
     if (cut_ == nullptr)
         return;
     take(index, level, error_on_screen(sight, level.error) / factors.off_screen);

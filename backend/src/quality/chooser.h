@@ -56,9 +56,20 @@ Decision decide(const Table& table, const View& view, uint32_t row, const Node& 
 /// What stepping a cut keeps of a node, beside its transform.
 struct Seen {
     uint32_t row = 0;
-    uint32_t level = 0;  // of the table; of a chosen one
+    uint32_t level = 0;  // of the table; Decision's, any where that has none
     double stretch = 1;
-    double total = 1;  // as Sight's
+    double total = 1;   // as Sight's
+    bool good = false;  // as Decision's, and so is the next
+    bool cheaper = false;
+
+    Seen() = default;
+    Seen(const Table& table, uint32_t of, const Sight& sight, const Decision& made)
+        : row(of),
+          level(made.level != nullptr ? static_cast<uint32_t>(made.level - &table.level(0)) : 0),
+          stretch(sight.stretch),
+          total(sight.total),
+          good(made.good),
+          cheaper(made.cheaper) {}
 };
 
 /// What was visited, in the order of a cut; transforms and what is kept in the order of the nodes.

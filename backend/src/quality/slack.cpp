@@ -35,7 +35,11 @@ float above(double value) {
 }  // namespace
 
 Walk::Walk(const Table& of, const View& from)
-    : table(of), view(from), frame(pixel_at_1m(from)), pixel(frame) {}
+    : table(of),
+      view(from),
+      frame(pixel_at_1m(from)),
+      pixel(frame),
+      away(glm::length(from.camera.position)) {}
 
 bool Walk::to(const View& next) {
     const double moved = glm::length(next.camera.position - view.camera.position);
@@ -45,6 +49,7 @@ bool Walk::to(const View& next) {
     view.camera = next.camera;
     view.border = next.border;
     pixel = pixel_at_1m(next);
+    away = glm::length(next.camera.position);
     return true;
 }
 
@@ -61,13 +66,6 @@ Sight Walk::sight_of(const Affine& world, const Seen& seen) const {
     return sight;
 }
 
-double Walk::margin(const Affine& world, const Seen& seen, double z) const {
-    const Bound bound = table.bound(seen.row);
-    return kOfPlaces * (glm::length(view.camera.position) + glm::length(world(bound.center)) +
-                        bound.radius * seen.stretch + z) +
-           kOfTravel * travel;
-}
-
 void Slack::resize(size_t count) {
     expires_.resize(count);
     sizes_.resize(count);
@@ -81,22 +79,26 @@ void Slack::grow(size_t most) {
     }
 }
 
-void Slack::set(size_t index, const Walk& walk, const Placed& placed, const Seen& seen,
-                const Sight& sight, const Decision& made) {
-    const Node& node = placed.node;
+Range::Range(const Walk& walk, const Node& node, const Affine& world, const Seen& seen) {
+    const Bound bound = transformed(walk.table.bound(seen.row), world, seen.stretch);
+    const glm::dvec3 sides = 0.5 * bound.box.size();
+    const double size = sides.x + sides.y + sides.z + bound.radius;
+    const glm::dvec3 middle = bound.box.center();
+    const double off = kOfPlaces * (glm::length(middle) + size) + kSingle * size +
+                       glm::length(bound.center - middle);
     const TableRow& row = walk.table.row(seen.row);
     const double per_metre = walk.view.pixel_error * walk.frame;
-    bool numbers = true;
+    bool numbers = size < kLargestSingle && off < kLargestSingle;
     /// The distance from which on an error is good enough.
     const auto from = [&](double error) {
-        if (std::isinf(sight.total))
+        if (std::isinf(seen.total))
             return kInfinity;
-        const double size = error * sight.stretch * sight.total;
-        numbers = numbers && size >= 0;
-        return size > 0 ? size / per_metre : 0;
+        const double scaled = error * seen.stretch * seen.total;
+        numbers = numbers && scaled >= 0;
+        return scaled > 0 ? scaled / per_metre : 0;
     };
-    double low = 0;
-    double high = kInfinity;
+    double least = 0;
+    double most = kInfinity;
     bool first = true;
     for (uint32_t i = row.level_count; i-- > 0;) {
         const TableLevel& level = walk.table.level(row.first_level + i);
@@ -105,28 +107,51 @@ void Slack::set(size_t index, const Walk& walk, const Placed& placed, const Seen
         if (!first && level.lod < node.finest)
             break;
         first = false;
-        if (made.good && &level == made.level) {
-            low = from(level.error);
+        if (seen.good && row.first_level + i == seen.level) {
+            least = from(level.error);
             break;
         }
-        high = std::min(high, from(level.error));
+        most = std::min(most, from(level.error));
     }
-    if (made.good && !made.pinned && made.level->opens_from < kInfinity) {
-        const double opens = from(made.level->opens_from);
-        if (made.cheaper)
-            low = std::max(low, opens);
+    const double opens_from = seen.good ? walk.table.level(seen.level).opens_from : kInfinity;
+    if (node.finest == 0 && opens_from < kInfinity) {
+        const double opens = from(opens_from);
+        if (seen.cheaper)
+            least = std::max(least, opens);
         else
-            high = std::min(high, opens);
+            most = std::min(most, opens);
     }
-    const double near = walk.view.camera.near_clip;
-    const double z = sight.z;
-    const double nearer = low <= near * (1 - kRounding) ? kInfinity : z - low * (1 + kRounding);
-    const double farther = high * (1 - kRounding) - z;
-    const double slack = std::min(nearer, farther);
-    const double off = walk.margin(placed.world, seen, z);
-    expires_[index] = numbers && slack > 0 ? below(walk.travel + slack - off) : kExpired;
-    sizes_[index] = made.opened ? -1 : above(made.level->error * seen.stretch / walk.frame);
+    if (!numbers)
+        return;
+    center = middle;
+    half = sides;
+    radius = static_cast<float>(bound.radius);
+    const bool anywhere = least <= walk.view.camera.near_clip * (1 - kRounding);
+    low = anywhere ? -std::numeric_limits<float>::infinity() : above(least * (1 + kRounding));
+    high = below(most * (1 - kRounding));
+    margin = above(off);
+}
+
+double Range::distance(const glm::dvec3& eye) const {
+    const glm::dvec3 arm = eye - center;
+    const glm::dvec3 outside = glm::max(glm::abs(arm) - glm::dvec3(half), glm::dvec3(0.0));
+    return std::max({0.0, glm::length(arm) - radius, glm::length(outside)});
+}
+
+void Slack::set(size_t index, const Walk& walk, const Range& range, const Node& node,
+                const Seen& seen) {
+    const double error = node.opened ? 0 : walk.table.level(seen.level).error;
+    sizes_[index] = node.opened ? -1 : above(error * seen.stretch / walk.frame);
+    renew(index, walk, range);
+}
+
+bool Slack::renew(size_t index, const Walk& walk, const Range& range) {
+    const double z = range.distance(walk.view.camera.position);
+    const double off = range.margin + kOfPlaces * (walk.away + z) + kOfTravel * walk.travel;
+    const double slack = std::min(z - range.low, range.high - z) - off;
+    expires_[index] = slack > 0 ? below(walk.travel + slack) : kExpired;
     places_[index] = below(z + walk.travel - off);
+    return expires_[index] > above(walk.travel);
 }
 
 void Slack::copy(const Slack& from, size_t index, size_t to) {
@@ -159,18 +184,17 @@ void Slack::find_expired(double travel, std::vector<uint32_t>& expired) const {
     }
 }
 
-void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen, Cut& cut,
-                         uint32_t guess) {
+void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen,
+                         const std::vector<Range>& ranges, Cut& cut, uint32_t guess) {
     cut.largest_error_px = 0;
     cut.largest_error_node = kNoParent;
     const auto consider = [&](size_t index) {
         const Node& node = cut.nodes[index];
         if (node.opened)
             return;
-        const Affine& world = cut.world(node);
         const Seen& known = seen[node.transform];
-        const Sight sight = walk.sight_of(world, known);
-        places_[index] = below(sight.z + walk.travel - walk.margin(world, known, sight.z));
+        const Sight sight = walk.sight_of(cut.world(node), known);
+        renew(index, walk, ranges[node.transform]);
         const TableLevel& level = walk.table.level(known.level);
         const double error = error_on_screen(sight, level.error);
         if (error > cut.largest_error_px ||

@@ -34,6 +34,7 @@ void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& c
     grow(cut.nodes, most);
     grow(cut.transforms, cut.transforms.size() + fresh.nodes.size());
     grow(kept.seen, kept.seen.size() + fresh.nodes.size());
+    grow(kept.ranges, kept.ranges.size() + fresh.nodes.size());
     kept.slack.grow(most);
     spare_chosen_.reserve(most);
     runs_.reserve(edits.size() + 1);
@@ -146,12 +147,14 @@ void Splicer::insert(const Edit& edit, uint32_t place, uint32_t parent, const Fr
             node.transform = static_cast<uint32_t>(cut.transforms.size());
             cut.transforms.emplace_back();
             kept.seen.emplace_back();
+            kept.ranges.emplace_back();
         } else {
             node.transform = kept.free.back();
             kept.free.pop_back();
         }
         cut.transforms[node.transform] = fresh.transforms[from];
         kept.seen[node.transform] = fresh.seen[from];
+        kept.ranges[node.transform] = fresh.ranges[from];
         kept.slack.copy(fresh.slack, from, to);
         if (!node.opened)
             spare_chosen_.push_back(to);

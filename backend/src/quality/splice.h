@@ -17,12 +17,14 @@ struct Edit {
 /// What is kept of a cut besides it. What is as large as a transform stays where it is when nodes move.
 struct Kept {
     std::vector<Seen> seen;      // by Node::transform
+    std::vector<Range> ranges;   // by Node::transform
     std::vector<uint32_t> free;  // transforms of no node
     Slack slack;                 // by node
 };
 
 /// Nodes that were visited, each beside what is kept of it.
 struct Fresh : Visited {
+    std::vector<Range> ranges;
     Slack slack;
 };
 

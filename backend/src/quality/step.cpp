@@ -10,11 +10,13 @@ namespace lodestone::quality {
 namespace {
 
 // Where more than one in so many is expired, choosing anew is sooner; some are never too many.
-constexpr size_t kLeastShare = 8;
+constexpr size_t kLeastShare = 16;
 constexpr size_t kSome = 64;
 // Choosing anew takes 1.6 times as long with what is kept for steps. After a step that was in vain
 // nothing is kept once, after the next three times, and so on up to this often.
 constexpr uint32_t kMostPlain = 31;
+// Nodes whose memory is asked for before they are looked at.
+constexpr size_t kFetched = 8;
 
 /// Nothing that bends quality depends on the eye.
 bool rigid(const Modifiers& modifiers) {
@@ -75,6 +77,7 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     fresh_.reserve(table_->expected());
     Chooser(*table_, nullptr, walk_->view, *field_, job).run(root, fresh_);
     fresh_.slack.resize(0);
+    fresh_.ranges.clear();
     look_at_fresh(0);
     tally_.clear(*table_);
     edits_.clear();
@@ -88,9 +91,10 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     }
     made.kinds = named(tally_.kinds());
     kept_.seen.swap(fresh_.seen);
+    kept_.ranges.swap(fresh_.ranges);
     kept_.free.clear();
     std::swap(kept_.slack, fresh_.slack);
-    kept_.slack.find_largest(*walk_, kept_.seen, made, kNoParent);
+    kept_.slack.find_largest(*walk_, kept_.seen, kept_.ranges, made, kNoParent);
     fresh_.nodes.swap(cut.nodes);  // for their memory
     fresh_.transforms.swap(cut.transforms);
     cut = std::move(made);
@@ -107,6 +111,7 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
     if (!walk_->to(view))
         return false;
     kept_.slack.find_expired(walk_->travel, expired_);
+    keep_what_holds(cut);
     if (!change_lenses(view.modifiers.lenses, cut))
         return false;
     if (expired_.size() > std::max(kSome, cut.nodes.size() / kLeastShare))
@@ -119,9 +124,30 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
         if (guess >= cut.nodes.size())
             guess = kNoParent;
     }
-    kept_.slack.find_largest(*walk_, kept_.seen, cut, guess);
+    kept_.slack.find_largest(*walk_, kept_.seen, kept_.ranges, cut, guess);
     known_ = true;
     return true;
+}
+
+/// Of what is expired only what is now too near or too far stays so.
+void Stepper::keep_what_holds(const Cut& cut) {
+    const size_t count = expired_.size();
+    size_t left = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (i + 2 * kFetched < count)
+            __builtin_prefetch(&cut.nodes[expired_[i + 2 * kFetched]].transform);
+        if (i + kFetched < count)
+            __builtin_prefetch(&kept_.ranges[cut.nodes[expired_[i + kFetched]].transform]);
+        const uint32_t index = expired_[i];
+        const uint32_t transform = cut.nodes[index].transform;
+        if (kept_.slack.renew(index, *walk_, kept_.ranges[transform]))
+            continue;
+        expired_[left++] = index;
+        __builtin_prefetch(&kept_.seen[transform]);
+        __builtin_prefetch(&cut.transforms[transform].linear);
+        __builtin_prefetch(&cut.transforms[transform].offset);
+    }
+    expired_.resize(left);
 }
 
 /// Adds what changed lenses reach to what is expired. False: it may be that something appears.
@@ -144,12 +170,12 @@ bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cu
 /// Of what was visited from `begin` on.
 void Stepper::look_at_fresh(size_t begin) {
     fresh_.slack.resize(fresh_.nodes.size());
+    fresh_.ranges.reserve(fresh_.nodes.size());
     for (size_t i = begin; i < fresh_.nodes.size(); ++i) {
-        const Placed placed{fresh_.nodes[i], fresh_.transforms[i]};
+        const Node& node = fresh_.nodes[i];
         const Seen& seen = fresh_.seen[i];
-        const Sight sight = walk_->sight_of(placed.world, seen);
-        fresh_.slack.set(i, *walk_, placed, seen, sight,
-                         decide(*table_, walk_->view, seen.row, placed.node, sight));
+        fresh_.ranges.emplace_back(*walk_, node, fresh_.transforms[i], seen);
+        fresh_.slack.set(i, *walk_, fresh_.ranges[i], node, seen);
     }
 }
 
@@ -177,6 +203,7 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
     edits_.clear();
     fresh_.clear();
     fresh_.slack.resize(0);
+    fresh_.ranges.clear();
     Chooser chooser(*table_, nullptr, walk_->view, *field_, job);
     uint32_t next = 0;  // behind what was closed
     for (const uint32_t index : expired_) {
@@ -184,11 +211,14 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
             continue;
         const Node& node = cut.nodes[index];
         const Placed placed{node, cut.world(node)};
-        const Seen& seen = kept_.seen[node.transform];
+        Seen& seen = kept_.seen[node.transform];
         const Sight sight = walk_->sight_of(placed.world, seen);
         const Decision made = decide(*table_, walk_->view, seen.row, node, sight);
+        const Seen now(*table_, seen.row, sight, made);
         if (made.opened == node.opened && (made.opened || made.level->lod == node.lod)) {
-            kept_.slack.set(index, *walk_, placed, seen, sight, made);
+            seen = now;
+            kept_.ranges[node.transform] = Range(*walk_, node, placed.world, seen);
+            kept_.slack.set(index, *walk_, kept_.ranges[node.transform], node, seen);
             continue;
         }
         Edit edit;
@@ -204,7 +234,7 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
         }
         next = index + edit.removed;
         if (made.opened) {
-            chooser.open(placed, seen, path_below(cut, index), fresh_);
+            chooser.open(placed, now, path_below(cut, index), fresh_);
         } else {
             Node drawn = node;
             drawn.opened = false;
@@ -212,8 +242,6 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
             drawn.kind = made.level->kind;
             fresh_.nodes.push_back(drawn);
             fresh_.transforms.push_back(placed.world);
-            Seen now = seen;
-            now.level = static_cast<uint32_t>(made.level - &table_->level(0));
             fresh_.seen.push_back(now);
         }
         look_at_fresh(edit.begin);
