@@ -129,7 +129,7 @@ void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, 
         wholes.push_back(1e3 / kSteps * whole_s);
         ratios.push_back(step_s / whole_s);
     }
-    std::printf("| %s, %s, steps of %g m | %.0f looked at |", what, how, metres,
+    std::printf("| %s, %s, steps of %g m | %.0f decided again |", what, how, metres,
                 looked / (kWalks * kSteps));
     for (std::vector<double>* values : {&steps, &wholes, &ratios}) {
         std::sort(values->begin(), values->end());

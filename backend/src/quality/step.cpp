@@ -9,10 +9,12 @@
 namespace lodestone::quality {
 namespace {
 
-// Where more than one in so many is expired, choosing anew is sooner; some are never too many.
+// Choosing anew is sooner where of so many nodes less than one is not expired, or more than one has to be
+// decided again; some are never too many.
+constexpr size_t kLeastKept = 4;
 constexpr size_t kLeastShare = 16;
 constexpr size_t kSome = 64;
-// Choosing anew takes 1.6 times as long with what is kept for steps. After a step that was in vain
+// Choosing anew takes twice as long with what is kept for steps. After a step that was in vain
 // nothing is kept once, after the next three times, and so on up to this often.
 constexpr uint32_t kMostPlain = 31;
 // Nodes whose memory is asked for before they are looked at.
@@ -111,6 +113,8 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
     if (!walk_->to(view))
         return false;
     kept_.slack.find_expired(walk_->travel, expired_);
+    if (expired_.size() > std::max(kSome, cut.nodes.size() - cut.nodes.size() / kLeastKept))
+        return false;
     keep_what_holds(cut);
     if (!change_lenses(view.modifiers.lenses, cut))
         return false;
