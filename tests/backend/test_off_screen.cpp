@@ -227,6 +227,40 @@ TEST(OffScreen, CutsAreCoarserOutsideAndTheSameInside) {
     EXPECT_EQ(originals, drawn(model, view));
 }
 
+TEST(OffScreen, ACoarseSolidBesideTheFrameDoesNotReachIntoIt) {
+    // Its original ends a metre beside the frame, its next level 2 m inside.
+    for (const double x : {7.0, 20.0}) {
+        Model model;
+        const ObjectIndex leaf = add_leaf(model, "leaf", shapes::cube());
+        models::add_level(model, leaf, 0.5, shapes::sphere(4, 1));
+        const ObjectIndex group = add_group(model, "group", {{leaf, Affine{}, "leaf"}});
+        model.root = add_group(model, "scene", {{group, moved(x, 10, 0), "group"}});
+        summarize_assemblies(model, bottom_up(model));
+        EXPECT_EQ(drawn(model, from_origin(OffScreen::Full)), "group/leaf 0");
+        for (const OffScreen off_screen : {OffScreen::Shadows, OffScreen::Reflected})
+            EXPECT_EQ(drawn(model, from_origin(off_screen)),
+                      x < 10 ? "group/leaf 0" : "group/leaf 1");
+    }
+}
+
+TEST(OffScreen, AMirrorThatReachesIntoTheFrameByACoarseLevelShowsWhatIsBehind) {
+    Material metal;
+    metal.metallic = 1;
+    metal.roughness = 0;
+    const View view = from_origin(OffScreen::Reflected);
+    const Bound behind = ball({0, -20, 0}, 1);
+    for (const double x : {7.0, 20.0}) {
+        Model model;
+        const ObjectIndex pane = add_leaf(model, "pane", shapes::cube(), metal);
+        models::add_level(model, pane, 0.5, shapes::sphere(4, 1));
+        const ObjectIndex group = add_group(model, "group", {{pane, moved(x, 0, 0), "pane"}});
+        model.root = add_group(model, "scene", {{group, moved(0, 10, 0), "group"}});
+        summarize_assemblies(model, bottom_up(model));
+        const double coarser = OffScreenField(model, view).coarser(behind, z_of(behind));
+        EXPECT_EQ(coarser < kMostImportance, x < 10) << coarser;
+    }
+}
+
 TEST(OffScreen, NonsenseLightsDoNoHarm) {
     Model model = plain();
     const double nan = std::numeric_limits<double>::quiet_NaN();

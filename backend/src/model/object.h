@@ -44,6 +44,13 @@ struct Object {
         return !representations.empty() && representations[0].summary.kind == Kind::Assembly;
     }
     const Bound& bound() const { return representations.at(0).summary.bound; }
+    /// Around all of its levels: coarse ones may stick out of what they stand for.
+    Bound reach() const {
+        Bound all;
+        for (const Representation& level : representations)
+            all = merged(all, level.summary.bound);
+        return all;
+    }
 };
 
 }  // namespace lodestone

@@ -181,7 +181,8 @@ FactorField::Effect FactorField::at(ObjectIndex object, bool group, const Bound&
     if (modifiers.when_dark)
         effect.factors.darkness = darkness(object, bound);
     if (off_screen_)
-        effect.factors.off_screen = off_screen_->coarser(bound, z);
+        effect.factors.off_screen =
+            off_screen_->coarser(transformed(model_.objects[object].reach(), world), z);
     return effect;
 }
 

@@ -32,19 +32,29 @@ double extent(const Light& light) {
                : std::max(0.0, light.radius);
 }
 
-/// Of every object, what is below it included.
-std::vector<double> imaged_below(const Model& model) {
-    std::vector<double> shares(model.objects.size(), 0);
+/// Of every object, what is below it included, whatever levels are drawn.
+struct Images {
+    double share = 0;  // the largest; 0: the reach is not known
+    Bound reach;
+};
+std::vector<Images> images_below(const Model& model) {
+    std::vector<Images> images(model.objects.size());
     for (const ObjectIndex index : bottom_up(model)) {
         const Object& object = model.objects[index];
+        Images& here = images[index];
         for (const Representation& representation : object.representations)
-            shares[index] = std::max(shares[index], imaged(model, representation));
-        if (!object.group())
-            continue;
-        for (const Placement& placement : object.representations[0].assembly().placements)
-            shares[index] = std::max(shares[index], shares[placement.object]);
+            here.share = std::max(here.share, imaged(model, representation));
+        if (object.group()) {
+            for (const Placement& placement : object.representations[0].assembly().placements) {
+                const Images& below = images[placement.object];
+                here.share = std::max(here.share, below.share);
+                here.reach = merged(here.reach, transformed(below.reach, placement.transform));
+            }
+        }
+        if (here.share > 0)
+            here.reach = merged(here.reach, object.reach());
     }
-    return shares;
+    return images;
 }
 
 }  // namespace
@@ -140,15 +150,17 @@ void OffScreenField::find_mirrors(const Model& model) {
                                                       : number > other.number;
         }
     };
-    const std::vector<double> shares = imaged_below(model);
+    const std::vector<Images> images = images_below(model);
     std::priority_queue<Part> parts;
     size_t number = 0;
     const auto add = [&](ObjectIndex index, const Affine& world) {
-        const Bound bound = transformed(model.objects[index].bound(), world);
-        if (!(shares[index] > 0) || pyramid_.outside(bound))
+        if (!(images[index].share > 0))
+            return;
+        const Bound bound = transformed(images[index].reach, world);
+        if (pyramid_.outside(bound))
             return;
         const double away = distance(bound, view_.camera.position);
-        const double share = imaged(shares[index], view_, bound, away);
+        const double share = imaged(images[index].share, view_, bound, away);
         if (share > kLeastImaged)
             parts.push({index, world, {bound, away, share}, number++});
     };

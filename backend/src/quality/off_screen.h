@@ -45,15 +45,16 @@ public:
     /// cost: one visit of every object, and of the larger things in the picture that mirror.
     OffScreenField(const Model& model, const View& view);
 
-    /// 1 for what may be in the picture, up to kMostImportance for what is not. z: its distance from
-    /// the eye. cost: that of every light and mirror (at most kMostMirrors). Thread-safe.
+    /// 1 for what may be in the picture, up to kMostImportance for what is not. `bound`: around all that
+    /// it may be drawn by (Object::reach), in the world. z: its distance from the eye. cost: that of
+    /// every light and mirror (at most kMostMirrors). Thread-safe.
     double coarser(const Bound& bound, double z) const;
 
     static constexpr size_t kMostMirrors = 256;
 
 private:
     struct Mirror {
-        Bound bound;
+        Bound bound;       // around all levels
         double away = 0;   // of it, metres from the eye
         double share = 1;  // see imaged()
     };
