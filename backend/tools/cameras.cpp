@@ -48,6 +48,8 @@ lds_camera camera_at(const Vector& eye, const Vector& target, double angle_deg, 
     Vector direction{target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
     if (length(direction) == 0)
         throw UsageError("--eye and --look-at are the same point");
+    if (!std::isfinite(length(direction)))
+        throw UsageError("--eye is too far from --look-at");
     direction = scaled(direction, 1 / length(direction));
     const Vector world_up = std::abs(direction[2]) > 0.999 ? Vector{0, 1, 0} : Vector{0, 0, 1};
     Vector right = cross(direction, world_up);

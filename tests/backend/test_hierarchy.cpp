@@ -160,6 +160,18 @@ TEST_F(Hierarchy, RoomHasListsInOrderAndAStandInEverywhere) {
     expect_valid(model);
 }
 
+TEST_F(Hierarchy, AnEmptySceneIsNoObjectToBuild) {
+    Model model;
+    const ObjectIndex inside = models::add_group(model, "inside", {});
+    model.root = models::add_group(model, "scene", {{inside, Affine{}, "inside"}});
+    const fs::path folder = scratch("empty");
+    for (const build::Report& report :
+         {build::estimate(model, segment::Store(folder), {}), build_in(model, folder)}) {
+        EXPECT_EQ(report.objects, 0u);
+        EXPECT_EQ(report.built, 0u);
+    }
+}
+
 TEST_F(Hierarchy, EnvironmentIsNeverAPrimitiveNorIsAGroupWithOne) {
     Model model = room();
     build_in(model, scratch("environment"));

@@ -111,6 +111,15 @@ class UpdateLevels(unittest.TestCase):
         self.assertGreater(first.built, 0)
         self.assertEqual(second.built, 0)
 
+    def test_an_empty_file_has_no_object_to_build(self):
+        from lodestone.operators.update_levels import summary, update_levels
+
+        for item in list(bpy.data.objects):
+            bpy.data.objects.remove(item)
+        report = update_levels(bpy.context, "SCENE")
+        self.assertEqual((report.objects, report.built), (0, 0))
+        self.assertEqual(summary(report), "There is nothing here to build levels of")
+
     def test_writing_ids_makes_nothing_stale(self):
         from lodestone import extract_engine
         from lodestone.core.native import lodestone_native as native

@@ -110,16 +110,23 @@ def is_building():
 
 
 def escape_while_building_changes_nothing():
+    from lodestone.operators import update_levels
+
     make()
     for i in range(30):
         item = scenes.cube(f"More.{i}", (0, 2 * i, 0), 1.0 + i / 100)
         item.modifiers.new("Subdivision", "SUBSURF").render_levels = 6
     before = state()
+    told = []
+    left_by = update_levels._InWindow.left_by
+    update_levels._InWindow.left_by = lambda *of: told.append(left_by(*of)) or told[-1]
     with steps.window():
         bpy.ops.lodestone.update_levels("INVOKE_DEFAULT", confirm=False)
     yield from steps.wait_until(is_building)
     steps.press("ESC")
     yield from steps.wait_until(is_idle, 20)
+    update_levels._InWindow.left_by = left_by
+    assert told == [update_levels.STOPPED], told
     assert stored() == [], stored()
     assert state() == before, (state(), before)
     assert not (FOLDER / "lodestone" / "window" / "tileset.json").is_file()

@@ -75,6 +75,13 @@ class CommandPovray(unittest.TestCase):
             self.assertEqual(done.returncode, 2, nonsense)
             self.assertIn("expected", done.stderr)
 
+    def test_an_eye_that_is_too_far_away_is_named(self):
+        for eye in ("1e300,0,0", "0,-1e200,0", "nan,0,0"):
+            done = self.run_command("cut", self.model, "--eye", eye)
+            self.assertEqual(done.returncode, 2, eye)
+            self.assertIn("--eye is", done.stderr)
+            self.assertNotIn("camera.right", done.stderr)
+
     def test_a_budget_finds_the_pixel_error_that_fits(self):
         store, report = self.folder / "store", self.folder / "cut.json"
         self.assertEqual(self.run_command("build", self.model, store).returncode, 0)

@@ -748,7 +748,7 @@ LDS_API lds_build_options lds_build_options_default(void);
 
 typedef struct lds_build_report {
     uint32_t struct_size;
-    uint64_t objects;         /* reachable */
+    uint64_t objects;         /* reachable, of which something is seen */
     uint64_t built;           /* of these, new or stale */
     uint64_t representations; /* in the store, finest included */
     uint64_t triangles;       /* of the stale objects' finest meshes */

@@ -27,6 +27,11 @@ constexpr const char* kNotFollowed =
     "drawn as it is: its faces, or what is painted on them, are not those of any frame that levels "
     "are made from";
 
+/// Whether there is anything to stand in for: not for a group of nothing, as of an empty scene.
+bool shows(const Object& object) {
+    return !object.representations.empty() && !object.bound().empty();
+}
+
 /// `layers`: what layers_of tells of it.
 Hash build_hash_of(const Object& object, Hash settings, Hash layers) {
     const Hash hash = Hasher().value(object.source_hash).value(settings).result();
@@ -144,7 +149,7 @@ public:
         std::map<Hash, size_t> task_of;  // content-equal objects are built once
         for (const ObjectIndex index : order) {
             Object& object = model_.objects[index];
-            if (object.representations.empty())
+            if (!shows(object))
                 continue;
             ++report.objects;
             if (object.group() && std::isinf(object.demand))
@@ -420,7 +425,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     double seconds = 0;
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
-        if (object.representations.empty())
+        if (!shows(object))
             continue;
         ++report.objects;
         if (!inside[index])

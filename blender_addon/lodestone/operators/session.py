@@ -150,10 +150,17 @@ class InWindow:
             status(context, "Lodestone: stopping")
             if session.busy():
                 return {"RUNNING_MODAL"}
+        left = self.left_by(session)
         session.close()
         if error is not None and not isinstance(error, work.Stopped):
             self.report({"ERROR"}, sentence(error))
+        elif left:
+            self.report({"INFO"}, left)
         return self.end(context, {"CANCELLED"})
+
+    def left_by(self, session):
+        """What a session that is stopped leaves behind, as a sentence; "" when that is nothing."""
+        return ""
 
     def end(self, context, outcome):
         global _current

@@ -16,6 +16,7 @@ from . import session as sessions
 from .polled import Polled
 
 UNDO_NAME = "Update Levels"
+STOPPED = "Stopped. Finished levels are kept, but for those of about the last 20 seconds"
 
 
 class NothingThere(Exception):
@@ -66,6 +67,7 @@ class _Session(sessions.Session):
         super().__init__(extract_engine.Request(still=still, with_poses=True))
         self.estimate = None
         self.options = None
+        self.building = False
         self._keys = decisions.scope_keys(context, scope)
         self._changed = decisions.issue_uids(decisions.in_scope(context, scope))
 
@@ -75,6 +77,7 @@ class _Session(sessions.Session):
 
     def start_building(self):
         self.store.mkdir(parents=True, exist_ok=True)
+        self.building = True
         model, store, job = self.extraction.model, str(self.store), self.work.new_job("Levels")
         options = self.options
         self.start(lambda: model.build(store, options, job))
@@ -90,6 +93,9 @@ class _InWindow(sessions.InWindow):
     """What both operators do while it builds."""
 
     failures = FAILURES
+
+    def left_by(self, session):
+        return STOPPED if session.building else ""
 
     def watch_building(self, context, session):
         if session.working():
@@ -197,6 +203,8 @@ class LODESTONE_OT_build_levels(_InWindow, bpy.types.Operator):
 
 
 def summary(report):
+    if report.objects == 0:
+        return "There is nothing here to build levels of"
     if report.built == 0:
         return "Nothing changed since the last build"
     return f"Built levels of {report.built:,} of {report.objects:,} objects and groups"
