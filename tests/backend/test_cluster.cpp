@@ -14,8 +14,6 @@
 
 using namespace lodestone;
 using approximate::cluster;
-using approximate::cluster_with_quadrics;
-using approximate::ClusteredMesh;
 using namespace lodestone::shapes;
 
 namespace {
@@ -78,7 +76,6 @@ TEST(Cluster, ATargetOfZeroAndBadMeshesAreRefused) {
 
 TEST(Cluster, ATargetNotBelowTheInputReturnsIt) {
     EXPECT_EQ(hash_of(cluster(cube(), 12)), hash_of(cube()));
-    EXPECT_TRUE(cluster_with_quadrics(cube(), 100).quadrics.empty());
 }
 
 TEST(Cluster, TwoTrianglesBecomeOne) {
@@ -208,26 +205,6 @@ TEST(Cluster, FarFromTheOriginAndTinyItIsTheSame) {
     }
     const Mesh far = moved(mesh, {4096, -4096, 2048});
     EXPECT_NEAR(surface_area(cluster(far, target)), surface_area(near), 0.05);
-}
-
-TEST(Cluster, QuadricsKnowTheSurfaceOfTheirCell) {
-    const Mesh mesh = without_normals(fine_cube(32));
-    const ClusteredMesh level = cluster_with_quadrics(mesh, mesh.triangles.size() / 8);
-    ASSERT_EQ(level.quadrics.size(), level.mesh.positions.size());
-    double weight = 0;
-    for (size_t v = 0; v < level.quadrics.size(); ++v) {
-        EXPECT_GT(level.quadrics[v].trace(), 0);
-        weight += level.quadrics[v].trace();
-    }
-    // Each triangle's plane counts twice its area at each of its corners, of all cells of the cube.
-    EXPECT_NEAR(weight / 6, 6, 0.4);
-    for (size_t v = 0; v < level.quadrics.size(); ++v) {
-        const glm::vec3& p = level.mesh.positions[v];
-        const bool top = p.z > 0.999f && p.x > 0.1f && p.x < 0.9f && p.y > 0.1f && p.y < 0.9f;
-        if (top) {  // only the plane z = 1 holds it
-            EXPECT_GT(level.quadrics[v].zz, 100 * level.quadrics[v].xx);
-        }
-    }
 }
 
 TEST(Cluster, TrianglesThatAreNotNumbersAreLeftOut) {

@@ -12,12 +12,13 @@ namespace {
 
 // Merging across grid lines is dearer than the tree but better. What it may take, in nanoseconds a
 // triangle of the input, and what it does take for a cell it begins with and for each it merges.
-constexpr double kMergeBudget = 5;
+constexpr double kMergeBudget = 2;
 constexpr double kBeginCost = 135;
 constexpr double kMergeCost = 600;
 constexpr double kMostMerged = 3;  // of the cells that are left
 // How near below the target is near enough.
-constexpr double kNear = 0.985;
+constexpr double kNear = 0.95;
+constexpr double kEnough = 0.94;  // with copies left out
 constexpr int kTries = 12;
 constexpr int kGoals = 4;
 
@@ -32,33 +33,41 @@ size_t count_of(std::span<const Triangle> triangles, std::span<const uint32_t> n
     return count;
 }
 
-/// Triangles that are not there yet, however they are turned.
+/// Which of a growing list of triangles are there already, however they are turned.
 class Once {
 public:
     explicit Once(size_t most) {
-        while (size_ < 2 * most)
+        while (size_ < most)
             size_ *= 2;
-        table_.assign(size_, Triangle(kNoCell));
+        heads_.assign(size_, kNoCell);
+        entries_.reserve(most);
     }
     bool add(const Triangle& t) {
         const uint32_t low = std::min({t.x, t.y, t.z});
         const uint32_t high = std::max({t.x, t.y, t.z});
-        const Triangle sorted(low, t.x ^ t.y ^ t.z ^ low ^ high, high);
-        uint32_t key = sorted.x * 0x9e3779b1u ^ sorted.y * 0x85ebca6bu ^ sorted.z * 0xc2b2ae35u;
-        key ^= key >> 15u;
-        for (size_t at = key & (size_ - 1);; at = (at + 1) & (size_ - 1)) {
-            if (table_[at] == sorted)
+        const uint32_t middle = t.x ^ t.y ^ t.z ^ low ^ high;
+        // Near to each other for neighbors, and yet apart for those around one vertex.
+        const uint32_t spot = (middle * 0x85ebca6bu ^ high * 0xc2b2ae35u) >> (32u - kSpots);
+        uint32_t& head = heads_[(2 * low + spot) & (size_ - 1)];
+        for (uint32_t i = head; i != kNoCell; i = entries_[i].next) {
+            const Entry& entry = entries_[i];
+            if (entry.low == low && entry.middle == middle && entry.high == high)
                 return false;
-            if (table_[at].x == kNoCell) {
-                table_[at] = sorted;
-                return true;
-            }
         }
+        entries_.push_back({low, middle, high, head});
+        head = static_cast<uint32_t>(entries_.size() - 1);
+        return true;
     }
 
 private:
+    static constexpr unsigned kSpots = 12;  // bits
+    struct Entry {
+        uint32_t low, middle, high;
+        uint32_t next;
+    };
     size_t size_ = 64;
-    ScratchVector<Triangle> table_;
+    ScratchVector<uint32_t> heads_;
+    ScratchVector<Entry> entries_;
 };
 
 Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group, size_t count) {
@@ -79,15 +88,16 @@ Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group, size_t count)
 }
 
 /// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when none
-/// is, one above.
+/// is, one above. `left` is how many cells to try first (0: unknown), and becomes how many it has.
 ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
-                               size_t& count) {
+                               size_t& count, size_t& left) {
     size_t few = 1;  // cells that give too few triangles, and how many
     size_t few_triangles = 0;
     size_t many = cells.count();
     size_t many_triangles = cells.triangles.size();
     ScratchVector<uint32_t> best;
     bool best_within = false;
+    size_t next = left;
     count = 0;
     const auto take = [&](size_t cells_left) {
         const std::span<const uint32_t> now = tree.joined(cells_left);
@@ -99,6 +109,7 @@ ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted
             best.assign(now.begin(), now.end());
             best_within = within;
             count = found;
+            left = cells_left;
         }
         return found;
     };
@@ -113,16 +124,17 @@ ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted
         if (i >= 6)
             part = 0.5;
         const auto step = static_cast<size_t>(part * static_cast<double>(many - few));
-        const size_t left = std::clamp(few + step, few + 1, many - 1);
-        const size_t found = take(left);
+        const size_t tried = std::clamp(next > 0 ? next : few + step, few + 1, many - 1);
+        const size_t found = take(tried);
+        next = 0;
         if (static_cast<double>(found) > wanted) {
-            many = left;
+            many = tried;
             many_triangles = found;
             continue;
         }
         if (static_cast<double>(found) >= near * wanted)
             break;
-        few = left;
+        few = tried;
         few_triangles = found;
     }
     if (best.empty())  // fewer cells give none at all
@@ -205,9 +217,10 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     job.check();
     const auto wanted = static_cast<double>(target);
     Grouped best;
+    size_t count = 0;
+    size_t left = 0;
     if (plan.merges) {
-        size_t count = 0;
-        ScratchVector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count);
+        ScratchVector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count, left);
         best = grouped(cells, std::move(group), count);
         return best.triangles.size() > target ? merged(cells, best, tree.nodes(), target, job)
                                               : best;
@@ -216,20 +229,21 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     double too_few = 0;   // goals that left too few triangles, and too many
     double too_many = 0;  // 0: none yet
     for (int i = 0; i < kGoals; ++i) {
-        size_t count = 0;
-        ScratchVector<uint32_t> group = joined(cells, tree, goal, kNear, count);
+        ScratchVector<uint32_t> group = joined(cells, tree, goal, kNear, count, left);
         Grouped found = grouped(cells, std::move(group), count);
         const size_t kept = found.triangles.size();
         const bool within = kept <= target;
         if (best.triangles.empty() || (within && kept > best.triangles.size()))
             best = std::move(found);
-        if (kept == 0 || (within && static_cast<double>(kept) >= 0.96 * wanted) ||
+        if (kept == 0 || (within && static_cast<double>(kept) >= kEnough * wanted) ||
             (within && count >= cells.triangles.size()) || (!within && too_few == 0))
             break;
         // What was there twice has made room for others.
         (within ? too_few : too_many) = goal;
+        const double before = goal;
         goal = too_many > 0 ? 0.5 * (too_few + too_many)
                             : 0.99 * goal * wanted / static_cast<double>(kept);
+        left = static_cast<size_t>(goal / before * static_cast<double>(left));
     }
     return best;
 }

@@ -42,7 +42,7 @@ CellMerge::CellMerge(std::span<const CellQuadric> quadrics, std::span<const Tria
       count_(quadrics.size()) {
     for (uint32_t i = 0; i < quadrics.size(); ++i) {
         part_of_[i] = i;
-        least_[i] = quadrics[i].c > 0 ? quadrics[i].least() : 0;
+        least_[i] = quadrics[i].c() > 0 ? quadrics[i].least() : 0;
     }
     const auto edges = edges_of(triangles);
     pairs_.reserve(edges.size());

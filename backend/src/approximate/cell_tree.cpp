@@ -26,7 +26,7 @@ CellTree::CellTree(const Cells& cells) : cells_(cells.count()) {
     open.reserve(64);
     for (size_t i = 0; i < cells_; ++i) {
         Open node{static_cast<uint32_t>(i), cells.split[i], 0, 0, cells.quadrics[i]};
-        if (node.quadric.c > 0)  // else all its vertices are one
+        if (node.quadric.c() > 0)  // else all its vertices are one
             node.least = node.quadric.least();
         while (!open.empty() && open.back().split < node.split) {
             const Open& left = open.back();
@@ -51,9 +51,14 @@ std::span<const uint32_t> CellTree::joined(size_t count) {
     const size_t joins = cells_ - std::clamp<size_t>(count, 1, std::max<size_t>(cells_, 1));
     float most = -1;
     if (joins > 0) {
-        const auto last = order_.begin() + static_cast<std::ptrdiff_t>(joins - 1);
-        std::nth_element(order_.begin(), last, order_.end());
-        most = *last;
+        const auto at = [&](size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+        // Where it was asked before the numbers are apart already.
+        const auto above = std::lower_bound(asked_.begin(), asked_.end(), joins - 1);
+        const size_t end = above == asked_.end() ? order_.size() : *above + 1;
+        const size_t begin = above == asked_.begin() ? 0 : *std::prev(above) + 1;
+        std::nth_element(at(begin), at(joins - 1), at(end));
+        asked_.insert(above, joins - 1);
+        most = order_[joins - 1];
     }
     for (size_t i = parent_.size(); i-- > 0;) {  // parents come after their halves
         const uint32_t above = parent_[i];

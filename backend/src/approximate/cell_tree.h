@@ -26,6 +26,7 @@ private:
     ScratchVector<uint32_t> parent_;  // of each cell, then of each node above
     ScratchVector<float> cost_;       // of joining a node above, never less than of those below it
     ScratchVector<float> order_;      // the same, partly sorted
+    ScratchVector<size_t> asked_;     // places in that with smaller ones before and larger behind
     ScratchVector<uint32_t> node_;    // where each node is now
     size_t cells_;
 };

@@ -14,11 +14,10 @@ constexpr uint32_t kNoCell = ~uint32_t{0};
 /// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in a
 /// frame whose unit is the mesh's largest extent.
 struct Cells {
-    glm::dvec3 low{0.0};            // origin of the frame, metres
-    double unit = 0;                // metres; 0: the mesh has no extent, and there are no cells
-    float step = 0;                 // the longest side of a cell's box, in the frame
-    ScratchVector<uint32_t> twins;  // of each vertex the first at its position; empty: all differ
-    ScratchVector<uint32_t> cell;   // of each vertex
+    glm::dvec3 low{0.0};           // origin of the frame, metres
+    double unit = 0;               // metres; 0: the mesh has no extent, and there are no cells
+    float step = 0;                // the longest side of a cell's box, in the frame
+    ScratchVector<uint32_t> cell;  // of each vertex
     ScratchVector<CellQuadric> quadrics;  // of each cell
     ScratchVector<uint8_t> split;  // the highest bit in which its code and the next one's differ
     ScratchVector<Triangle> triangles;  // of cells, where the three differ

@@ -16,7 +16,7 @@ namespace {
 // Cells of the fine grid for each one that the tree leaves: enough to choose from.
 constexpr double kCellsPerLeft = 1.6;
 // Bytes it takes in all, for each vertex and each triangle.
-constexpr size_t kScratch = 40;
+constexpr size_t kScratch = 64;
 
 /// The triangles with finite corners; nothing when these are all.
 std::optional<Mesh> finite_part(const Mesh& mesh) {
@@ -80,40 +80,46 @@ ScratchVector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const G
 
 /// One vertex for each group that a triangle uses.
 struct Places {
-    ScratchVector<uint32_t> of;  // a group's place; kNoCell where nothing uses it
-    ScratchVector<CellQuadric> quadrics;
+    ScratchVector<uint32_t> of;       // a group's place; kNoCell where nothing uses it
     ScratchVector<glm::vec3> points;  // metres
 };
 
 Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
+    constexpr uint32_t kUsed = kNoCell - 1;
     Places places;
     places.of.assign(nodes, kNoCell);
-    uint32_t count = 0;
-    for (const Triangle& t : grouping.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            if (places.of[t[i]] == kNoCell)
-                places.of[t[i]] = count++;
-        }
-    }
-    places.quadrics.resize(count);
-    ScratchVector<glm::vec3> lows(count, glm::vec3(2));  // of the cells' origins, in the frame
-    ScratchVector<glm::vec3> highs(count, glm::vec3(-1));
+    for (const Triangle& t : grouping.triangles)
+        places.of[t.x] = places.of[t.y] = places.of[t.z] = kUsed;
+    struct Sum {
+        CellQuadric quadric;
+        Four low, high;  // of the cells' origins, in the frame
+    };
+    ScratchVector<Sum> sums;
+    sums.reserve(std::min(cells.count(), 2 * grouping.triangles.size()) + 1);
     for (size_t i = 0; i < cells.count(); ++i) {
-        const uint32_t place = places.of[grouping.group[i]];
+        const CellQuadric& quadric = cells.quadrics[i];
+        uint32_t& place = places.of[grouping.group[i]];
         if (place == kNoCell)
             continue;
-        const CellQuadric& quadric = cells.quadrics[i];
-        places.quadrics[place].gather(quadric);
-        lows[place] = glm::min(lows[place], quadric.origin);
-        highs[place] = glm::max(highs[place], quadric.origin);
+        if (place == kUsed) {
+            place = static_cast<uint32_t>(sums.size());
+            sums.push_back({quadric, quadric.at, quadric.at});
+            continue;
+        }
+        Sum& sum = sums[place];
+        sum.quadric.add(quadric);
+        sum.low = least_of(sum.low, quadric.at);
+        sum.high = most_of(sum.high, quadric.at);
     }
-    places.points.reserve(count);
-    for (size_t i = 0; i < count; ++i) {
+    places.points.reserve(sums.size());
+    for (const Sum& sum : sums) {
         // Planes that hardly differ meet anywhere: not far from what they are planes of.
-        const glm::vec3 size = highs[i] - lows[i];
+        const glm::vec3 low = first_three(sum.low);
+        const glm::vec3 high = first_three(sum.high);
+        const glm::vec3 size = high - low;
         const glm::vec3 room(0.25f * std::max({size.x, size.y, size.z}) + cells.step);
-        const glm::vec3 point = places.quadrics[i].lowest();
-        places.points.push_back(cells.metres(glm::clamp(point, lows[i] - room, highs[i] + room)));
+        const glm::vec3 point = sum.quadric.lowest();
+        places.points.push_back(cells.metres(glm::clamp(point, low - room, high + room)));
     }
     return places;
 }
@@ -122,7 +128,7 @@ Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
 class Assembly {
 public:
     Assembly(const Mesh& mesh, const Cells& cells, const Grouped& grouping, const Places& places)
-        : mesh_(mesh), places_(places) {
+        : mesh_(mesh) {
         const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
         ScratchVector<uint32_t> patch;
         if (attributes)
@@ -130,6 +136,8 @@ public:
         ScratchVector<uint32_t> vertex_of(attributes ? patch.size() : places.points.size(),
                                           kNoCell);
         out_.triangles.reserve(grouping.triangles.size());
+        if (!attributes)
+            out_.positions.reserve(places.points.size());
         for (size_t i = 0; i < grouping.triangles.size(); ++i) {
             const Triangle& groups = grouping.triangles[i];
             const Triangle& source = mesh.triangles[grouping.sources[i]];
@@ -145,7 +153,6 @@ public:
                 if (vertex == kNoCell) {
                     vertex = static_cast<uint32_t>(out_.positions.size());
                     out_.positions.push_back(places.points[place]);
-                    place_.push_back(place);
                 }
                 t[k] = vertex;
             }
@@ -159,20 +166,7 @@ public:
             mend_normals();
     }
 
-    ClusteredMesh result(double unit, bool with_quadrics) {
-        ClusteredMesh out;
-        if (with_quadrics) {
-            out.quadrics.reserve(place_.size());
-            const double scale = unit * unit;
-            for (const uint32_t place : place_) {
-                const PlaneSum& a = places_.quadrics[place].a;
-                out.quadrics.push_back({scale * a.xx, scale * a.xy, scale * a.xz, scale * a.yy,
-                                        scale * a.yz, scale * a.zz});
-            }
-        }
-        out.mesh = std::move(out_);
-        return out;
-    }
+    Mesh result() { return std::move(out_); }
 
 private:
     /// Normals and colors are the patch's mean, texture coordinates those of its vertex nearest to
@@ -235,28 +229,24 @@ private:
                     out_.uvs.push_back(glm::vec2(out_.uvs[from]));
                 if (!out_.colors.empty())
                     out_.colors.push_back(glm::vec4(out_.colors[from]));
-                place_.push_back(place_[from]);
             }
         }
     }
 
     const Mesh& mesh_;
-    const Places& places_;
     Mesh out_;
-    ScratchVector<uint32_t> place_;  // of each of its vertices
 };
 
-ClusteredMesh clustered(const Mesh& mesh, size_t target, bool with_quadrics, const Job& job) {
+}  // namespace
+
+Mesh cluster(const Mesh& mesh, size_t target, const Job& job) {
     check(mesh);
     if (target == 0)
         fail(Status::InvalidArgument, "the target is 0 triangles");
-    ClusteredMesh out;
-    if (mesh.triangles.size() <= target) {
-        out.mesh = mesh;
-        return out;
-    }
+    if (mesh.triangles.size() <= target)
+        return mesh;
     if (const std::optional<Mesh> part = finite_part(mesh))
-        return clustered(*part, target, with_quadrics, job);
+        return cluster(*part, target, job);
     Scratch scratch(kScratch * (mesh.positions.size() + mesh.triangles.size()));
     const GroupingPlan plan(mesh.triangles.size(), target);
     const double least = kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target);
@@ -265,28 +255,16 @@ ClusteredMesh clustered(const Mesh& mesh, size_t target, bool with_quadrics, con
     if (cells.count() > 0)
         grouping = group_cells(cells, plan, target, job);
     job.progress(0.8);
-    if (grouping.triangles.empty()) {  // no extent, or all of it in specks
-        out.mesh = largest(mesh, target);
-        return out;
-    }
+    if (grouping.triangles.empty())  // no extent, or all of it in specks
+        return largest(mesh, target);
     const Places places = places_of(cells, grouping, 2 * cells.count());
-    out = Assembly(mesh, cells, grouping, places).result(cells.unit, with_quadrics);
-    if (out.mesh.empty())
-        out.mesh = largest(mesh, target);
-    if (out.mesh.triangles.size() > target)
-        out = {largest(out.mesh, target), {}};
+    Mesh out = Assembly(mesh, cells, grouping, places).result();
+    if (out.empty())
+        out = largest(mesh, target);
+    if (out.triangles.size() > target)
+        out = largest(out, target);
     job.progress(1);
     return out;
-}
-
-}  // namespace
-
-Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job) {
-    return clustered(mesh, triangles, false, job).mesh;
-}
-
-ClusteredMesh cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job) {
-    return clustered(mesh, triangles, true, job);
 }
 
 }  // namespace lodestone::approximate

@@ -2,11 +2,8 @@
 // Clustering: the fastest simplification; joins what lies together, whatever it is connected to.
 #pragma once
 
-#include "approximate/quadric.h"
 #include "base/job.h"
 #include "model/mesh.h"
-
-#include <vector>
 
 namespace lodestone::approximate {
 
@@ -20,14 +17,5 @@ namespace lodestone::approximate {
 /// Error(InvalidArgument) as check(mesh) does, or for a target of 0. Same input, same bits.
 /// source: dissertation 3.3.6 (Rossignac & Borrel 1993).
 Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job = {});
-
-/// Clusters as the first phase of something more careful.
-struct ClusteredMesh {
-    Mesh mesh;
-    /// Of each vertex, relative to its position: the squared distances to its cell's planes, m^4, a
-    /// plane weighing twice its area as in the collapse. Vertices that a seam splits have the same. Empty where nothing was joined.
-    std::vector<Quadric> quadrics;
-};
-ClusteredMesh cluster_with_quadrics(const Mesh& mesh, size_t triangles, const Job& job = {});
 
 }  // namespace lodestone::approximate

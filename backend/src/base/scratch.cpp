@@ -80,7 +80,7 @@ void Scratch::give_back(void* start, size_t bytes) {
 void Scratch::grow(size_t bytes) {
     // What is never touched costs no memory, so a block may be generous.
     size_t size = std::max(bytes, blocks_.empty() ? expected_ : expected_ / 2);
-    const bool large = size >= kPage / 2;
+    const bool large = size >= kPage / 4;
     const size_t alignment = large ? kPage : kAlignment;
     size = rounded_up(size, alignment);
     blocks_.reserve(blocks_.size() + 1);

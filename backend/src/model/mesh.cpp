@@ -108,6 +108,11 @@ void check(const Mesh& mesh) {
     if (!mesh.slots.empty() && mesh.slots.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, mesh.slots.size(), " material slots for ",
              mesh.triangles.size(), " triangles");
+    Triangle highest(0);  // all of them first, without a branch
+    for (const Triangle& t : mesh.triangles)
+        highest = glm::max(highest, t);
+    if (mesh.triangles.empty() || std::max({highest.x, highest.y, highest.z}) < vertices)
+        return;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (int corner = 0; corner < 3; ++corner) {
             if (mesh.triangles[i][corner] >= vertices)
