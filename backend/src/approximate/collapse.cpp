@@ -147,6 +147,9 @@ bool Collapser::find_coinciding() {
             if (!other.on(corner.next) || !other.on(corner.last) ||
                 std::find(doomed_.begin(), doomed_.end(), other.triangle) != doomed_.end())
                 continue;
+            // Of one side both stay: their edges have four triangles then, as pinches do.
+            if (other.next != corner.last && effort_ == Effort::Topology)
+                continue;
             doomed_.push_back(corner.triangle);
             if (other.next == corner.last)
                 doomed_.push_back(other.triangle);

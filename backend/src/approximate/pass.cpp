@@ -315,11 +315,16 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
         limit = std::min(
             limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
     }
+    // Edges with more than two triangles are the input's, to stay, or all of its closing.
+    if (effort >= Effort::Topology && !asked_) {
+        asked_ = true;
+        loops_ = !has_pinches(mesh_, adjacency_);
+    }
     const bool usual = effort == Effort::Careful && reach_ == 1;
     edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
     Batch(*this, effort, start, want, limit).run(job);
     if (effort >= Effort::Topology)
-        cut_ = cut_pinches(mesh_);
+        cut_ = cut_pinches(mesh_, loops_);
     // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
     reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);

@@ -42,8 +42,10 @@ private:
     Edges edges_;
     Parts parts_;
     bool begun_ = false;
-    bool measured_ = false;      // parts, as they were before the first pass to a target
-    bool cut_ = false;           // parts may have become several
+    bool measured_ = false;  // parts, as they were before the first pass to a target
+    bool cut_ = false;       // parts may have become several
+    bool asked_ = false;     // whether loops of pinched edges may be cut
+    bool loops_ = false;
     double reach_ = 1;           // so many times more candidates
     std::vector<uint8_t> used_;  // as an end in this pass, by vertex
 };

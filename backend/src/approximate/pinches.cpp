@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/pinches.h"
 
-#include "approximate/adjacency.h"
 #include "approximate/neighbors.h"
 #include "base/disjoint_sets.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -23,8 +24,9 @@ constexpr double kApart = 1.0 / 64;
 class PinchCutter {
 public:
     explicit PinchCutter(CollapseMesh& mesh) : mesh_(mesh) {}
-    /// Gives all fans that close but one vertices of their own. False: there were none.
-    bool cut(uint32_t vertex, std::span<const uint32_t> ring);
+    /// Gives all fans that close but one vertices of their own; with `loops` then those that close
+    /// where the four triangles of an edge are taken as two pairs. False: there were none.
+    bool cut(uint32_t vertex, std::span<const uint32_t> ring, bool loops);
 
 private:
     /// A side of a triangle at the vertex.
@@ -41,7 +43,10 @@ private:
         bool split = false;  // ends at two edges that others end at, too
         bool closes() const { return !split && (count == 0 || (count == 2 && leaving == 1)); }
     };
-    void find_fans(uint32_t vertex);
+    void find_fans(uint32_t vertex, bool pairs);
+    /// Two triangles of each side: a pair each with the solid between them.
+    bool makes_pairs(size_t begin, size_t end) const;
+    void join_pairs(uint32_t vertex, size_t begin);
     uint32_t copy(uint32_t vertex);
     /// fan_ from a vertex to its copy.
     void give(uint32_t vertex, uint32_t to);
@@ -59,7 +64,7 @@ private:
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> wedges_;  // by copy and the one it had
 };
 
-void PinchCutter::find_fans(uint32_t vertex) {
+void PinchCutter::find_fans(uint32_t vertex, bool pairs) {
     const auto count = static_cast<uint32_t>(ring_.size());
     sides_.clear();
     for (uint32_t i = 0; i < count; ++i) {
@@ -82,10 +87,14 @@ void PinchCutter::find_fans(uint32_t vertex) {
     each_edge([&](size_t begin, size_t end) {
         if (end - begin == 2)
             join(parents_, sides_[begin].at, sides_[begin + 1].at);
+        else if (pairs && makes_pairs(begin, end))
+            join_pairs(vertex, begin);
     });
     ends_.assign(count, {});
     each_edge([&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end && end - begin > 2; ++i) {
+        if (end - begin <= 2 || (pairs && makes_pairs(begin, end)))
+            return;
+        for (size_t i = begin; i < end; ++i) {
             FanEnds& fan = ends_[root_of(parents_, sides_[i].at)];
             fan.split |= fan.count > 0 && fan.neighbor != sides_[i].neighbor;
             fan.neighbor = sides_[i].neighbor;
@@ -93,6 +102,43 @@ void PinchCutter::find_fans(uint32_t vertex) {
             ++fan.count;
         }
     });
+}
+
+bool PinchCutter::makes_pairs(size_t begin, size_t end) const {
+    int leaving = 0;
+    for (size_t i = begin; i < end; ++i)
+        leaving += sides_[i].leaving;
+    return end - begin == 4 && leaving == 2;
+}
+
+void PinchCutter::join_pairs(uint32_t vertex, size_t begin) {
+    const glm::dvec3 from = mesh_.points[vertex];
+    const glm::dvec3 along = mesh_.points[sides_[begin].neighbor] - from;
+    std::array<std::array<uint32_t, 2>, 2> at{};  // by whether they leave
+    std::array<std::array<double, 2>, 2> angles{};
+    std::array<size_t, 2> found{};
+    glm::dvec3 x(0.0);
+    for (size_t i = begin; i < begin + 4; ++i) {
+        const Side& side = sides_[i];
+        const Triangle& t = mesh_.triangles[ring_[side.at]];
+        const uint32_t third = t.x ^ t.y ^ t.z ^ vertex ^ side.neighbor;
+        // Turned away from the edge; with y it is as long as with x times the edge's length.
+        const glm::dvec3 y = glm::cross(along, mesh_.points[third] - from);
+        if (i == begin)
+            x = y;
+        const size_t n = found[side.leaving]++;
+        at[side.leaving][n] = side.at;
+        angles[side.leaving][n] =
+            std::atan2(glm::dot(glm::cross(x, y), along), glm::dot(x, y) * glm::length(along));
+    }
+    // From a triangle that leaves to one that arrives, through the solid.
+    const auto solid = [&](size_t leaving, size_t arriving) {
+        const double angle = angles[1][leaving] - angles[0][arriving];
+        return angle < 0 ? angle + 2 * 3.14159265358979 : angle;
+    };
+    const size_t other = solid(0, 0) + solid(1, 1) <= solid(0, 1) + solid(1, 0) ? 0 : 1;
+    join(parents_, at[1][0], at[0][other]);
+    join(parents_, at[1][1], at[0][1 - other]);
 }
 
 uint32_t PinchCutter::copy(uint32_t vertex) {
@@ -157,11 +203,12 @@ void PinchCutter::set_apart(uint32_t fresh) {
         mesh_.facets[t] = glm::vec3(mesh_.facet_of(mesh_.triangles[t]));
 }
 
-bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring) {
+bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring, bool loops) {
     ring_.assign(ring.begin(), ring.end());
     wedges_.clear();
+    bool pairs = false;
     for (int nested = 0; nested < kMostNested; ++nested) {
-        find_fans(vertex);
+        find_fans(vertex, pairs);
         by_fan_.clear();
         for (uint32_t i = 0; i < ring_.size(); ++i)
             by_fan_.emplace_back(root_of(parents_, i), ring_[i]);
@@ -183,15 +230,40 @@ bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring) {
             else
                 give(vertex, copy(vertex));
         }
-        if (ring_.size() == all)
+        if (ring_.size() < all)
+            continue;
+        if (pairs || !loops)
             break;
+        pairs = true;
     }
     return ring_.size() < ring.size();
 }
 
 }  // namespace
 
-bool cut_pinches(CollapseMesh& mesh) {
+bool has_pinches(const CollapseMesh& mesh, const Adjacency& adjacency) {
+    Neighbors neighbors;
+    std::vector<uint32_t> ends;
+    for (uint32_t v = 0; v < mesh.points.size(); ++v) {
+        const std::span<const uint32_t> ring = adjacency.around(v);
+        if (neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+            neighbors.is_one(ring.size()))
+            continue;
+        ends.clear();
+        for (const uint32_t t : ring) {
+            const Ends sides = ends_of(mesh.triangles[t], v);
+            ends.insert(ends.end(), {sides.next, sides.last});
+        }
+        std::sort(ends.begin(), ends.end());
+        for (size_t i = 2; i < ends.size(); ++i) {
+            if (ends[i] == ends[i - 2])
+                return true;
+        }
+    }
+    return false;
+}
+
+bool cut_pinches(CollapseMesh& mesh, bool loops) {
     const size_t before = mesh.points.size();
     bool cut = true;
     for (int sweep = 0; cut && sweep < kMostSweeps; ++sweep) {
@@ -205,7 +277,7 @@ bool cut_pinches(CollapseMesh& mesh) {
             const std::span<const uint32_t> ring = adjacency.around(v);
             const bool one = neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
                              neighbors.is_one(ring.size());
-            if (!one && cutter.cut(v, ring))
+            if (!one && cutter.cut(v, ring, loops))
                 cut = true;
         }
     }
