@@ -113,17 +113,29 @@ TEST(Deviation, SeesASpikeButNotOneThousandthOfTheWeight) {
     EXPECT_NEAR(deviation(spiked(10), flat).error, 0.01, 1e-6);
 }
 
-TEST(Deviation, IsExactAsLongAsItIsOfUseAndNeverSmallerThanItIs) {
+TEST(Deviation, IsExactAsLongAsItIsOfUseAndElseToldToBeMore) {
     const Mesh finest = shapes::sphere(1, 5);
     const Mesh coarse = shapes::sphere(1, 2);
     const DeviationReference reference(finest, {2048, 2048, 1});
     const double error = reference.of(coarse).error;
     for (const double useless : {1e9, 2 * error, 1.001 * error})
         EXPECT_EQ(reference.of(coarse, {}, {}, useless).error, error) << useless;
-    EXPECT_GE(reference.of(coarse, {}, {}, 0.9 * error).error, error);
+    for (const double useless : {0.99 * error, 0.9 * error, 0.5 * error})
+        EXPECT_GT(reference.of(coarse, {}, {}, useless).error, useless) << useless;
     EXPECT_EQ(reference.of(coarse, {}, {}, 0.1 * error).error,
               std::numeric_limits<double>::infinity());
     EXPECT_EQ(reference.of(coarse, {}, {}, 0).error, std::numeric_limits<double>::infinity());
+}
+
+TEST(Deviation, WhatSticksOutOfAStandInIsFoundWhereTheOriginalIsNearAllOfIt) {
+    const Mesh finest = shapes::sphere(1, 4);
+    Mesh spoiled = finest;
+    append(spoiled, shapes::sphere(0.5, 3), {glm::dmat3(1.0), {3, 0, 0}});
+    const DeviationReference reference(finest, {2048, 2048, 1});
+    // From the original to it nothing is far, so that way tells nothing against a useless error.
+    for (const double useless : {0.01, 0.1, 2.0})
+        EXPECT_GT(reference.of(spoiled, {}, {}, useless).error, useless) << useless;
+    EXPECT_NEAR(reference.of(spoiled, {}, {}, 10).error, 2.5, 0.05);
 }
 
 TEST(Deviation, FindsTheNearestWantedPointLikeLookingAtAll) {

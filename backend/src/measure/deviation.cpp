@@ -254,18 +254,18 @@ Deviation DeviationReference::compare(const Seen& seen, const Mesh& stand_in,
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
-    // What the stand-in shows where, the visible points have asked already.
-    std::vector<Sample> samples;
-    add_area_samples(stand_in, scenes.whole(), count, options_.seed, samples);
-    add_vertex_samples(stand_in, scenes.whole(),
-                       weighted_vertices(stand_in, most_vertices, options_.seed), samples);
     const ray::Skin* const skin = surface.skin.get();
     const auto against = [&](const LookScenes& other) {
         return Against{other, *seen.looks, scenes_, palette_, none, stand_in, skin};
     };
     const Deviation there = measure(seen.points, against(scenes), nearest, useless, job);
-    if (!std::isfinite(there.error))
+    if (there.error > useless)
         return there;
+    // What the stand-in shows where, the visible points have asked already.
+    std::vector<Sample> samples;
+    add_area_samples(stand_in, scenes.whole(), count, options_.seed, samples);
+    add_vertex_samples(stand_in, scenes.whole(),
+                       weighted_vertices(stand_in, most_vertices, options_.seed), samples);
     const Deviation back = measure(samples, against(scenes_), {}, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }

@@ -47,8 +47,9 @@ public:
 
     /// `surface` is numbered by the same palette. Same bits on any number of threads, and may be
     /// called from any. If one of the two meshes has nothing to measure to, both numbers are the
-    /// diameter of the other's bounding sphere; two empty meshes agree. An error much larger than
-    /// `useless` may be returned as infinite, which takes less time.
+    /// diameter of the other's bounding sphere; two empty meshes agree. Of an error larger than
+    /// `useless` it may be told no more than that it is, which takes less time: by any number above
+    /// `useless`, infinite where that is very sure.
     Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
                  double useless = std::numeric_limits<double>::infinity()) const {
         return of(stand_in, surface, {}, useless, job);
