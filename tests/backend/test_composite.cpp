@@ -136,6 +136,24 @@ TEST_F(Composites, LevelsShareWhatIsNotSplit) {
     }
 }
 
+TEST_F(Composites, LevelsThatAreNotAskedForLeaveTheOthersAsTheyAre) {
+    const Mesh mesh = leaves_in_a_ball(500);
+    const Attributes wanted = attributes_of(mesh, 1);
+    approximate::CompositeOptions options{1};
+    const std::vector<Clustered> all = approximate::composites(mesh, nullptr, wanted, options);
+    ASSERT_EQ(all.size(), 4u);
+    options.least = 8;
+    options.most = 16;
+    const std::vector<Clustered> some = approximate::composites(mesh, nullptr, wanted, options);
+    ASSERT_EQ(some.size(), 2u);
+    for (size_t i = 0; i < some.size(); ++i) {
+        EXPECT_EQ(some[i].clusters, all[i + 1].clusters);
+        for (size_t k = 0; k < some[i].composite.solids.size(); ++k)
+            EXPECT_EQ(some[i].composite.solids[k].primitive.half_size,
+                      all[i + 1].composite.solids[k].primitive.half_size);
+    }
+}
+
 TEST_F(Composites, ColorsKeepApartWhatPlacesWouldJoin) {
     Material red;
     red.base_color = {0.9, 0.05, 0.05};

@@ -21,7 +21,6 @@
 namespace lodestone::approximate {
 namespace {
 
-constexpr uint32_t kSamples = 8192;
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
 constexpr int kClearRounds = 4;
 constexpr uint64_t kClearRays = 8192;  // each round
@@ -40,38 +39,40 @@ Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::Visi
 }
 
 /// Of what can be seen.
-Samples seen(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin, uint64_t seed) {
+Samples seen(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
+             const CompositeOptions& options) {
     Samples out;
-    const measure::VisibleSampler sampler(mesh, scene, seed);
+    const measure::VisibleSampler sampler(mesh, scene, options.seed);
     if (sampler.empty())
         return out;
     uint32_t hits = 0;
     std::array<measure::VisiblePoint, 2> points;
-    for (uint32_t ray = 0; ray < kSamples; ++ray) {
+    for (uint32_t ray = 0; ray < options.samples; ++ray) {
         const int count = sampler.cast(ray, points);
         hits += count > 0 ? 1 : 0;
         for (int i = 0; i < count; ++i)
             out.points.push_back(sample_at(mesh, skin, points[static_cast<size_t>(i)]));
     }
     if (!out.points.empty())
-        out.area =
-            sampler.reference_area() * hits / kSamples / static_cast<double>(out.points.size());
+        out.area = sampler.reference_area() * hits / options.samples /
+                   static_cast<double>(out.points.size());
     return out;
 }
 
 /// Of all there is, hidden or not, but what is transparent.
-Samples all_of(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin, uint64_t seed) {
+Samples all_of(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
+               const CompositeOptions& options) {
     Samples out;
-    const measure::VisibleSampler sampler(mesh, scene, seed);
+    const measure::VisibleSampler sampler(mesh, scene, options.seed);
     if (sampler.empty())
         return out;
-    const measure::Sobol numbers(measure::scramble(seed) + 3);
-    for (uint32_t i = 0; i < kSamples; ++i) {
+    const measure::Sobol numbers(measure::scramble(options.seed) + 3);
+    for (uint32_t i = 0; i < options.samples; ++i) {
         const measure::VisiblePoint at = sampler.on_surface(numbers.point(i));
         if (scene.shows(at.triangle, at.u, at.v))
             out.points.push_back(sample_at(mesh, skin, at));
     }
-    out.area = sampler.possible_area() / kSamples;
+    out.area = sampler.possible_area() / options.samples;
     return out;
 }
 
@@ -285,7 +286,7 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                   const Job& job) {
     std::vector<Clustered> out;
     const ray::Scene scene(mesh, skin);
-    Samples samples = seen(mesh, scene, skin, options.seed);
+    Samples samples = seen(mesh, scene, skin, options);
     if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
         return out;
     Clusters clusters(std::move(samples));
@@ -307,6 +308,8 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
         const size_t parts = clusters.all().size();
         if (parts < 2 || (!out.empty() && out.back().clusters.size() == parts))
             break;
+        if (count < options.least)
+            continue;
         Clustered level;
         for (const Cluster& cluster : clusters.all()) {
             level.composite.solids.push_back(solid_of(cluster.attributes));
@@ -342,7 +345,7 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
             part_of.push_back(parts[triangle]);
     }
     const ray::Scene scene(mesh, skin);
-    Samples samples = all_of(mesh, scene, skin, options.seed);
+    Samples samples = all_of(mesh, scene, skin, options);
     if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
         return out;
     Clusters clusters(std::move(samples));

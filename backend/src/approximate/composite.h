@@ -26,10 +26,13 @@ struct CompositeOptions {
     bool shape = true;           // match centroid and variances of the whole, not its area alone
     int rounds = 12;             // of matching on the way, at most
     uint32_t measured = 131072;  // rays that measure the mesh once more for this; 0: as `wanted` is
-    size_t most = 32;            // parts
+    size_t least = 4;            // parts
+    size_t most = 32;
+    uint32_t samples = 8192;  // rays that find what is clustered
 };
 
-/// Composites of at most 4, 8, 16 and 32 parts (fewer levels where clusters cannot be split), nested:
+/// Composites of at most 4, 8, 16 and 32 parts, those within `least` and `most` (fewer levels where
+/// clusters cannot be split), nested:
 /// one cluster of each level is split into two for the next part. Clusters are split where they are
 /// largest (area times variance), in two by place and color (2-means). Parts hide parts of each
 /// other, so each level is matched again as a whole, by rays: visible area, centroid and variances

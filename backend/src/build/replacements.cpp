@@ -8,6 +8,7 @@
 #include "build/prune.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -116,11 +117,12 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
                     const Whole& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one that
     // shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or more):
-    // the most solids that may pay are looked for among those. Fewer are hardly ever much nearer: where
+    // only those that may pay by these are matched. Fewer solids are hardly ever much nearer: where
     // not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
     constexpr double kFewerNearer = 0.75;
     constexpr uint32_t kFewRays = 4096;
+    constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
     options.shape = !airy;
@@ -130,26 +132,30 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     few.rounds = 0;
     few.rays = kFewRays;
     few.measured = 0;
-    size_t pays = 0;
+    few.samples = kFewSamples;
+    approximate::CompositeOptions exact = options;
+    exact.least = exact.most = 0;
     std::vector<Candidate> rough;  // fewest solids first
     for (const approximate::Clustered& level :
          approximate::composites(mesh, judge.skin(), judge.attributes(), few, job))
         rough.push_back(candidate_of(level));
-    for (bool hopeless = false; pays == 0 && !hopeless && !rough.empty(); rough.pop_back()) {
+    for (bool more = true; more && !rough.empty(); rough.pop_back()) {
         judge.compare_pictures(rough.back(), {}, job);
         const double error = kNearer * rough.back().error;
-        if (would_pay(rough.back(), error, candidates, whole))
-            pays = rough.back().composite->solids.size();
-        hopeless = std::none_of(rough.begin(), rough.end(), [&](const Candidate& other) {
-            return would_pay(other, kFewerNearer * error, candidates, whole);
-        });
+        if (would_pay(rough.back(), error, candidates, whole)) {
+            // It may be one of fewer than were asked for.
+            exact.least = std::bit_ceil(rough.back().composite->solids.size());
+            exact.most = std::max(exact.most, exact.least);
+            continue;
+        }
+        more =
+            exact.most == 0 && std::any_of(rough.begin(), rough.end(), [&](const Candidate& other) {
+                return would_pay(other, kFewerNearer * error, candidates, whole);
+            });
     }
     std::vector<approximate::Clustered> levels;
-    if (pays > 0) {
-        approximate::CompositeOptions exact = options;
-        exact.most = pays;
+    if (exact.most > 0)
         levels = approximate::composites(mesh, judge.skin(), judge.attributes(), exact, job);
-    }
     if (airy) {
         for (approximate::Clustered& level : approximate::clear_composites(
                  mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
@@ -162,45 +168,74 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     }
 }
 
+/// So many solids cost as much as levels that composites are tried beside. Few collapsed triangles
+/// beside a smooth thing are as good, and comparing pictures takes long.
+double dearer_than(const Whole& whole, bool by_pictures) {
+    const double solids = by_pictures ? 16 : 64;
+    return solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
+}
+
 }  // namespace
 
-void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
-                      const std::function<approximate::Crowd()>& crowd_in_mesh, const Whole& whole,
-                      const std::vector<Material>& materials, const Settings& settings,
-                      uint64_t seed, Judge& judge, const Job& job) {
+Replacements::Replacements(const Mesh& mesh,
+                           const std::function<approximate::Crowd()>& crowd_in_mesh,
+                           const Whole& whole, Judge& judge, const Job& job)
+    : mesh_(mesh), whole_(whole), judge_(judge) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
     constexpr double kFewSolids = 32;
-    const bool worth_pictures = whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
-    approximate::Crowd crowd;
-    const auto dear = [&] {
-        return bytes_within(candidates, kNear * whole.bound.radius, whole.uses) >
-               kCollapsed * whole.bytes;
-    };
-    if (worth_pictures) {
-        crowd = crowd_in_mesh();
-        if (!whole.many && !is_foliage(crowd) && !dear())
-            crowd = {};
+    worth_pictures_ = whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
+    if (worth_pictures_) {
+        crowd_ = crowd_in_mesh();
+        by_pictures_ = !judge.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
     }
-    const bool by_pictures = worth_pictures && (!crowd.empty() || !judge.solid());
+    if (!by_pictures_ && judge.solid())
+        add_primitives(solids_, whole.bound, false, judge, job);
+}
+
+double Replacements::nearest_solid() const {
+    double out = std::numeric_limits<double>::infinity();
+    for (const Candidate& solid : solids_)
+        out = std::min(out, solid.error);
+    return out;
+}
+
+std::function<double(size_t triangles, double least)> Replacements::told() const {
+    return [this](size_t triangles, double least) {
+        const auto bytes = static_cast<double>(triangles * kBytesPerTriangle);
+        const double radius = whole_.bound.radius;
+        const double dearer = dearer_than(whole_, by_pictures_);
+        if (whole_.bytes > 2 * dearer && bytes <= dearer && least > kOff * radius)
+            return kOff * radius;
+        const bool asked = !by_pictures_ && !crowd_.empty() && bytes <= kCollapsed * whole_.bytes;
+        return asked && least > kNear * radius ? kNear * radius : 0;
+    };
+}
+
+void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
+                       const Settings& settings, uint64_t seed, const Job& job) {
+    const double radius = whole_.bound.radius;
+    const bool dear =
+        bytes_within(candidates, kNear * radius, whole_.uses) > kCollapsed * whole_.bytes;
+    const bool thinned = !crowd_.empty() && (whole_.many || is_foliage(crowd_) || dear);
+    const bool by_pictures = by_pictures_ || thinned;
     if (by_pictures)
-        judge.take_pictures(mesh, crowd.empty(), job);
-    if (!crowd.empty())
-        add_pruned_levels(candidates, mesh, materials, crowd, settings.level_ratio,
-                          triangles_for(whole.most, whole.uses), seed, judge, job);
-    if (by_pictures || judge.solid())
-        add_primitives(candidates, whole.bound, by_pictures, judge, job);
-    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
-    // good, and comparing pictures takes long.
-    const double solids = by_pictures ? 16 : 64;
-    const double dearer =
-        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
+        judge_.take_pictures(mesh_, !thinned, job);
+    if (thinned)
+        add_pruned_levels(candidates, mesh_, materials, crowd_, settings.level_ratio,
+                          triangles_for(whole_.most, whole_.uses), seed, judge_, job);
+    if (by_pictures)
+        add_primitives(candidates, whole_.bound, true, judge_, job);
+    else
+        candidates.insert(candidates.end(), solids_.begin(), solids_.end());
+    const double dearer = dearer_than(whole_, by_pictures);
     constexpr size_t kFewest = 4;  // solids of the cheapest
-    const size_t most = most_solids(candidates, whole);
-    if (most >= kFewest && !judge.refracts() && whole.bytes > 2 * dearer &&
-        bytes_within(candidates, kOff * whole.bound.radius, whole.uses) > dearer) {
+    const size_t most = most_solids(candidates, whole_);
+    if (most >= kFewest && !judge_.refracts() && whole_.bytes > 2 * dearer &&
+        bytes_within(candidates, kOff * radius, whole_.uses) > dearer) {
         if (!by_pictures)
-            judge.take_pictures(mesh, true, job);
-        add_composites(candidates, mesh, by_pictures, crowd, most, seed, judge, whole, job);
+            judge_.take_pictures(mesh_, true, job);
+        add_composites(candidates, mesh_, by_pictures, thinned ? crowd_ : approximate::Crowd{},
+                       most, seed, judge_, whole_, job);
     }
 }
 

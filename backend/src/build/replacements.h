@@ -31,11 +31,31 @@ struct Whole {
     std::function<double(double bytes)> cheaper_from = {};
 };
 
-/// Pruned levels, primitives and composites of what is no environment, where they promise more than
-/// the levels among the candidates.
-void add_replacements(std::vector<Candidate>& candidates, const Mesh& mesh,
-                      const std::function<approximate::Crowd()>& crowd_in_mesh, const Whole& whole,
-                      const std::vector<Material>& materials, const Settings& settings,
-                      uint64_t seed, Judge& judge, const Job& job);
+/// Of what is no environment. All that is given must last.
+class Replacements {
+public:
+    /// Measures what costs little: a box and an ellipsoid, by distance, where that tells enough.
+    Replacements(const Mesh& mesh, const std::function<approximate::Crowd()>& crowd_in_mesh,
+                 const Whole& whole, Judge& judge, const Job& job);
+
+    /// The error of the nearest of them, which cost less than any level; infinite without one.
+    double nearest_solid() const;
+    /// Up to which error it matters to add() how near a level of so many triangles is, where the
+    /// nearest coarser one has an error of `least`.
+    std::function<double(size_t triangles, double least)> told() const;
+    /// Pruned levels, primitives and composites, where they promise more than the levels, which
+    /// `candidates` has.
+    void add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
+             const Settings& settings, uint64_t seed, const Job& job);
+
+private:
+    const Mesh& mesh_;
+    const Whole& whole_;
+    Judge& judge_;
+    approximate::Crowd crowd_;
+    bool worth_pictures_;
+    bool by_pictures_ = false;  // whatever the levels are like
+    std::vector<Candidate> solids_;
+};
 
 }  // namespace lodestone::build

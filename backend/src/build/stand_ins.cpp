@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace lodestone::build {
@@ -23,14 +24,21 @@ constexpr size_t kManyChildren = 32;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 16;
 
-/// From which error on a mesh of so many triangles is no use.
-using Useless = std::function<double(size_t triangles)>;
+/// What makes levels worth measuring.
+struct Wanted {
+    /// The error from which on a mesh of so many triangles is no use, whatever else there is.
+    std::function<double(size_t triangles)> useless;
+    /// Of what is kept in any case and costs less than a level; infinite where there is nothing.
+    double solid = std::numeric_limits<double>::infinity();
+    /// The error up to which a level's matters though it is of no use, where the nearest coarser one
+    /// has that of `least`.
+    std::function<double(size_t triangles, double least)> told = {};
+};
 
 /// From the coarsest on: what will not be near enough, by the one before it, is not measured at all.
-/// Errors up to `told` are told in any case where they are measured.
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Useless& useless, double told, Judge& judge, const Job& job) {
+                const Wanted& wanted, Judge& judge, const Job& job) {
     // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
     // in groups: a tenth; of 275 that would have to be, one).
     constexpr double kMostNearer = 4;
@@ -40,11 +48,19 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
     const Mesh& source = without_unseen_colors(mesh, materials, plain);
     std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
     std::vector<Candidate> measured;
+    std::vector<double> nexts{wanted.solid};  // where a level may end, and one of them takes over
+    double least = std::numeric_limits<double>::infinity();
     double coarser = 0;
     for (size_t i = levels.size(); i-- > 0;) {
         Mesh& level = levels[i];
-        const double most = useless(level.triangles.size());
-        if (level.empty() || coarser > kMostNearer * most) {
+        const size_t triangles = level.triangles.size();
+        // What it saves is asked for half way to the next, on a scale of powers.
+        const double useless = wanted.useless(triangles);
+        double most = wanted.told ? wanted.told(triangles, least) : 0;
+        for (const double next : nexts)
+            most = std::max(
+                most, std::isfinite(next) ? std::min(next, useless * useless / next) : useless);
+        if (level.empty() || !(most > 0) || (useless > 0 && coarser > kMostNearer * useless)) {
             coarser /= kMostNearer;
             continue;
         }
@@ -53,8 +69,11 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
         candidate.unproven = true;
-        judge.measure_mesh(candidate, job, std::max(most, told), nearest);
-        coarser = std::min(candidate.error, std::max(most, told));
+        judge.measure_mesh(candidate, job, most, nearest);
+        coarser = std::min(candidate.error, std::max(most, useless));
+        least = std::min(least, candidate.error);
+        if (candidate.error < wanted.solid)
+            nexts.push_back(candidate.error);
         if (std::isfinite(candidate.error))
             measured.push_back(std::move(candidate));
     }
@@ -261,15 +280,20 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
-    const auto never = [](size_t) { return std::numeric_limits<double>::infinity(); };
-    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), never, 0, judge, job);
+    Wanted wanted{[](size_t) { return std::numeric_limits<double>::infinity(); }};
     Whole whole{finest.summary.bound, uses};
     whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
     whole.most = bytes_each(Kind::Mesh, finest.summary.cost.bytes, uses);
-    if (object.role != Role::Environment)
-        add_replacements(
-            out.candidates, *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, materials,
-            settings, seed_of(object, settings), judge, job);
+    std::optional<Replacements> replacements;
+    if (object.role != Role::Environment) {
+        replacements.emplace(
+            *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, judge, job);
+        wanted.solid = replacements->nearest_solid();
+        wanted.told = replacements->told();
+    }
+    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), wanted, judge, job);
+    if (replacements)
+        replacements->add(out.candidates, materials, settings, seed_of(object, settings), job);
     const auto keep = [&](std::vector<Candidate>& candidates) {
         keep_useful(candidates, finest.summary.cost.bytes, uses);
     };
@@ -323,20 +347,30 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     if (!environment && !whole.many && first < fifth)
         targets.insert(targets.begin(), fifth);  // tells whether it is a crowd
     const size_t coarsest = targets.empty() ? 0 : targets.back();
-    const auto useless = [&](size_t triangles) {
-        // The coarsest is what there is where nothing is of use; the probe is no stand-in.
-        if (triangles <= coarsest || triangles > first)
-            return std::numeric_limits<double>::infinity();
-        const double own = bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]) +
+    Wanted wanted;
+    std::optional<Replacements> replacements;
+    if (!environment) {
+        replacements.emplace(
+            shell, [&] { return crowd_in(shell, occurrence); }, whole, judge, job);
+        wanted.told = replacements->told();
+        const double nearest = replacements->nearest_solid();
+        const double own = bytes_each(Kind::Box, kBytesPerPrimitive, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
-        return children.cheaper_from(own);
+        if (std::isfinite(nearest) && own < drawn_within(model, group, nearest, uses, job).bytes)
+            wanted.solid = nearest;
+    }
+    wanted.useless = [&](size_t triangles) {
+        if (triangles > first)
+            return 0.0;  // the probe is no stand-in
+        // The coarsest is what there is where nothing is of use.
+        if (triangles <= coarsest && !std::isfinite(wanted.solid))
+            return std::numeric_limits<double>::infinity();
+        return whole.cheaper_from(
+            bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]));
     };
-    add_levels(out.candidates, shell, reference.materials, targets, useless,
-               kOff * finest.bound.radius, judge, job);
-    if (!environment)
-        add_replacements(
-            out.candidates, shell, [&] { return crowd_in(shell, occurrence); }, whole,
-            reference.materials, settings, seed, judge, job);
+    add_levels(out.candidates, shell, reference.materials, targets, wanted, judge, job);
+    if (replacements)
+        replacements->add(out.candidates, reference.materials, settings, seed, job);
 
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
