@@ -6,8 +6,9 @@
 The shapes come from LODESTONE_TOOLS/reference_shapes (default ../shared/tools), and are skipped
 with a sentence without it. Intersection over union of silhouettes, mean of 20 views; 0 where there
 is no replacement. Below: the error of composites over the radius, and what they cost in POV-Ray
-over the cheapest simplified mesh of at most that error; how far off they are in area, centroid and
-tensor by other rays, 262,144; and, of each kind of stand-in of the shapes
+over the cheapest simplified mesh of at most that error; how far off single solids, as they are
+matched and as they stand on the shape's lowest point, and composites are in area, centroid and
+tensor, by a million other rays from the thing as drawn; and, of each kind of stand-in of the shapes
 painted in four colors, how far off color and brightness are by other rays, 16 times as many. Prints
 Markdown and writes JSON; no number makes it fail.
 """
@@ -26,6 +27,7 @@ TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tool
 GOAL = 0.68
 SIMPLE = ("sphere", "bounding box", "oriented bound", "box", "ellipsoid")
 OURS = ("ours, by moment", "ours, by error", "oracle")
+SOLIDS = ("sphere", "box", "ellipsoid", "clear box", "clear ellipsoid")
 COUNTS = (4, 8, 16, 32)
 AGAIN = " brightness off"
 COMPOSITES = tuple(f"composite {count}" for count in COUNTS)
@@ -95,21 +97,28 @@ def cost_table(shapes: dict[str, dict]) -> list[str]:
 
 
 def attributes_table(shapes: dict[str, dict]) -> list[str]:
-    """Composites measured again: percent of area, radius of gyration and trace of the tensor."""
+    """Stand-ins measured again: mean and worst percent of area, radius of gyration and trace of
+    the tensor; of what is clear the full tensor."""
     wanted = {"area": 0.5, "centroid": 0.1, "tensor": 1.0}
     lines = [
-        "| composites, measured again | " + " | ".join(COMPOSITES) + " |",
-        "|---" * (len(COMPOSITES) + 1) + "|",
+        "| measured again | shapes | "
+        + ", % | ".join(f"{k} ({v})" for k, v in wanted.items())
+        + ", % |",
+        "|---|---|---|---|---|",
     ]
-    for name, most in wanted.items():
+    single = tuple(name + stands for stands in ("", ", standing") for name in SOLIDS)
+    for column in single + COMPOSITES:
         cells = []
-        for column in COMPOSITES:
+        for name in wanted:
             key = f"{column} {name} off"
             of = {shape: values[key] for shape, values in shapes.items() if key in values}
+            if not of or (name == "tensor" and column.startswith("sphere")):
+                cells.append("")
+                continue
             worst = max(of, key=lambda shape: of[shape])
-            mean = statistics.fmean(of.values())
-            cells.append(f"{mean:.2f}, {of[worst]:.2f} ({worst})")
-        lines.append(f"| {name}, % (wanted {most}): mean, worst | {' | '.join(cells)} |")
+            cells.append(f"{statistics.fmean(of.values()):.2f}, {of[worst]:.2f} ({worst})")
+        count = sum(f"{column} area off" in values for values in shapes.values())
+        lines.append(f"| {column} | {count} | {' | '.join(cells)} |")
     return lines
 
 

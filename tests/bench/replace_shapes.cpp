@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How alike the outlines of shapes and of their replacements are: replace_shapes FILE.ply...
 // Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes, how
-// far off area, centroid and tensor of composites are, in percent, and color and brightness, in 255ths,
-// by 16 times the rays.
+// far off area, centroid and tensor of solids and composites are, in percent, by a million other rays
+// from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
 #include "approximate/composite.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
+#include "approximate/stand_in_material.h"
+#include "approximate/standing.h"
 #include "backend/rematched.h"
 #include "base/files.h"
+#include "build/settings.h"
 #include "format/ply.h"
 #include "measure/deviation.h"
 #include "measure/visible.h"
@@ -28,6 +31,8 @@ namespace {
 
 constexpr int kViews = 20;
 constexpr int kPixels = 96;
+constexpr uint64_t kRays = uint64_t{1} << 20u;  // of what is measured again
+constexpr int kSubdivisions = 5;                // of an ellipsoid measured again
 
 /// Points spread over the sphere by the golden angle.
 glm::dvec3 direction(int number) {
@@ -95,18 +100,69 @@ double mesh_bytes_within(const std::vector<Mesh>& levels, const std::vector<doub
     return best;
 }
 
-/// In percent: area, centroid over the radius of gyration, tensor over its trace.
-std::array<double, 3> misses(const Attributes& now, const Attributes& truth) {
+/// In percent: area, centroid over the radius of gyration, tensor over the true trace, each over its
+/// own where the size is not asked for.
+std::array<double, 3> misses(const Attributes& now, const Attributes& truth, bool size) {
     const auto trace = [](const glm::dmat3& m) { return m[0][0] + m[1][1] + m[2][2]; };
+    const double over = trace(size ? truth.moments : now.moments);
     double square = 0;
     for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 off =
-            now.moments[i] / trace(now.moments) - truth.moments[i] / trace(truth.moments);
+        const glm::dvec3 off = now.moments[i] / over - truth.moments[i] / trace(truth.moments);
         square += glm::dot(off, off);
     }
     return {100 * std::abs(now.visible_area / truth.visible_area - 1),
             100 * glm::length(now.centroid - truth.centroid) / truth.radius_of_gyration(),
             100 * std::sqrt(square)};
+}
+
+/// What stands for a shape, and what of it can be seen.
+using Found = std::map<std::string, double>;
+
+void measure_again(Found& found, const std::string& name, const Mesh& drawn, double opacity,
+                   const Attributes& truth) {
+    measure::VisibleOptions options;
+    options.rays = kRays;
+    options.seed = 99;
+    options.casting = measure::Casting::FromBound;  // by rays also what hides nothing
+    const bool clear = opacity < 1;
+    const std::vector<Material> materials{approximate::clear_material({}, opacity)};
+    const std::array<double, 3> off =
+        misses(measure::measure_visible(drawn, materials, options).attributes, truth, clear);
+    found[name + " area off"] = off[0];
+    found[name + " centroid off"] = off[1];
+    found[name + " tensor off"] = off[2];
+}
+
+/// Single solids, of the attributes that a build finds: as they are matched, and as they stand.
+void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const Attributes& truth) {
+    const build::Settings settings;
+    measure::VisibleOptions options;
+    options.rays = settings.rays;
+    options.seed = settings.seed;
+    const Attributes wanted = measure::measure_visible(mesh, {}, options).attributes;
+    options.rays *= 8;
+    const Attributes sure = measure::measure_visible(mesh, {}, options).attributes;
+    const auto add = [&](const std::string& name, bool box, const Primitive& fitted,
+                         double opacity) {
+        const Primitive primitive = approximate::settled(fitted, wanted, sure, opacity < 1);
+        const auto drawn = [&](const Primitive& one) {
+            return tessellate(Composite{{{box, one, 0}}}, kSubdivisions);
+        };
+        measure_again(found, name, drawn(primitive), opacity, truth);
+        measure_again(found, name + ", standing",
+                      drawn(approximate::kept_above(primitive, box, bound.box.low.z)), opacity,
+                      truth);
+    };
+    const double radius = std::sqrt(wanted.visible_area / (4 * std::numbers::pi));
+    add("sphere", false, {wanted.centroid, glm::dmat3(1.0), glm::dvec3(radius)}, 1);
+    if (const auto box = approximate::fit_box(wanted, bound))
+        add("box", true, *box, 1);
+    if (const auto ellipsoid = approximate::fit_ellipsoid(wanted, bound))
+        add("ellipsoid", false, *ellipsoid, 1);
+    if (const auto box = approximate::fit_clear_box(wanted, bound))
+        add("clear box", true, box->primitive, box->opacity);
+    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(wanted, bound))
+        add("clear ellipsoid", false, ellipsoid->primitive, ellipsoid->opacity);
 }
 
 void compare_shape(const std::filesystem::path& path, bool last) {
@@ -131,7 +187,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         stand_ins["ellipsoid"] = tessellate_ellipsoid(*ellipsoid, 4);
 
     const std::vector<bool> truth = silhouettes(mesh, bound);
-    std::map<std::string, double> found;
+    Found found;
     for (const auto& [name, stand_in] : stand_ins)
         found[name] = overlap(truth, silhouettes(stand_in, bound));
     const measure::DeviationReference reference(mesh, {4096, 4096, 1});
@@ -157,21 +213,17 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     errors.reserve(levels.size());
     for (const Mesh& level : levels)
         errors.push_back(reference.of(level).error);
-    options.rays = uint64_t{1} << 18u;
-    options.seed = 99;
+    options.rays = kRays;
+    options.seed = 98;
     const Attributes known = measure::measure_visible(mesh, {}, options).attributes;
+    measure_solids(found, mesh, bound, known);
     for (const approximate::Clustered& level :
          approximate::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
         const Mesh solid = tessellate(level.composite, 3);
         const std::string name = "composite " + std::to_string(count);
         found[name] = overlap(truth, silhouettes(solid, bound));
-        const std::array<double, 3> off =
-            misses(measure::measure_visible(tessellate(level.composite, 4), {}, options).attributes,
-                   known);
-        found[name + " area off"] = off[0];
-        found[name + " centroid off"] = off[1];
-        found[name + " tensor off"] = off[2];
+        measure_again(found, name, tessellate(level.composite, kSubdivisions), 1, known);
         const double error = reference.of(solid).error;
         const auto bytes = static_cast<double>(count * kBytesPerPrimitive);
         found[name + " error"] = error / bound.radius;

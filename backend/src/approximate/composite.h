@@ -22,10 +22,10 @@ struct Clustered {
 
 struct CompositeOptions {
     uint64_t seed = 1;
-    uint32_t rays = 131072;      // of the last step of matching; rounds before: a quarter, a 32nd
+    uint32_t rays = 262144;      // of the last step of matching; rounds before: an eighth, a 64th
     bool shape = true;           // match centroid and variances of the whole, not its area alone
     int rounds = 12;             // of matching on the way, at most
-    uint32_t measured = 131072;  // rays that measure the mesh once more for this; 0: as `wanted` is
+    uint32_t measured = 262144;  // rays that measure the mesh once more for this; 0: as `wanted` is
     size_t least = 4;            // parts
     size_t most = 32;
     uint32_t samples = 8192;  // rays that find what is clustered

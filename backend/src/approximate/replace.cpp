@@ -279,6 +279,16 @@ std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bou
     return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
 }
 
+Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure,
+                  bool clear) {
+    if (rough.empty() || sure.empty())
+        return primitive;
+    primitive.center += sure.centroid - rough.centroid;
+    if (!clear)
+        primitive.half_size *= std::sqrt(sure.visible_area / rough.visible_area);
+    return primitive;
+}
+
 std::optional<Clear> shell_box(const Attributes& attributes) {
     const auto found = matched(attributes, Bound{}, match_box, box_shell, kBoxReach);
     return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;

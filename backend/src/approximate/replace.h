@@ -40,7 +40,11 @@ struct Clear {
 std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
 std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
 
-/// The same whatever it covers: opacity may be more than 1, where no shell is dense enough. Nothing
+/// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved with the
+/// centroid, scaled with the area unless it is `clear`.
+Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure, bool clear);
+
+/// A clear primitive whatever it covers: opacity may be more than 1, where no shell is dense enough. Nothing
 /// where there is no extent to match.
 std::optional<Clear> shell_box(const Attributes& attributes);
 std::optional<Clear> shell_ellipsoid(const Attributes& attributes);

@@ -72,8 +72,8 @@ void settle(Composite& composite, const Attributes& wanted, double floor,
 void match_whole(Composite& composite, const Attributes& wanted, double floor,
                  const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
     // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
-    constexpr double kFew = 1.0 / 32;
-    constexpr double kMany = 1.0 / 4;
+    constexpr double kFew = 1.0 / 64;
+    constexpr double kMany = 1.0 / 8;
     constexpr int kLast = 3;
     const Miss rough{0.004, 0.004, 0.004};
     const Miss exact{0.001, 0.0005, 0.001};

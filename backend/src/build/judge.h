@@ -68,6 +68,11 @@ public:
     /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 
+    /// Puts a box or ellipsoid of this finest mesh where many more rays see it; what stands at
+    /// `floor` or would reach below it keeps its foot. Where the finest was measured exactly nothing
+    /// changes.
+    void settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job);
+
     /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
     /// that will be far from the finest. `finest`: all of it, or what of it can be seen.
     void take_pictures(const Mesh& finest, bool coarse, const Job& job);
@@ -118,6 +123,7 @@ private:
     std::optional<glm::dvec3> glow_;  // all light of the finest's pictures over what it emits
     double opacity_ = 0;
     Attributes attributes_;
+    std::optional<Attributes> sure_;  // by many more rays
 };
 
 }  // namespace lodestone::build

@@ -121,7 +121,7 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     // not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
     constexpr double kFewerNearer = 0.75;
-    constexpr uint32_t kFewRays = 4096;
+    constexpr uint32_t kFewRays = 8192;
     constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};

@@ -298,6 +298,8 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
         keep_useful(candidates, finest.summary.cost.bytes, uses);
     };
     out.candidates = kept_of(out.candidates, keep, judge, *mesh, job);
+    for (Candidate& candidate : out.candidates)
+        judge.settle(candidate, *mesh, whole.bound.box.low.z, job);
     return out;
 }
 
