@@ -98,6 +98,7 @@ TEST_F(Layers, FlatThingIsAsWrongAsItIsOffWhereNothingLiesOnIt) {
         if (on_it != nullptr)
             placements.push_back({models::add_leaf(model, "other", *on_it),
                                   models::moved(at.x, at.y, at.z), "other"});
+        model.objects[0].role = Role::Ordinary;  // a ground would be no box in any case
         model.root = models::add_group(model, "scene", std::move(placements));
         build_in(model, text("scene ", at.x, " ", at.z));
         return model.objects[0].representations.back().summary.error;

@@ -95,8 +95,10 @@ typedef struct lds_object {
 } lds_object;
 
 typedef enum lds_role {
-    LDS_ROLE_ORDINARY = 0,
-    LDS_ROLE_ENVIRONMENT = 1 /* wall, ground or sky: simplified, but never a box or ellipsoid */
+    LDS_ROLE_AUTOMATIC = 0, /* ordinary; but the ground that most of a group's other children stand
+                                 on is never a box or ellipsoid, and neither is their group */
+    LDS_ROLE_ENVIRONMENT = 1, /* wall, ground or sky: simplified, but never a box or ellipsoid */
+    LDS_ROLE_ORDINARY = 2     /* may be replaced whatever stands on it */
 } lds_role;
 
 typedef enum lds_kind {

@@ -34,8 +34,9 @@ class Stage(IntEnum):
 
 
 class Role(IntEnum):
-    ORDINARY = 0
+    AUTOMATIC = 0
     ENVIRONMENT = 1
+    ORDINARY = 2
 
 
 class RayClass(IntEnum):

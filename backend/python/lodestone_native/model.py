@@ -136,7 +136,7 @@ class Model(Handle):
         name: str,
         mesh: MeshBuffers,
         materials: Sequence[int] = (),
-        role: int = Role.ORDINARY,
+        role: int = Role.AUTOMATIC,
         deforms: bool = False,
     ) -> Object:
         info = _info(uid, name, role, deforms)
@@ -148,7 +148,7 @@ class Model(Handle):
         name: str,
         faces: FaceBuffers,
         materials: Sequence[int] = (),
-        role: int = Role.ORDINARY,
+        role: int = Role.AUTOMATIC,
         deforms: bool = False,
     ) -> Object:
         info = _info(uid, name, role, deforms)
@@ -160,7 +160,7 @@ class Model(Handle):
         name: str,
         strands: StrandBuffers,
         materials: Sequence[int] = (),
-        role: int = Role.ORDINARY,
+        role: int = Role.AUTOMATIC,
         deforms: bool = False,
     ) -> Object:
         """One mesh of a tapered tube for each strand."""
@@ -176,7 +176,7 @@ class Model(Handle):
         return out
 
     def add_group(
-        self, uid: str, name: str, role: int = Role.ORDINARY, deforms: bool = False
+        self, uid: str, name: str, role: int = Role.AUTOMATIC, deforms: bool = False
     ) -> Object:
         out = Object()
         info = _info(uid, name, role, deforms)

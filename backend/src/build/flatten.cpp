@@ -90,6 +90,14 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         append(flat.mesh, part, cut.world(node));
         flat.occurrence.resize(flat.mesh.triangles.size(), static_cast<uint32_t>(flat.occurrences));
         ++flat.occurrences;
+        flat.placement.push_back(0);
+        flat.environment.push_back(0);
+        for (uint32_t at = index; cut.nodes[at].parent != quality::kNoParent;
+             at = cut.nodes[at].parent) {
+            flat.placement.back() = cut.nodes[at].placement;
+            if (model.objects[cut.nodes[at].object].role == Role::Environment)
+                flat.environment.back() = 1;
+        }
     }
     if (flat.materials.empty())
         flat.materials.emplace_back();

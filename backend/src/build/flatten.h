@@ -11,6 +11,8 @@ struct Flat {
     std::vector<Material> materials;   // by slot
     std::vector<uint32_t> occurrence;  // a triangle: which of the drawn things it is of
     size_t occurrences = 0;
+    std::vector<uint32_t> placement;   // an occurrence: which of the group's it is below
+    std::vector<uint8_t> environment;  // likewise: whether it is, or is below, what is marked so
     double child_error = 0;  // the largest error of a child drawn, after its stretch; metres
 };
 
@@ -25,6 +27,8 @@ struct Surroundings {
     std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
     std::vector<uint8_t> hidden;       // whether it hides anything from some rays (with_hidden)
     std::vector<Hash> layers;          // what lies in thin layers (layers_of)
+    std::vector<uint8_t> marked;       // what is nothing but Environment (marked_environment)
+    std::vector<uint8_t> ground;       // what is recognized as such (grounds_of)
 };
 
 /// How often each object is drawn: the number of paths to it from the root.

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "build/demand.h"
 #include "build/effort.h"
+#include "build/environment.h"
 #include "build/flatten.h"
 #include "build/followed.h"
 #include "build/layers.h"
@@ -32,10 +33,12 @@ bool shows(const Object& object) {
     return !object.representations.empty() && !object.bound().empty();
 }
 
-/// `layers`: what layers_of tells of it.
-Hash build_hash_of(const Object& object, Hash settings, Hash layers) {
+/// `layers`: what layers_of tells of it; `ground`: what grounds_of does.
+Hash build_hash_of(const Object& object, Hash settings, Hash layers, uint8_t ground) {
     const Hash hash = Hasher().value(object.source_hash).value(settings).result();
-    return layers == 0 ? hash : Hasher().value(hash).value(layers).result();
+    if (layers == 0 && ground == 0)
+        return hash;
+    return Hasher().value(hash).value(layers).value(ground).result();
 }
 
 /// Gives the mesh of a representation of a model, from the store where it is not resident.
@@ -139,8 +142,13 @@ public:
         const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
-        surroundings_ = {uses_of(model_), with_environment(model_), with_hidden(model_),
-                         layers_of(model_, order, mesh_source(), job_)};
+        surroundings_ = {uses_of(model_),
+                         with_environment(model_),
+                         with_hidden(model_),
+                         layers_of(model_, order, mesh_source(), job_),
+                         marked_environment(model_, order),
+                         {}};
+        surroundings_.ground = grounds_of(model_, order, surroundings_.marked);
         const std::vector<bool> inside = within(settings_.scope, model_, order);
         const std::vector<uint8_t> deforming = with_deforming(model_);
         const Poses poses(settings_.poses);
@@ -154,7 +162,8 @@ public:
             ++report.objects;
             if (object.group() && std::isinf(object.demand))
                 continue;  // always opened
-            Hash wanted = build_hash_of(object, settings, surroundings_.layers[index]);
+            Hash wanted = build_hash_of(object, settings, surroundings_.layers[index],
+                                        surroundings_.ground[index]);
             std::optional<Bind> bind;
             if (deforming[index] != 0) {
                 if (!object.deforms || object.group() || poses.empty())
@@ -390,7 +399,8 @@ private:
                 continue;
             object.attributes = made[i]->attributes;
             add(object, std::move(made[i]->candidates), model_, palette_,
-                build_hash_of(object, settings, surroundings_.layers[objects[i]]));
+                build_hash_of(object, settings, surroundings_.layers[objects[i]],
+                              surroundings_.ground[objects[i]]));
         }
     }
 
@@ -420,6 +430,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const std::vector<bool> inside = within(settings.scope, model, order);
     const std::vector<uint8_t> deforming = with_deforming(model);
     const std::vector<Hash> layers = layers_of(model, order, mesh_source_of(store), {});
+    const std::vector<uint8_t> ground = grounds_of(model, order, marked_environment(model, order));
     const Poses poses(settings.poses);
     std::set<Hash> binds;  // counted already
     double seconds = 0;
@@ -435,7 +446,8 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
             if (!bind || !binds.insert(bind->hash).second ||
                 (!settings.rebuild && store.load_bound(bind->hash)))
                 continue;
-        } else if (shelf.find(build_hash_of(object, hash, layers[index])) != nullptr) {
+        } else if (shelf.find(build_hash_of(object, hash, layers[index], ground[index])) !=
+                   nullptr) {
             continue;
         }
         ++report.built;

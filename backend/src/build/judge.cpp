@@ -132,7 +132,8 @@ void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
                          std::span<const ray::Closest> nearest) {
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    const measure::Surface surface{looks, &looks_, skin_};
+    const bool own = candidate.materials.size() != materials_.size();
+    const measure::Surface surface{looks, &looks_, own ? skin_of(candidate.materials) : skin_};
     const double most = distance_for(useless);
     set_error(candidate, rough_ ? reference_.roughly(mesh, surface, nearest, most, job)
                                 : reference_.of(mesh, surface, nearest, most, job));

@@ -60,7 +60,7 @@ public:
 
     /// False for a level of the finest's materials that shows another amount of surface.
     bool shows_as_much(const Mesh& level, const Job& job) const;
-    /// Fill the errors of a candidate; a mesh has the finest's materials. Where the error is much
+    /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others. Where the error is much
     /// larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
                       double useless = std::numeric_limits<double>::infinity(),

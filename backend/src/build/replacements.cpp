@@ -188,7 +188,7 @@ Replacements::Replacements(const Mesh& mesh,
         crowd_ = crowd_in_mesh();
         by_pictures_ = !judge.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
     }
-    if (!by_pictures_ && judge.solid())
+    if (!by_pictures_ && !whole.ground && judge.solid())
         add_primitives(solids_, whole.bound, false, judge, job);
 }
 
@@ -223,13 +223,13 @@ void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Mat
     if (thinned)
         add_pruned_levels(candidates, mesh_, materials, crowd_, settings.level_ratio,
                           triangles_for(whole_.most, whole_.uses), seed, judge_, job);
-    if (by_pictures)
-        add_primitives(candidates, whole_.bound, true, judge_, job);
-    else
+    if (!by_pictures)
         candidates.insert(candidates.end(), solids_.begin(), solids_.end());
+    else if (!whole_.ground)
+        add_primitives(candidates, whole_.bound, true, judge_, job);
     const double dearer = dearer_than(whole_, by_pictures);
     constexpr size_t kFewest = 4;  // solids of the cheapest
-    const size_t most = most_solids(candidates, whole_);
+    const size_t most = whole_.ground ? 0 : most_solids(candidates, whole_);
     if (most >= kFewest && !judge_.refracts() && whole_.bytes > 2 * dearer &&
         bytes_within(candidates, kOff * radius, whole_.uses) > dearer) {
         if (!by_pictures)

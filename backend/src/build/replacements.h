@@ -24,9 +24,10 @@ size_t triangles_for(double bytes, uint64_t uses);
 struct Whole {
     Bound bound;
     uint64_t uses = 1;
-    double bytes = 0;   // as one mesh
-    double most = 0;    // bytes of an occurrence that are no use any more
-    bool many = false;  // its parts are objects
+    double bytes = 0;     // as one mesh
+    double most = 0;      // bytes of an occurrence that are no use any more
+    bool many = false;    // its parts are objects
+    bool ground = false;  // some of it is: no solid stands for that
     /// The error from which on its parts cost less than so many bytes; empty: never.
     std::function<double(double bytes)> cheaper_from = {};
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/stand_ins.h"
 
+#include "build/beside.h"
+#include "build/environment.h"
 #include "build/flatten.h"
 #include "build/glow.h"
 #include "build/judge.h"
@@ -284,6 +286,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     Whole whole{finest.summary.bound, uses};
     whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
     whole.most = bytes_each(Kind::Mesh, finest.summary.cost.bytes, uses);
+    whole.ground = surroundings.ground[leaf] != 0;
     std::optional<Replacements> replacements;
     if (object.role != Role::Environment) {
         replacements.emplace(
@@ -339,6 +342,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     whole.bytes = static_cast<double>(shell.triangles.size() * kBytesPerTriangle);
     whole.most = children.bytes() - static_cast<double>(kBytesPerOccurrence);
     whole.many = reference.occurrences >= kManyChildren;
+    const std::optional<size_t> ground = ground_of(model, group, surroundings.marked);
+    whole.ground = ground.has_value();
     whole.cheaper_from = [&](double bytes) {
         return children.cheaper_from(bytes + static_cast<double>(kBytesPerOccurrence));
     };
@@ -373,6 +378,12 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     add_levels(out.candidates, shell, reference.materials, targets, wanted, judge, job);
     if (replacements)
         replacements->add(out.candidates, reference.materials, settings, seed, job);
+    std::vector<uint8_t> around;  // by triangle: whether it is environment
+    for (const uint32_t one : reference.occurrence)
+        around.push_back(reference.environment[one] != 0 || reference.placement[one] == ground ? 1
+                                                                                               : 0);
+    add_beside_environment(out.candidates, reference.mesh, around, reference.materials, settings,
+                           seed, judge, job);
 
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error

@@ -201,11 +201,11 @@ ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info*
     if (model.by_uid.count(object.uid) != 0)
         fail(Status::InvalidArgument, "uid '", object.uid, "' of object '", object.name,
              "' is taken");
-    if (given.role != LDS_ROLE_ORDINARY && given.role != LDS_ROLE_ENVIRONMENT)
+    if (given.role < LDS_ROLE_AUTOMATIC || given.role > LDS_ROLE_ORDINARY)
         fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
              "' is unknown");
     object.deforms = given.deforms != 0;
-    object.role = given.role == LDS_ROLE_ENVIRONMENT ? Role::Environment : Role::Ordinary;
+    object.role = static_cast<Role>(given.role);
     object.representations.push_back(std::move(finest));
     const auto index = static_cast<ObjectIndex>(model.model.objects.size());
     model.by_uid.emplace(object.uid, index);

@@ -13,14 +13,15 @@
 namespace lodestone {
 
 enum class Role : uint8_t {
-    Ordinary = 0,
+    Automatic = 0,    // the ground of what is beside it is recognized as such
     Environment = 1,  // wall, ground or sky: simplified, never made a primitive
+    Ordinary = 2,
 };
 
 struct Object {
     std::string uid;   // stable, unique in its model
     std::string name;  // the user's
-    Role role = Role::Ordinary;
+    Role role = Role::Automatic;
     // Its shape is another one in every frame: its levels follow it from one collapse for all
     // frames, or there are none. Nothing stands in for a group that holds it, so that no picture
     // ever shows a level of another frame.

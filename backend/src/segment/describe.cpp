@@ -216,7 +216,9 @@ Json describe(const Model& model) {
         Json one = {{"uid", object.uid},
                     {"name", object.name},
                     {"deforms", object.deforms},
-                    {"role", object.role == Role::Environment ? "environment" : "ordinary"},
+                    {"role", object.role == Role::Environment ? "environment"
+                             : object.role == Role::Automatic ? "automatic"
+                                                              : "ordinary"},
                     {"source_hash", hex16(object.source_hash)},
                     {"build_hash", hex16(object.build_hash)}};
         if (object.of_parts)

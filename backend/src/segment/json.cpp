@@ -268,7 +268,9 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     o.uid = json.at("uid").get<std::string>();
     o.name = json.at("name").get<std::string>();
     o.deforms = json.at("deforms").get<bool>();
-    o.role = json.at("role") == "environment" ? Role::Environment : Role::Ordinary;
+    o.role = json.at("role") == "environment" ? Role::Environment
+             : json.at("role") == "automatic" ? Role::Automatic
+                                              : Role::Ordinary;
     o.source_hash = hash(json, "source_hash");
     o.build_hash = hash(json, "build_hash");
     o.of_parts = json.value("of_parts", false);
