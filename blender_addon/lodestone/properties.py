@@ -17,12 +17,25 @@ from .decided_property import decided
 from .lens_properties import LODESTONE_PG_lens
 from .quality_properties import Overrides, RayClasses
 
-ROLES = (
-    ("ORDINARY", "Ordinary", "May be drawn as a simpler mesh, a box or an ellipsoid"),
+ROLES = (  # the last ones are what files hold
+    (
+        "AUTOMATIC",
+        "Automatic",
+        "Ordinary, but the ground that most of its collection stands on is never replaced by one "
+        "shape, and neither are both together",
+        2,
+    ),
     (
         "ENVIRONMENT",
         "Environment",
         "Wall, ground or sky: simplified, but never replaced by one shape",
+        1,
+    ),
+    (
+        "ORDINARY",
+        "Ordinary",
+        "May be drawn as a simpler mesh, a box or an ellipsoid, whatever stands on it",
+        0,
     ),
 )
 USES = (
@@ -257,7 +270,7 @@ def _is_environment(settings):
 
 def _make_environment(settings, value):
     if value or settings.id_data.override_library is not None:
-        settings.role = "ENVIRONMENT" if value else "ORDINARY"
+        settings.role = "ENVIRONMENT" if value else "AUTOMATIC"
     else:  # as if it had never been decided
         settings.property_unset("role")
         decisions.tag(settings.id_data)
@@ -276,7 +289,7 @@ class _Identified:
         name="Role",
         description="What kind of thing this is",
         items=ROLES,
-        default="ORDINARY",
+        default="AUTOMATIC",
     )
     environment: BoolProperty(
         name="Environment",

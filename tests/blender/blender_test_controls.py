@@ -41,7 +41,6 @@ NAMED = {
     "keep_scene_files": "*Scene Files*: Keep",
     "use_levels": "the checkbox in the header when it is off",
     "radius": "the wheel changes its radius",
-    "role": "Environment",
 }
 
 

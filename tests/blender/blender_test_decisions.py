@@ -155,7 +155,7 @@ class Decisions(Case):
         bpy.ops.lodestone.copy_decisions()
         for item in targets:
             found = item.lodestone
-            self.assertEqual((found.use, found.importance, found.role), ("LIMIT", 2.0, "ORDINARY"))
+            self.assertEqual((found.use, found.importance, found.role), ("LIMIT", 2.0, "AUTOMATIC"))
         self.assertNotIn("lodestone", bystander)
         decisions.forget(source, True)
         bpy.ops.lodestone.copy_decisions()

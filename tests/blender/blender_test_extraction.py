@@ -193,9 +193,10 @@ class Extraction(Case):
         scenes.cube("Road", collection=ground)
         scenes.cube("Wall").lodestone.role = "ENVIRONMENT"
         scenes.cube("Car")
+        scenes.cube("Crate").lodestone.role = "ORDINARY"
         extraction, _ = self.extract()
         roles = {s.name: s.role for s in self.summaries(extraction)}
-        expected = {"Scene": 0, "Ground": 1, "Road": 1, "Wall": 1, "Car": 0}
+        expected = {"Scene": 0, "Ground": 1, "Road": 1, "Wall": 1, "Car": 0, "Crate": 2}
         self.assertEqual(roles, expected)
 
     # ---- Everything else that makes instances ----

@@ -373,11 +373,11 @@ class Libraries(Case):
             objects, scene = bpy.data.objects, bpy.context.scene
             decisions.decide_linked(scene, "object", objects["Book", library], "ENVIRONMENT")
             decisions.decide_linked(scene, "object", objects["Lamp", library], "ORDINARY")
-            self.assertEqual(self.roles(), {"Book": 1, "Lamp": 0})
+            self.assertEqual(self.roles(), {"Book": 1, "Lamp": 2})
             user = str(Path(folder) / "user.blend")
             bpy.ops.wm.save_as_mainfile(filepath=user)
             bpy.ops.wm.open_mainfile(filepath=user)
-            self.assertEqual(self.roles(), {"Book": 1, "Lamp": 0})
+            self.assertEqual(self.roles(), {"Book": 1, "Lamp": 2})
             objects, scene = bpy.data.objects, bpy.context.scene
             library = bpy.data.libraries[0].filepath
             self.assertTrue(library.startswith("//"), library)  # saving made it relative

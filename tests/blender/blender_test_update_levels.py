@@ -234,7 +234,7 @@ class UpdateLevels(unittest.TestCase):
         bpy.ops.lodestone.update_levels()
         bpy.ops.lodestone.clear_levels(decisions=True)
         self.assertNotIn("lodestone", ground.keys())
-        self.assertEqual(ground.lodestone.role, "ORDINARY")
+        self.assertEqual(ground.lodestone.role, "AUTOMATIC")
 
     def test_clear_never_removes_a_folder_that_is_no_store(self):
         mine = self.folder / "lodestone" / "street"

@@ -214,9 +214,11 @@ def levels_uids(item: Any, roles: ids.Roles | None = None) -> list[str]:
         slots = [slot.material for slot in item.material_slots]
         linked = identity.stable_id(shared, *(ids.named_id_of(m) for m in slots))
         uids = [shared, linked, own]
-    is_environment = roles.is_environment if roles else ids.is_environment
-    if any(map(is_environment, (item, *item.users_collection))):
+    role_of = roles.of if roles else ids.role_of
+    if "ENVIRONMENT" in map(role_of, (item, *item.users_collection)):
         uids = [identity.stable_id(uid, "environment") for uid in uids] + uids
+    elif role_of(item) == "ORDINARY":
+        uids = [identity.stable_id(uid, "ordinary") for uid in uids] + uids
     loose = ids.loose_parts(item)
     if loose != ids.AUTOMATIC:
         uids = [identity.stable_id(uid, "loose", loose) for uid in uids] + uids

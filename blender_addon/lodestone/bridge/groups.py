@@ -145,7 +145,7 @@ class Groups:
         self._roles = roles
         self._motion = motion
         self._above: list[Branch] = []  # branches around the one at hand, with collections
-        # By uid, environment, whether it changes, and how much it places; a second one that is the
+        # By uid, role, whether it changes, and how much it places; a second one that is the
         # same in these, and the first, by all they place too: that key takes as long as the group
         self._first: dict[tuple, tuple[Placements, Any] | None] = {}
         self._made: dict[tuple, Any] = {}
@@ -271,9 +271,10 @@ class Groups:
         children = Placements()
         for leaf, place, hidden, decision in entry.emitted:
             children.add(leaf.object, place, leaf.data, hidden, decision)
-        environment = self._roles.is_environment(entry.object)
+        own = self._roles.of(entry.object)
+        role = ids.role(own == "ENVIRONMENT", own == "ORDINARY")
         anew = self._motion.emits_anew(entry.object)
-        group = self._intern(uid, f"{entry.name} instances", environment, children, anew)
+        group = self._intern(uid, f"{entry.name} instances", role, children, anew)
         if len(children) > MOST_CHILDREN and not anew:
             self._model.group_by_position(group, MOST_CHILDREN)
         known.append((entry.emitted, group))
@@ -286,7 +287,9 @@ class Groups:
             uid = ids.scene_uid(branch.name)
         else:
             uid = ids.uid_of("collection", branch.collection)
-        group = self._intern(uid, branch.name, branch.environment, placements, changes)
+        ordinary = branch.collection is not None and self._roles.is_ordinary(branch.collection)
+        role = ids.role(branch.environment, ordinary)
+        group = self._intern(uid, branch.name, role, placements, changes)
         if not changes:
             self.collections[group] = None
         if branch.collection is not None:
@@ -303,11 +306,11 @@ class Groups:
         self,
         uid: str,
         name: str,
-        environment: bool,
+        role: int,
         placements: Placements,
         changes: bool = False,
     ) -> Any:
-        about = (uid, environment, changes, len(placements))
+        about = (uid, role, changes, len(placements))
         key = None
         if about in self._first:
             if self._first[about] is not None:
@@ -318,7 +321,7 @@ class Groups:
             if key in self._made:
                 return self._made[key]
         claimed = self._uids.claim(uid)
-        group = self._model.add_group(claimed, name, ids.role(environment), changes)
+        group = self._model.add_group(claimed, name, role, changes)
         self._model.add_placements(
             group,
             placements.objects,

@@ -92,9 +92,10 @@ def named_id_of(material: Any | None) -> str:
     return identity.named_id("material", library_of(material), name_of(material))
 
 
-def is_environment(datablock: Any) -> bool:
+def role_of(datablock: Any) -> str:
+    """What the file says: AUTOMATIC, ENVIRONMENT or ORDINARY."""
     settings = settings_of(datablock)
-    return settings is not None and settings.role == "ENVIRONMENT"
+    return AUTOMATIC if settings is None else settings.role
 
 
 def decision_of(datablock: Any, viewport: bool = False) -> Decision:
@@ -123,14 +124,20 @@ class Roles:
         decided = settings.linked if settings is not None else ()
         self._linked = [((item.kind, item.library, item.name), item.role) for item in decided]
 
-    def is_environment(self, datablock: Any) -> bool:
+    def of(self, datablock: Any) -> str:
         if datablock.library and self._linked:
             kind = "collection" if datablock.bl_rna.identifier == "Collection" else "object"
             key = key_of(kind, datablock)
             for decided, role in self._linked:
                 if same_linked(decided, key):
-                    return role == "ENVIRONMENT"
-        return is_environment(datablock)
+                    return role
+        return role_of(datablock)
+
+    def is_environment(self, datablock: Any) -> bool:
+        return self.of(datablock) == "ENVIRONMENT"
+
+    def is_ordinary(self, datablock: Any) -> bool:
+        return self.of(datablock) == "ORDINARY"
 
 
 def same_linked(a: Key, b: Key) -> bool:
@@ -139,8 +146,11 @@ def same_linked(a: Key, b: Key) -> bool:
     return a[0] == b[0] and a[2] == b[2] and identity.same_library(a[1], b[1])
 
 
-def role(environment: bool) -> int:
-    return native.Role.ENVIRONMENT if environment else native.Role.ORDINARY
+def role(environment: bool, ordinary: bool) -> int:
+    """`environment`: it, or a collection around it; `ordinary`: itself."""
+    if environment:
+        return native.Role.ENVIRONMENT
+    return native.Role.ORDINARY if ordinary else native.Role.AUTOMATIC
 
 
 class Uids:

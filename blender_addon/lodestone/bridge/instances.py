@@ -127,7 +127,7 @@ class Instances:
         plain = self.scene.plain
         keys = list(map(plain.keys.__getitem__, rows))
         marked = shown.original in self.scene.environment
-        look = Look(marked, False, self._motion.deforms(shown))
+        look = Look(marked, deforms=self._motion.deforms(shown))
         leaf = self._leaves.leaf(keys[0], shown, shown, look)
         if leaf is None:
             return True
@@ -267,7 +267,9 @@ class Instances:
         if look is None:
             marked = self._roles.is_environment(owner)
             deforms, loose = self._motion.deforms(owner), ids.loose_parts(owner)
-            look = self._looks[original] = Look(marked, False, deforms, loose)
+            look = self._looks[original] = Look(
+                marked, self._roles.is_ordinary(owner), deforms=deforms, loose=loose
+            )
         if original in context.environment:
             look = look._replace(environment=True)
         if entry.holdout or (original != entry.object.original and self._seen(owner)[1]):

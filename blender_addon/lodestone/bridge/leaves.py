@@ -52,6 +52,7 @@ class Look(NamedTuple):
     """What decides how an object's data are drawn, besides the data and its materials."""
 
     environment: bool = False
+    ordinary: bool = False
     holdout: bool = False  # all its materials are black
     deforms: bool = False  # its shape is another one in every frame
     loose: str = ids.AUTOMATIC  # see ids.loose_parts()
@@ -159,7 +160,9 @@ class Leaves:
         uid = self._uid(base, color, look)
         add = self._model.add_strands if shown.type == "CURVES" else self._model.add_faces
         try:
-            item = add(uid, name, buffers, indices, ids.role(look.environment), look.deforms)
+            item = add(
+                uid, name, buffers, indices, ids.role(look.environment, look.ordinary), look.deforms
+            )
         except native.LodestoneError as error:
             if error.status != native.Status.INVALID_ARGUMENT:
                 raise
@@ -180,7 +183,7 @@ class Leaves:
         if buffers is None:
             return None
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
-        name, role = f"{name_of(owner)} {HAIR}", ids.role(look.environment)
+        name, role = f"{name_of(owner)} {HAIR}", ids.role(look.environment, look.ordinary)
         item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
         name = f"{name_of(shown)} {HAIR}"
         return Leaf(item, uid, name, _names(slots), len(buffers.counts), look.deforms)
@@ -191,7 +194,7 @@ class Leaves:
         # A point shows its first material only
         indices = self._indices(slots[:1], color, look)
         uid = self._uid(identity.stable_id(ids.uid_of("object", owner), POINT), color, look)
-        name, role = f"{name_of(owner)} {POINT}", ids.role(look.environment)
+        name, role = f"{name_of(owner)} {POINT}", ids.role(look.environment, look.ordinary)
         item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
         return Leaf(item, uid, f"{name_of(shown.data)} {POINT}", _names(slots), 1)
 
@@ -214,6 +217,8 @@ class Leaves:
             base = identity.stable_id(base, "color", *color)
         if look.environment:
             base = identity.stable_id(base, "environment")
+        elif look.ordinary:
+            base = identity.stable_id(base, "ordinary")
         if look.holdout:
             base = identity.stable_id(base, "holdout")
         if look.deforms:

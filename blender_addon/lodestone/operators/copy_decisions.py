@@ -10,9 +10,7 @@ from .polled import Polled
 class LODESTONE_OT_copy_decisions(Polled, bpy.types.Operator):
     bl_idname = "lodestone.copy_decisions"
     bl_label = "Copy to Selected"
-    bl_description = (
-        "Give the other selected objects this one's Use, Importance, Environment and pins"
-    )
+    bl_description = "Give the other selected objects this one's Use, Importance, Role and pins"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

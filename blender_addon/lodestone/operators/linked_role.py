@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Environment or not, of what is linked from a library: kept in this file, by library path and
+"""The role of what is linked from a library: kept in this file, by library path and
 name."""
 
 import bpy
@@ -11,17 +11,17 @@ from ..properties import ROLES
 
 class LODESTONE_OT_linked_role(bpy.types.Operator):
     bl_idname = "lodestone.linked_role"
-    bl_label = "Environment Here"
+    bl_label = "Role Here"
     bl_description = (
-        "Whether this linked thing is Environment (wall, ground or sky) in this scene; its library "
-        "stays as it is"
+        "What kind of thing this linked one is in this scene (Environment is wall, ground or sky); "
+        "its library stays as it is"
     )
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     role: EnumProperty(
         name="Role",
         description="What kind of thing this is in this scene",
-        items=(("LIBRARY", "As in Library", "As its library has it"), *ROLES),
+        items=(("LIBRARY", "As in Library", "As its library has it", 3), *ROLES),
         default="LIBRARY",
     )
 

@@ -32,7 +32,7 @@ def _draw_decisions(layout, context, item):
     sub = column.column()
     sub.active = settings.use in {"AUTOMATIC", "LIMIT"} and not settings.use_pin_render
     sub.prop(settings, "importance")
-    column.prop(settings, "environment")
+    column.prop(settings, "role")
     if getattr(item, "type", "") == "MESH":
         column.prop(settings, "loose_parts")
     if len(context.selected_objects) > 1 and item == context.object:
@@ -48,8 +48,7 @@ def draw_levels(layout, context, item):
         layout.label(text=f"Linked from {item.library.name}", icon="LINKED")
         kind = "collection" if isinstance(item, bpy.types.Collection) else "object"
         decided = decisions.linked_role(context.scene, kind, item)
-        shown = {None: "As in Library", "ENVIRONMENT": "Yes", "ORDINARY": "No"}[decided]
-        text = f"Environment Here: {shown}"
+        text = f"Role Here: {decided.title() if decided else 'As in Library'}"
         layout.operator_menu_enum("lodestone.linked_role", "role", text=text)
     else:
         _draw_decisions(layout, context, item)
