@@ -168,13 +168,6 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     }
 }
 
-/// So many solids cost as much as levels that composites are tried beside. Few collapsed triangles
-/// beside a smooth thing are as good, and comparing pictures takes long.
-double dearer_than(const Whole& whole, bool by_pictures) {
-    const double solids = by_pictures ? 16 : 64;
-    return solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
-}
-
 }  // namespace
 
 Replacements::Replacements(const Mesh& mesh,
@@ -199,18 +192,6 @@ double Replacements::nearest_solid() const {
     return out;
 }
 
-std::function<double(size_t triangles, double least)> Replacements::told() const {
-    return [this](size_t triangles, double least) {
-        const auto bytes = static_cast<double>(triangles * kBytesPerTriangle);
-        const double radius = whole_.bound.radius;
-        const double dearer = dearer_than(whole_, by_pictures_);
-        if (whole_.bytes > 2 * dearer && bytes <= dearer && least > kOff * radius)
-            return kOff * radius;
-        const bool asked = !by_pictures_ && !crowd_.empty() && bytes <= kCollapsed * whole_.bytes;
-        return asked && least > kNear * radius ? kNear * radius : 0;
-    };
-}
-
 void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
                        const Settings& settings, uint64_t seed, const Job& job) {
     const double radius = whole_.bound.radius;
@@ -227,7 +208,11 @@ void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Mat
         candidates.insert(candidates.end(), solids_.begin(), solids_.end());
     else if (!whole_.ground)
         add_primitives(candidates, whole_.bound, true, judge_, job);
-    const double dearer = dearer_than(whole_, by_pictures);
+    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
+    // good, and comparing pictures takes long.
+    const double solids = by_pictures ? 16 : 64;
+    const double dearer =
+        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole_.uses));
     constexpr size_t kFewest = 4;  // solids of the cheapest
     const size_t most = whole_.ground ? 0 : most_solids(candidates, whole_);
     if (most >= kFewest && !judge_.refracts() && whole_.bytes > 2 * dearer &&

@@ -41,9 +41,6 @@ public:
 
     /// The error of the nearest of them, which cost less than any level; infinite without one.
     double nearest_solid() const;
-    /// Up to which error it matters to add() how near a level of so many triangles is, where the
-    /// nearest coarser one has an error of `least`.
-    std::function<double(size_t triangles, double least)> told() const;
     /// Pruned levels, primitives and composites, where they promise more than the levels, which
     /// `candidates` has.
     void add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,

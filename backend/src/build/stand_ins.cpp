@@ -32,9 +32,8 @@ struct Wanted {
     std::function<double(size_t triangles)> useless;
     /// Of what is kept in any case and costs less than a level; infinite where there is nothing.
     double solid = std::numeric_limits<double>::infinity();
-    /// The error up to which a level's matters though it is of no use, where the nearest coarser one
-    /// has that of `least`.
-    std::function<double(size_t triangles, double least)> told = {};
+    /// Errors up to this are told in any case where they are measured.
+    double told = 0;
 };
 
 /// From the coarsest on: what will not be near enough, by the one before it, is not measured at all.
@@ -51,18 +50,16 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
     std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
     std::vector<Candidate> measured;
     std::vector<double> nexts{wanted.solid};  // where a level may end, and one of them takes over
-    double least = std::numeric_limits<double>::infinity();
     double coarser = 0;
     for (size_t i = levels.size(); i-- > 0;) {
         Mesh& level = levels[i];
-        const size_t triangles = level.triangles.size();
         // What it saves is asked for half way to the next, on a scale of powers.
-        const double useless = wanted.useless(triangles);
-        double most = wanted.told ? wanted.told(triangles, least) : 0;
+        const double useless = wanted.useless(level.triangles.size());
+        double most = wanted.told;
         for (const double next : nexts)
             most = std::max(
                 most, std::isfinite(next) ? std::min(next, useless * useless / next) : useless);
-        if (level.empty() || !(most > 0) || (useless > 0 && coarser > kMostNearer * useless)) {
+        if (level.empty() || (useless > 0 && coarser > kMostNearer * useless)) {
             coarser /= kMostNearer;
             continue;
         }
@@ -73,7 +70,8 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
         candidate.unproven = true;
         judge.measure_mesh(candidate, job, most, nearest);
         coarser = std::min(candidate.error, std::max(most, useless));
-        least = std::min(least, candidate.error);
+        if (!std::isfinite(coarser))
+            coarser = most;  // it is farther than that
         if (candidate.error < wanted.solid)
             nexts.push_back(candidate.error);
         if (std::isfinite(candidate.error))
@@ -292,7 +290,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
         replacements.emplace(
             *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, judge, job);
         wanted.solid = replacements->nearest_solid();
-        wanted.told = replacements->told();
+        wanted.told = kOff * whole.bound.radius;
     }
     add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), wanted, judge, job);
     if (replacements)
@@ -355,11 +353,11 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         targets.insert(targets.begin(), fifth);  // tells whether it is a crowd
     const size_t coarsest = targets.empty() ? 0 : targets.back();
     Wanted wanted;
+    wanted.told = kOff * finest.bound.radius;
     std::optional<Replacements> replacements;
     if (!environment) {
         replacements.emplace(
             shell, [&] { return crowd_in(shell, occurrence); }, whole, judge, job);
-        wanted.told = replacements->told();
         const double nearest = replacements->nearest_solid();
         const double own = bytes_each(Kind::Box, kBytesPerPrimitive, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
@@ -370,7 +368,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         if (triangles > first)
             return 0.0;  // the probe is no stand-in
         // The coarsest is what there is where nothing is of use.
-        if (triangles <= coarsest && !std::isfinite(wanted.solid))
+        if (triangles <= coarsest)
             return std::numeric_limits<double>::infinity();
         return whole.cheaper_from(
             bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]));
