@@ -106,7 +106,7 @@ TEST_F(Environment, StaysBesideTheSolidsThatStandOnIt) {
     ASSERT_NE(beside, group.representations.end());
     ASSERT_EQ(beside->summary.kind, Kind::Mesh);
     EXPECT_LE(beside->summary.cost.triangles, 24u);
-    EXPECT_LT(beside->summary.error, 1);
+    EXPECT_LT(beside->summary.error, 0.15 * group.bound().radius);
     const Box3 box = bound_of(beside->mesh().positions).box;
     EXPECT_NEAR(box.size().x, 20, 0.1);
     EXPECT_NEAR(box.high.z, 1, 0.3);

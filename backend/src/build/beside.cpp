@@ -80,6 +80,7 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
         append(both, solids, {}, static_cast<uint16_t>(materials.size()));
         Candidate candidate;
         candidate.mesh = std::make_shared<const Mesh>(std::move(both));
+        candidate.unproven = true;
         candidate.materials = materials;
         for (const Attributes& own : beside.attributes)
             candidate.materials.push_back(approximate::mean_material(own));

@@ -34,6 +34,10 @@ constexpr double kLeastOpacity = 0.9;
 constexpr int kMeasuredSubdivisions = 3;  // an ellipsoid measured as 1280 triangles
 // Of the pixel size from which on whole pictures agree, what is near in space may have as an error.
 constexpr double kPictures = 0.5;
+constexpr double kPatches = 0.5;  // likewise of the patches that look different
+// Over the radius: what is used up to here is that where the whole is 24 pixels large or more, and
+// looks alike.
+constexpr double kUsedNear = 1.0 / 12;
 
 Mesh tessellated(const Candidate& primitive) {
     return primitive.kind == Kind::Box
@@ -88,9 +92,12 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     options.rays = rays_;
     options.seed = seed_;
     // The reference was made with the same rays.
-    attributes_ = measure::measure_visible(finest, reference_.sampler(), skin_, options, {},
-                                           reference_.take_cast(), job)
-                      .attributes;
+    const std::vector<measure::Cast> cast = reference_.take_cast();
+    attributes_ =
+        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast, job)
+            .attributes;
+    if (!environment_)
+        patches_.emplace(finest, reference_.sampler(), *skin_, cast, seed_);
 }
 
 bool is_flat(double across, double through) {
@@ -114,9 +121,12 @@ bool Judge::solid() const {
 }
 
 bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
+    return shows_as_much(level, ray::Scene(level, skin_), job);
+}
+
+bool Judge::shows_as_much(const Mesh& level, const ray::Scene& scene, const Job& job) const {
     // Few rays tell what is nearly alike or far from it.
     constexpr double kUnsure = 0.15;
-    const ray::Scene scene(level, skin_);
     const measure::VisibleSampler sampler(level, scene, seed_);
     double change = 0;
     for (const uint64_t share : {8, 2}) {
@@ -128,12 +138,36 @@ bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
     return change <= kMostAreaChange;
 }
 
+bool Judge::prove(Candidate& candidate, double used_to, const Job& job) const {
+    const bool is_mesh = candidate.kind == Kind::Mesh;
+    Mesh solid;
+    const Mesh& mesh = traced_mesh(candidate, solid);
+    const ray::SkinPtr skin = skin_of(candidate);
+    const ray::Scene scene(mesh, skin);
+    candidate.unproven = false;
+    if (is_mesh && !shows_as_much(mesh, scene, job))
+        return false;
+    if (!patches_)
+        return true;
+    const double own = candidate.error - child_error_;
+    const double unlike =
+        patches_->unlike_up_to(mesh, scene, *skin, is_matched(used_to), own / kPatches);
+    const double seen = kPatches * unlike + child_error_;
+    candidate.error = std::max(candidate.error, seen);
+    candidate.max_error = std::max(candidate.max_error, seen);
+    return true;
+}
+
+bool Judge::is_matched(double used_to) const {
+    return !environment_ && (used_to >= kUsedNear * size_ ||
+                             std::any_of(materials_.begin(), materials_.end(), emits));
+}
+
 void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
                          std::span<const ray::Closest> nearest) {
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    const bool own = candidate.materials.size() != materials_.size();
-    const measure::Surface surface{looks, &looks_, own ? skin_of(candidate.materials) : skin_};
+    const measure::Surface surface{looks, &looks_, skin_of(candidate)};
     const double most = distance_for(useless);
     set_error(candidate, rough_ ? reference_.roughly(mesh, surface, nearest, most, job)
                                 : reference_.of(mesh, surface, nearest, most, job));
@@ -183,6 +217,12 @@ void Judge::take_pictures_of(const Mesh& finest, int side, const Job& job) {
     else
         pictures_.emplace(finest, skin_, seed_, side, job);
     glow_.reset();
+}
+
+ray::SkinPtr Judge::skin_of(const Candidate& unmatched) const {
+    const bool same =
+        unmatched.kind == Kind::Mesh && unmatched.materials.size() == materials_.size();
+    return same ? skin_ : skin_of(unmatched.materials);
 }
 
 ray::SkinPtr Judge::skin_of(std::span<const Material> materials) const {
@@ -252,13 +292,10 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
                              const Job& job) {
     constexpr double kAlikeBright = 0.01;
     constexpr double kMost = 2;
-    // What is used up to here is that where the whole is 24 pixels large or more, and looks alike.
-    constexpr double kNear = 1.0 / 12;
     // What glows, and what is clear, has no part in the correction: further rounds are nearer.
     constexpr int kRounds = 3;
     const bool glows = std::any_of(materials_.begin(), materials_.end(), emits);
-    if (candidate.pictured || candidate.matched || environment_ ||
-        (!glows && used_to < kNear * size_))
+    if (candidate.pictured || candidate.matched || !is_matched(used_to))
         return;
     using Pictures = measure::AgreementReference;
     if (!pictures_)
@@ -289,8 +326,8 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     // Near something else that is left a point may have been all that closed a gap. Where the error is
     // as large as the pictures' pixels all that they show counts, half.
     const double own = candidate.error - child_error_;
-    const double seen = own < kNear * size_ ? pictures_->gaps_of(traced, current, own)
-                                            : kPictures * pictures_->of(traced, current).error;
+    const double seen = own < kUsedNear * size_ ? pictures_->gaps_of(traced, current, own)
+                                                : kPictures * pictures_->of(traced, current).error;
     candidate.error = std::max(candidate.error, seen + child_error_);
     candidate.max_error = std::max(candidate.max_error, seen + child_error_);
 }

@@ -7,6 +7,7 @@
 #include "measure/agreement.h"
 #include "measure/deviation.h"
 #include "measure/looks.h"
+#include "measure/patches.h"
 
 #include <limits>
 #include <optional>
@@ -31,7 +32,8 @@ public:
           const Settings& settings, bool environment, uint64_t seed, double child_error,
           const Job& job);
 
-    /// Measures the finest by rays, which attributes(), solid() and shows_as_much() need.
+    /// Measures the finest by rays, which attributes(), solid(), shows_as_much() and
+    /// prove() need.
     void measure_finest(const Mesh& finest, const Job& job);
 
     /// Errors of a flat thing (road, carpet, wall) that lies in layers count as those of environment
@@ -60,6 +62,9 @@ public:
 
     /// False for a level of the finest's materials that shows another amount of surface.
     bool shows_as_much(const Mesh& level, const Job& job) const;
+    /// Likewise of a candidate that is a mesh. Otherwise its error is at least half as large as the
+    /// patches that do not look like the finest's. `used_to`: the error from which on another is used.
+    bool prove(Candidate& candidate, double used_to, const Job& job) const;
     /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others. Where the error is much
     /// larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
@@ -96,11 +101,16 @@ public:
                                        size_t tags, const Job& job) const;
 
 private:
+    bool shows_as_much(const Mesh& level, const ray::Scene& scene, const Job& job) const;
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
     void take_pictures_of(const Mesh& finest, int side, const Job& job);
+    /// Whether match_brightness() does anything to what is used so far.
+    bool is_matched(double used_to) const;
     /// What a distance may be where an error is at most that.
     double distance_for(double error) const;
     ray::SkinPtr skin_of(std::span<const Material> materials) const;
+    /// Of one whose colors are as they were made: the finest's own where it has no others.
+    ray::SkinPtr skin_of(const Candidate& unmatched) const;
     /// Makes what glows of a candidate glow as much as the finest does.
     void match_glow(Candidate& candidate, const measure::AgreementReference::Traced& traced,
                     const Mesh& finest, const Job& job);
@@ -120,6 +130,7 @@ private:
     std::vector<uint16_t> finest_looks_;
     measure::DeviationReference reference_;
     std::optional<measure::AgreementReference> pictures_;
+    std::optional<measure::Patches> patches_;
     std::optional<glm::dvec3> glow_;  // all light of the finest's pictures over what it emits
     double opacity_ = 0;
     Attributes attributes_;

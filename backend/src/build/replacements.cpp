@@ -32,6 +32,7 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {approximate::clear_material(material, opacity)};
+        candidate.unproven = !by_pictures;
         if (by_pictures)
             judge.compare_pictures(candidate, {}, job);
         else

@@ -169,28 +169,40 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
     });
 }
 
-/// Looks at those of `some` that nobody has looked at; what shows too little is in neither list any
-/// more. Whether it is so.
-bool drop_bald(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
-               const Job& job) {
-    bool dropped = false;
+/// Whether both stand for one thing that was tried.
+bool is_same(const Candidate& a, const Candidate& b) {
+    return a.kind == b.kind && a.mesh == b.mesh && a.composite == b.composite &&
+           a.primitive.center == b.primitive.center &&
+           a.primitive.half_size == b.primitive.half_size;
+}
+
+/// Looks at those of `some` that nobody has looked at: what shows too little is in neither list any
+/// more, and what does not look like the finest is farther off. Whether anything changed.
+bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
+           const Job& job) {
+    bool changed = false;
     for (size_t i = some.size(); i-- > 0;) {
         if (!some[i].unproven)
             continue;
-        const bool good = judge.shows_as_much(*some[i].mesh, job);
-        some[i].unproven = false;
+        Candidate proven = some[i];
+        const double next =
+            i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
+        const bool good = judge.prove(proven, next, job);
+        changed = changed || !good || proven.error > some[i].error;
         for (size_t k = all.size(); k-- > 0;) {
-            if (all[k].mesh != some[i].mesh)
+            if (!is_same(all[k], some[i]))
                 continue;
-            all[k].unproven = false;
-            if (!good)
+            if (good)
+                all[k] = proven;
+            else
                 all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
         }
-        if (!good)
+        if (good)
+            some[i] = std::move(proven);
+        else
             some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
-        dropped = dropped || !good;
     }
-    return dropped;
+    return changed;
 }
 
 /// Those that `keep` leaves of all (finest first), as bright as the finest. What turns out to be
@@ -201,7 +213,7 @@ std::vector<Candidate> kept_of(std::vector<Candidate>& all,
     for (;;) {
         std::vector<Candidate> kept = all;
         keep(kept);
-        if (drop_bald(kept, all, judge, job))
+        if (prove(kept, all, judge, job))
             continue;
         bool farther = false;
         for (size_t i = 0; i < kept.size(); ++i) {
@@ -408,7 +420,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
             useful = out.candidates;
             keep_useful(useful, ~uint64_t{0});
             useful = {useful.back()};
-            drop_bald(useful, out.candidates, judge, job);
+            prove(useful, out.candidates, judge, job);
         }
         if (useful.empty()) {
             Candidate all;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/patches.h"
+
+#include "measure/glass.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::measure {
+namespace {
+
+// As in pictures (agreement): of the light on a surface that faces the lamp.
+constexpr double kAmbient = 0.25;
+// The smallest patches are so many times half as wide as the bound.
+constexpr int kHalvings = 10;
+
+glm::dvec3 light_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit,
+                    const glm::dvec3& towards) {
+    const uint16_t slot = mesh.slot(hit.triangle);
+    const ray::Shown shown =
+        skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
+    const double facing = std::abs(glm::dot(normal_at(mesh, hit, towards), towards));
+    return (kAmbient + (1 - kAmbient) * facing) * shown.color + shown.emission;
+}
+
+/// Which of six sides something is seen from.
+uint64_t side_of(const glm::dvec3& towards) {
+    int most = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        most = std::abs(towards[axis]) > std::abs(towards[most]) ? axis : most;
+    return 2 * static_cast<uint64_t>(most) + (towards[most] < 0 ? 1 : 0);
+}
+
+/// The side, then for each halving three bits of the place (0...1 along each axis).
+uint64_t patch_of(const glm::dvec3& towards, const glm::dvec3& place) {
+    constexpr int kCells = 1 << kHalvings;
+    const glm::ivec3 cell(
+        glm::clamp(place * double{kCells}, glm::dvec3(0.0), glm::dvec3(kCells - 1)));
+    uint64_t patch = side_of(towards);
+    for (int bit = kHalvings; bit-- > 0;) {
+        for (int axis = 0; axis < 3; ++axis)
+            patch = patch << 1u | (static_cast<uint32_t>(cell[axis]) >> bit & 1u);
+    }
+    return patch;
+}
+
+}  // namespace
+
+Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::Skin& skin,
+                 std::span<const Cast> cast, uint64_t seed)
+    : radius_(radius_of(finest)) {
+    constexpr size_t kMost = 2048;
+    const Sobol numbers(seed);
+    glm::dvec3 low(std::numeric_limits<double>::infinity());
+    for (size_t i = 0; i < cast.size() && seen_.size() < kMost; ++i) {
+        for (int k = 0; k < cast[i].count; ++k) {
+            const VisiblePoint& at = cast[i].points[static_cast<size_t>(k)];
+            glm::dvec3 towards = at.seen_from;
+            if (sampler.from_surface()) {
+                const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
+                towards = cosine_direction(at.seen_from, u[2], u[3]);
+            }
+            const ray::Hit hit{true, at.triangle, at.u, at.v, 0, at.point};
+            seen_.push_back({0, at.point, towards, light_at(finest, skin, hit, towards)});
+            low = glm::min(low, at.point);
+            mean_ += seen_.back().light;
+        }
+    }
+    for (Seen& seen : seen_)
+        seen.patch = patch_of(seen.towards, (seen.point - low) / (2 * radius_));
+    std::stable_sort(seen_.begin(), seen_.end(),
+                     [](const Seen& a, const Seen& b) { return a.patch < b.patch; });
+    mean_ /= static_cast<double>(std::max<size_t>(seen_.size(), 1));
+}
+
+Patches::Difference Patches::difference(const std::vector<glm::dvec3>& off, int halvings) const {
+    const int shift = 3 * (kHalvings - halvings);
+    double squares = 0;
+    double count = 0;
+    for (size_t begin = 0, end = 0; begin < seen_.size(); begin = end) {
+        glm::dvec3 sum(0.0);
+        double alone = 0;
+        for (end = begin;
+             end < seen_.size() && seen_[end].patch >> shift == seen_[begin].patch >> shift;
+             ++end) {
+            sum += off[end];
+            alone += glm::dot(off[end], off[end]);
+        }
+        const auto rays = static_cast<double>(end - begin);
+        if (rays < 2)
+            continue;
+        squares += (glm::dot(sum, sum) - alone) / (rays - 1);
+        count += rays;
+    }
+    if (!(count > 0))
+        return {};
+    return {std::sqrt(std::max(0.0, squares / count)) / glm::length(mean_),
+            count / static_cast<double>(seen_.size())};
+}
+
+double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, const ray::Skin& skin,
+                             bool matched, double least) const {
+    constexpr double kMostBrighter = 2;
+    constexpr double kMostFarther = 8;  // the more it differs, the smaller it has to be
+    constexpr double kLeastKnown = 0.5;
+    if (!(glm::length(mean_) > 0) || !(2 * kMostFarther * radius_ > least))
+        return 0;
+    const ray::Burst burst;
+    std::vector<glm::dvec3> off(seen_.size(), glm::dvec3(0.0));
+    glm::dvec3 theirs(0.0);
+    for (size_t i = 0; i < seen_.size(); ++i) {
+        const Seen& seen = seen_[i];
+        const ray::Hit hit =
+            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+        if (hit.hit)
+            off[i] = light_at(stand_in, skin, hit, seen.towards);
+        theirs += off[i] / static_cast<double>(seen_.size());
+    }
+    glm::dvec3 brighter(1.0);
+    for (int i = 0; i < 3; ++i) {
+        if (matched && theirs[i] > 0)
+            brighter[i] = std::clamp(mean_[i] / theirs[i], 1 / kMostBrighter, kMostBrighter);
+    }
+    for (size_t i = 0; i < seen_.size(); ++i)
+        off[i] = brighter * off[i] - seen_[i].light;
+    double side = 2 * radius_;
+    for (int halvings = 0; halvings <= kHalvings; ++halvings, side /= 2) {
+        if (halvings > 0 && !(side > least))
+            break;
+        const Difference found = difference(off, halvings);
+        if (found.known < kLeastKnown)
+            break;
+        if (found.off > kMostOff)
+            return side * (halvings == 0 ? std::min(found.off / kMostOff, kMostFarther) : 1);
+    }
+    return 0;
+}
+
+}  // namespace lodestone::measure
