@@ -104,9 +104,9 @@ Patches::Difference Patches::difference(const std::vector<glm::dvec3>& off, int 
 double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, const ray::Skin& skin,
                              bool matched, double least) const {
     constexpr double kMostBrighter = 2;
-    constexpr double kMostFarther = 8;  // the more it differs, the smaller it has to be
+    constexpr double kMostFarther = 2;  // as pictures that differ as a whole
     constexpr double kLeastKnown = 0.5;
-    if (!(glm::length(mean_) > 0) || !(2 * kMostFarther * radius_ > least))
+    if (!(glm::length(mean_) > 0) || !(2 * radius_ > least))
         return 0;
     const ray::Burst burst;
     std::vector<glm::dvec3> off(seen_.size(), glm::dvec3(0.0));
@@ -127,9 +127,7 @@ double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, cons
     for (size_t i = 0; i < seen_.size(); ++i)
         off[i] = brighter * off[i] - seen_[i].light;
     double side = 2 * radius_;
-    for (int halvings = 0; halvings <= kHalvings; ++halvings, side /= 2) {
-        if (halvings > 0 && !(side > least))
-            break;
+    for (int halvings = 0; halvings <= kHalvings && side > least; ++halvings, side /= 2) {
         const Difference found = difference(off, halvings);
         if (found.known < kLeastKnown)
             break;

@@ -24,7 +24,7 @@ public:
     Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::Skin& skin,
             std::span<const Cast> cast, uint64_t seed);
 
-    /// The side of the largest patches that do not look alike, metres; up to 16 radii of the bound
+    /// The side of the largest patches that do not look alike, metres; up to four radii of the bound
     /// where all of it looks different. 0 where only patches of `least` or less do, or such as have
     /// no two rays. With `matched` it does not count by how much it is brighter in all, up to twice:
     /// it will be made as bright. `scene` has `stand_in` in `skin`. Any thread.
