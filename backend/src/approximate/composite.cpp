@@ -16,6 +16,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <span>
 
 namespace lodestone::approximate {
@@ -291,9 +292,11 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
         return out;
     Clusters clusters(std::move(samples));
     Attributes whole = wanted;
-    if (options.shape && options.measured > 0) {
+    std::optional<VisibleSolids> sure;
+    if (options.shape && options.settled > 0) {
+        sure.emplace(options.settled, options.seed);
         measure::VisibleOptions visible;
-        visible.rays = options.measured;
+        visible.rays = options.settled;
         visible.seed = options.seed;
         const Attributes again =
             measure::measure_visible(mesh, scene, skin, visible, {}, job).attributes;
@@ -320,6 +323,8 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
         }
         match_whole(level.composite, whole, lowest(mesh), visible, options.shape, options.rounds,
                     job);
+        if (sure)
+            settle_whole(level.composite, whole, lowest(mesh), *sure, job);
         out.push_back(std::move(level));
     }
     return out;

@@ -22,11 +22,12 @@ struct Clustered {
 
 struct CompositeOptions {
     uint64_t seed = 1;
-    uint32_t rays = 262144;      // of the last step of matching; rounds before: an eighth, a 64th
-    bool shape = true;           // match centroid and variances of the whole, not its area alone
-    int rounds = 12;             // of matching on the way, at most
-    uint32_t measured = 262144;  // rays that measure the mesh once more for this; 0: as `wanted` is
-    size_t least = 4;            // parts
+    uint32_t rays = 32768;  // of the last rounds of matching; an eighth before
+    bool shape = true;      // match centroid and variances of the whole, not its area alone
+    int rounds = 12;        // of matching, at most
+    uint32_t settled =
+        262144;        // rays that see mesh and solids for settle_whole(), with `shape`; 0: not
+    size_t least = 4;  // parts
     size_t most = 32;
     uint32_t samples = 8192;  // rays that find what is clustered
 };

@@ -32,11 +32,71 @@ struct Miss {
         : area(of_area), centroid(of_centroid), shape(of_shape) {}
 };
 
-/// Area and centroid as all rays see them, set right by scaling and moving the solids alike, which
-/// hides nothing more of any. What stands keeps its foot and follows along Z by half, so all go
-/// farther.
-void settle(Composite& composite, const Attributes& wanted, double floor,
-            const VisibleSolids& visible, const Job& job) {
+}  // namespace
+
+void match_whole(Composite& composite, const Attributes& wanted, double floor,
+                 const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
+    // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
+    constexpr double kFew = 1.0 / 8;
+    constexpr double kAll = 1;
+    constexpr int kLast = 3;
+    const Miss rough{0.004, 0.004, 0.004};
+    const Miss exact{0.001, 0.0005, 0.001};
+    // Plates around a closed body have no size that gives both its area and its variances: after so
+    // many rounds the ratios of these are enough, as for a single solid.
+    constexpr int kPatience = 5;
+    const auto within = [&](const Miss& miss, const Miss& most) {
+        return miss.area <= most.area &&
+               (!shape || (miss.centroid <= most.centroid && miss.shape <= most.shape));
+    };
+    const auto worst = [&](const Miss& miss) {
+        const double area = miss.area / exact.area;
+        return shape ? std::max({area, miss.centroid / exact.centroid, miss.shape / exact.shape})
+                     : area;
+    };
+    Composite best;
+    double least = std::numeric_limits<double>::infinity();
+    int last = 0;  // rounds with all rays
+    bool size = true;
+    std::vector<measure::SurfaceInertia> each;
+    for (int round = 0; last < kLast; ++round) {
+        measure::SurfaceInertia now = visible.of(composite, last > 0 ? kAll : kFew, job, &each);
+        if (now.empty())
+            break;
+        size = size && (last > 0 || round < kPatience);
+        if (last == 0 && (within(Miss(missing_of(now, wanted, size)), rough) || round >= rounds)) {
+            ++last;
+            now = visible.of(composite, kAll, job, &each);
+            if (now.empty())
+                break;
+        } else if (last > 0) {
+            ++last;
+        }
+        const Missing missing = missing_of(now, wanted, size);
+        const double off = worst(Miss(missing));
+        if (last > 0 && off < least) {
+            least = off;
+            best = composite;
+        }
+        if (last > 0 && off <= 1)
+            break;
+        if (shape) {
+            make_up(composite, now, each, missing, size, floor);
+            continue;
+        }
+        const double scale =
+            std::clamp(std::pow(wanted.visible_area / now.area, kGrowth), 1 / kMostStep, kMostStep);
+        for (Solid& solid : composite.solids) {
+            solid.primitive.half_size *= scale;
+            solid.primitive = kept_above(solid.primitive, solid.box, floor);
+        }
+    }
+    if (!best.solids.empty())
+        composite = std::move(best);
+}
+
+void settle_whole(Composite& composite, const Attributes& wanted, double floor,
+                  const VisibleSolids& visible, const Job& job) {
     constexpr double kStands = 1e-6;  // radii of gyration
     constexpr double kMostScale = 1.02;
     std::vector<measure::SurfaceInertia> each;
@@ -65,71 +125,6 @@ void settle(Composite& composite, const Attributes& wanted, double floor,
             primitive = standing_on(primitive, box, floor);
         primitive = kept_above(primitive, box, floor);
     }
-}
-
-}  // namespace
-
-void match_whole(Composite& composite, const Attributes& wanted, double floor,
-                 const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
-    // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
-    constexpr double kFew = 1.0 / 64;
-    constexpr double kMany = 1.0 / 8;
-    constexpr int kLast = 3;
-    const Miss rough{0.004, 0.004, 0.004};
-    const Miss exact{0.001, 0.0005, 0.001};
-    // Plates around a closed body have no size that gives both its area and its variances: after so
-    // many rounds the ratios of these are enough, as for a single solid.
-    constexpr int kPatience = 5;
-    const auto within = [&](const Miss& miss, const Miss& most) {
-        return miss.area <= most.area &&
-               (!shape || (miss.centroid <= most.centroid && miss.shape <= most.shape));
-    };
-    const auto worst = [&](const Miss& miss) {
-        const double area = miss.area / exact.area;
-        return shape ? std::max({area, miss.centroid / exact.centroid, miss.shape / exact.shape})
-                     : area;
-    };
-    Composite best;
-    double least = std::numeric_limits<double>::infinity();
-    int last = 0;  // rounds with all rays
-    bool size = true;
-    std::vector<measure::SurfaceInertia> each;
-    for (int round = 0; last < kLast; ++round) {
-        measure::SurfaceInertia now = visible.of(composite, last > 0 ? kMany : kFew, job, &each);
-        if (now.empty())
-            break;
-        size = size && (last > 0 || round < kPatience);
-        if (last == 0 && (within(Miss(missing_of(now, wanted, size)), rough) || round >= rounds)) {
-            ++last;
-            now = visible.of(composite, kMany, job, &each);
-            if (now.empty())
-                break;
-        } else if (last > 0) {
-            ++last;
-        }
-        const Missing missing = missing_of(now, wanted, size);
-        const double off = worst(Miss(missing));
-        if (last > 0 && off < least) {
-            least = off;
-            best = composite;
-        }
-        if (last > 0 && off <= 1)
-            break;
-        if (shape) {
-            make_up(composite, now, each, missing, size, floor);
-            continue;
-        }
-        const double scale =
-            std::clamp(std::pow(wanted.visible_area / now.area, kGrowth), 1 / kMostStep, kMostStep);
-        for (Solid& solid : composite.solids) {
-            solid.primitive.half_size *= scale;
-            solid.primitive = kept_above(solid.primitive, solid.box, floor);
-        }
-    }
-    if (!best.solids.empty())
-        composite = std::move(best);
-    if (shape)
-        settle(composite, wanted, floor, visible, job);
 }
 
 }  // namespace lodestone::approximate

@@ -10,10 +10,15 @@ namespace lodestone::approximate {
 /// Moves and stretches solids, altogether as little as possible (least_change.h), until what can be
 /// seen of them has the area that is wanted and, with `shape`, its centroid and variances; where no
 /// size gives both area and variances (plates around a closed body) their ratios, as for a single
-/// solid. In at most `rounds` with a 64th of the rays of `visible`, and three with an eighth, of which
-/// the best one is kept; then, with `shape`, all solids are scaled and moved alike to the area and
-/// centroid that all rays see. Nothing reaches below `floor`.
+/// solid. In at most `rounds` with an eighth of the rays of `visible`, and three with all, of which
+/// the best one is kept. Nothing reaches below `floor`.
 void match_whole(Composite& composite, const Attributes& wanted, double floor,
                  const VisibleSolids& visible, bool shape, int rounds, const Job& job);
+
+/// Area and centroid as all rays see them, set right by scaling and moving the solids alike, which
+/// hides nothing more of any. What stands keeps its foot and follows along Z by half, so all go
+/// farther.
+void settle_whole(Composite& composite, const Attributes& wanted, double floor,
+                  const VisibleSolids& visible, const Job& job);
 
 }  // namespace lodestone::approximate

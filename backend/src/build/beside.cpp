@@ -62,8 +62,7 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
     approximate::CompositeOptions rough{seed};
     rough.shape = false;
     rough.rounds = 0;
-    rough.rays = static_cast<uint32_t>(2 * settings.rays);
-    rough.measured = 0;
+    rough.rays = static_cast<uint32_t>(settings.rays / 4);
     rough.most = kMostBeside;
     for (approximate::Clustered& level :
          approximate::composites(rest, judge.skin(), attributes, rough, job))

@@ -21,7 +21,8 @@ struct Candidate {
     bool pictured = false;            // compared by pictures, and as bright as they are
     bool matched = false;             // likewise, but its error is a distance, if that is larger
     bool sealed = false;              // as Summary's
-    bool unproven = false;  // nobody has looked yet whether it shows as much as the finest
+    bool unproven = false;   // nobody has looked yet whether it shows as much as the finest
+    bool unsettled = false;  // solids that are matched in area and centroid, but by few rays
 };
 
 /// In POV-Ray's memory, of one.

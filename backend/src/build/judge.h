@@ -73,9 +73,9 @@ public:
     /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 
-    /// Puts a box or ellipsoid of this finest mesh where many more rays see it; what stands at
-    /// `floor` or would reach below it keeps its foot. Where the finest was measured exactly nothing
-    /// changes.
+    /// Sets area and centroid of solids right by many more rays. `finest`: the mesh measured as such;
+    /// what stands at `floor` or would reach below it keeps its foot. Single solids stay where the
+    /// finest was measured exactly.
     void settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job);
 
     /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
@@ -106,6 +106,8 @@ private:
     void take_pictures_of(const Mesh& finest, int side, const Job& job);
     /// Whether match_brightness() does anything to what is used so far.
     bool is_matched(double used_to) const;
+    /// The finest's, by so many rays or more.
+    const Attributes& sure(const Mesh& finest, uint64_t rays, const Job& job);
     /// What a distance may be where an error is at most that.
     double distance_for(double error) const;
     ray::SkinPtr skin_of(std::span<const Material> materials) const;
@@ -134,7 +136,8 @@ private:
     std::optional<glm::dvec3> glow_;  // all light of the finest's pictures over what it emits
     double opacity_ = 0;
     Attributes attributes_;
-    std::optional<Attributes> sure_;  // by many more rays
+    Attributes sure_;         // by many more rays
+    uint64_t sure_rays_ = 0;  // so many
 };
 
 }  // namespace lodestone::build

@@ -33,6 +33,7 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
         candidate.primitive = primitive;
         candidate.materials = {approximate::clear_material(material, opacity)};
         candidate.unproven = !by_pictures;
+        candidate.unsettled = true;
         if (by_pictures)
             judge.compare_pictures(candidate, {}, job);
         else
@@ -122,7 +123,7 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     // not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
     constexpr double kFewerNearer = 0.75;
-    constexpr uint32_t kFewRays = 8192;
+    constexpr uint32_t kFewRays = 1024;
     constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     approximate::CompositeOptions options{seed};
@@ -132,9 +133,9 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     few.shape = false;
     few.rounds = 0;
     few.rays = kFewRays;
-    few.measured = 0;
     few.samples = kFewSamples;
     approximate::CompositeOptions exact = options;
+    exact.settled = 0;  // those that are kept are
     exact.least = exact.most = 0;
     std::vector<Candidate> rough;  // fewest solids first
     for (const approximate::Clustered& level :
@@ -164,6 +165,7 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     }
     for (const approximate::Clustered& level : levels) {
         Candidate candidate = candidate_of(level);
+        candidate.unsettled = options.shape;
         judge.compare_pictures(candidate, {}, job);
         candidates.push_back(std::move(candidate));
     }

@@ -345,6 +345,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
 
     std::vector<uint32_t> occurrence = reference.occurrence;
     Mesh shell = without_hidden(reference.mesh, occurrence, judge, seed, job);
+    const double floor = bound_of(shell.positions).box.low.z;
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.
     const Children children(model, group, reference.child_error, uses, job);
@@ -431,6 +432,10 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         }
         judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
                                job);
+    }
+    for (Candidate& candidate : useful) {
+        if (candidate.kind == Kind::Composite)
+            judge.settle(candidate, reference.mesh, floor, job);
     }
     seal(useful, model, group, reference.mesh, uses, source, judge, job);
     out.candidates = std::move(useful);
