@@ -155,7 +155,7 @@ TEST(Fit, BricksOfFewTrianglesStayFlat) {
         for (const Triangle& t : brick.triangles)
             wall.triangles.push_back({t.x + first, t.y + first, t.z + first});
     }
-    const Mesh coarse = simplify(separate(wall), 30 * 5, {});
+    const Mesh coarse = simplify(separate(wall), 150, {});
     ASSERT_GE(coarse.triangles.size(), 100u);
     double seen = 0;
     double tilted = 0;

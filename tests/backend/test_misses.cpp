@@ -50,7 +50,7 @@ TEST(Misses, PartsHoldAllThatEitherPictureShows) {
     Pictures b = a;
     a[7 * kSide + 12].w = 1;
     b[9 * kSide + 3].w = 0.01f;
-    b[2 * kSide * kSide].w = 1;
+    b[size_t{2} * kSide * kSide].w = 1;
     const std::vector<Part> parts = measure::parts_of(a, b, kViews, kSide);
     ASSERT_EQ(parts.size(), kViews);
     EXPECT_EQ(parts[0].low, glm::ivec2(3, 7));
