@@ -415,7 +415,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         }
     };
     std::vector<Candidate> useful = kept_of(out.candidates, keep, judge, reference.mesh, job);
-    if (useful.empty()) {
+    const bool saves = !useful.empty();
+    if (!saves) {
         // Every group has a stand-in, even one that saves nothing but the occurrences: the cheapest.
         while (useful.empty() && !out.candidates.empty()) {
             useful = out.candidates;
@@ -437,7 +438,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         if (candidate.kind == Kind::Composite)
             judge.settle(candidate, reference.mesh, floor, job);
     }
-    seal(useful, model, group, reference.mesh, uses, source, judge, job);
+    if (saves)  // else children are the cheaper choice, however they look
+        seal(useful, model, group, reference.mesh, uses, source, judge, job);
     out.candidates = std::move(useful);
     return out;
 }
