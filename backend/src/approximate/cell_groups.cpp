@@ -12,7 +12,7 @@ namespace {
 
 // Merging across grid lines is dearer than the tree but better. What it may take, in nanoseconds a
 // triangle of the input, and what it does take for a cell it begins with and for each it merges.
-constexpr double kMergeBudget = 2;
+constexpr double kMergeBudget = 4;
 constexpr double kBeginCost = 135;
 constexpr double kMergeCost = 600;
 constexpr double kMostMerged = 3;  // of the cells that are left
