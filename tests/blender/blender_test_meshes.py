@@ -33,12 +33,12 @@ class Meshes(unittest.TestCase):
     def setUp(self):
         self.scene = scenes.fresh()
 
-    def extracted(self, item):
+    def extracted(self, item, in_place=0):
         from lodestone.bridge import mesh
         from lodestone.bridge.materials import Wanted
 
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        return mesh.extract(shown, [Wanted()])
+        return mesh.extract(shown, [Wanted()], in_place)
 
     def source_hash(self, buffers):
         from lodestone.core.native import lodestone_native as native
@@ -79,14 +79,16 @@ class Meshes(unittest.TestCase):
     def test_a_mesh_under_edit_is_what_blender_shows(self):
         bpy.ops.mesh.primitive_monkey_add()
         monkey = bpy.context.object
-        before = self.extracted(monkey)
+        corners = len(monkey.data.loops)
+        before = self.extracted(monkey, corners)
+        self.assertEqual(self.source_hash(before), self.source_hash(self.extracted(monkey)))
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.quads_convert_to_tris()
         bpy.ops.transform.resize(value=(2, 2, 2))
-        under_edit = self.extracted(monkey)
+        under_edit = self.extracted(monkey, 2 * corners)
         bpy.ops.object.mode_set(mode="OBJECT")
-        after = self.extracted(monkey)
+        after = self.extracted(monkey, 2 * corners)
         self.assertEqual(max(after.positions), 2 * max(before.positions))
         self.assertEqual(self.source_hash(under_edit), self.source_hash(after))
 

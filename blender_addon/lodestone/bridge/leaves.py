@@ -18,6 +18,7 @@ UNDRAWN = {"VOLUME": "volumes"}
 GREASE_PENCIL = "GPENCIL"  # Blender draws it over the picture of any engine
 HAIR = "hair"  # of particles; also in the names of leaves
 POINT = "point"
+MOST_IN_PLACE = 1_000_000  # corners of meshes that are not copied: Blender keeps 12 MB for them
 Color = tuple[float, float, float, float]
 MATERIAL = attrgetter("material")
 
@@ -72,6 +73,7 @@ class Leaves:
         self._varying: dict[tuple, tuple[bool, list | None]] = {}  # by materials
         self._black: int | None = None
         self._place: Any = None  # world matrix of the instance at hand
+        self._in_place = MOST_IN_PLACE  # corners of meshes that may still be read where they are
         self._found: dict[tuple, Leaf | None] = {}
 
     def __iter__(self) -> Any:
@@ -150,7 +152,9 @@ class Leaves:
             else:
                 wanted = [self._materials.wanted(material, color) for material in slots]
                 wanted = mesh_uvs.placed(wanted, self._place)
-                buffers = mesh.extract(shown, wanted)
+                buffers = mesh.extract(shown, wanted, self._in_place)
+                if shown.type == "MESH":
+                    self._in_place = max(0, self._in_place - len(shown.data.loops))
                 size = 0 if buffers is None else buffers.triangle_count
         except RuntimeError as error:
             return self._unreadable(owner, error)

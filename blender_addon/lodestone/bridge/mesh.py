@@ -12,23 +12,29 @@ from ..core.native import lodestone_native as native
 from .materials import Wanted
 
 
-def extract(instance_object: Any, wanted: Sequence[Wanted]) -> Any:
+def extract(instance_object: Any, wanted: Sequence[Wanted], in_place: int = 0) -> Any:
     """FaceBuffers of an evaluated object (mesh, curve, text, surface, metaball), or None when it
     has no faces; `wanted` is what the material of each slot needs. Only while the object is valid:
-    inside the loop over depsgraph instances."""
-    if _holds_its_faces(instance_object):
-        return _buffers(instance_object.data, instance_object, wanted)
+    inside the loop over depsgraph instances. A mesh of no more corners than `in_place` is read
+    where it is, if that can be: a copy takes longer to make than to read, but Blender gives the
+    mesh arrays of its own then (some 12 bytes a corner), which last as long as the depsgraph."""
+    if _holds_its_faces(instance_object) and len(instance_object.data.loops) <= in_place:
+        starts = _face_starts(instance_object.data)
+        if not _has_large_faces(instance_object.data, starts):
+            return _buffers(instance_object.data, starts, instance_object, wanted)
     mesh = instance_object.to_mesh()
     try:
-        return None if mesh is None else _buffers(mesh, instance_object, wanted)
+        if mesh is None:
+            return None
+        return _buffers(mesh, _face_starts(mesh), instance_object, wanted)
     finally:
         instance_object.to_mesh_clear()
 
 
 def _holds_its_faces(shown: Any) -> bool:
-    """Whether its mesh can be read where it is; what to_mesh() makes is a copy, which takes longer
-    to make than to read. Under edit it is no mesh yet, modifiers may leave it to the graphics card,
-    and finding split normals writes into it."""
+    """Whether its mesh can be read where it is. Under edit it is no mesh yet, modifiers may leave
+    it to the graphics card, and what is found of split normals (and of Blender's triangles) stays
+    in it."""
     data = shown.data
     return (
         shown.type == "MESH"
@@ -38,12 +44,26 @@ def _holds_its_faces(shown: Any) -> bool:
     )
 
 
-def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
+def _face_starts(mesh: Any) -> array | None:
+    """The first corner of each face; None: all are triangles."""
+    faces = len(mesh.polygons)
+    if len(mesh.loops) == 3 * faces:
+        return None
+    starts = compat.buffer("I", faces)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return starts
+
+
+def _has_large_faces(mesh: Any, starts: array | None) -> bool:
+    """Of more than four corners."""
+    return starts is not None and native.largest_face(starts, len(mesh.loops)) > 4
+
+
+def _buffers(mesh: Any, starts: array | None, shown: Any, wanted: Sequence[Wanted]) -> Any:
     """Blender's triangles are asked for only where a face has more than four corners, and its
     normals only where they are others than those of the faces: both cost more than all the rest,
     and its sums of normals come out with other last digits each time."""
-    polygons, corners = mesh.polygons, len(mesh.loops)
-    faces = len(polygons)
+    faces, corners = len(mesh.polygons), len(mesh.loops)
     if faces == 0 or corners < 3:
         return None
     buffers = native.FaceBuffers(
@@ -51,11 +71,9 @@ def _buffers(mesh: Any, shown: Any, wanted: Sequence[Wanted]) -> Any:
     )
     mesh.vertices.foreach_get("co", buffers.positions)
     mesh.loops.foreach_get("vertex_index", buffers.corner_vertices)
-    if corners != 3 * faces:
-        buffers.face_starts = compat.buffer("I", faces)
-        polygons.foreach_get("loop_start", buffers.face_starts)
-        if native.largest_face(buffers.face_starts, corners) > 4:
-            buffers.triangles = _triangles(mesh)
+    buffers.face_starts = starts
+    if _has_large_faces(mesh, starts):
+        buffers.triangles = _triangles(mesh)
     buffers.face_smooth = compat.smooth_faces(mesh)
     if compat.splits_normals(mesh) and (buffers.face_smooth or mesh.has_custom_normals):
         buffers.corner_normals = compat.buffer("f", 3 * corners)
