@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -134,7 +135,7 @@ void PinchCutter::join_pairs(uint32_t vertex, size_t begin) {
     // From a triangle that leaves to one that arrives, through the solid.
     const auto solid = [&](size_t leaving, size_t arriving) {
         const double angle = angles[1][leaving] - angles[0][arriving];
-        return angle < 0 ? angle + 2 * 3.14159265358979 : angle;
+        return angle < 0 ? angle + 2 * std::numbers::pi : angle;
     };
     const size_t other = solid(0, 0) + solid(1, 1) <= solid(0, 1) + solid(1, 0) ? 0 : 1;
     join(parents_, at[1][0], at[0][other]);
