@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects show which material: noted on the way to the leaves, whoever makes them."""
 
+from collections import defaultdict
 from collections.abc import Iterable
 from functools import partial
 from itertools import chain
@@ -59,12 +60,18 @@ class Users:
 
     def found(self) -> dict[Subject, tuple[Subject, ...]]:
         """The objects of every material that a face of them wears."""
-        found: dict[Subject, dict[Subject, None]] = {}
+        found: defaultdict[Subject, list[tuple[Subject, ...]]] = defaultdict(list)
         for leaf, users in self._users.items():
             users |= dict.fromkeys(chain.from_iterable(self._more.pop(leaf, ())))
+            own = tuple(users)
             for material in self._materials[leaf]:
-                found.setdefault(material, {}).update(users)
-        return {material: tuple(users) for material, users in found.items()}
+                found[material].append(own)
+        return {
+            material: of_leaves[0]
+            if len(of_leaves) == 1
+            else tuple(dict.fromkeys(chain.from_iterable(of_leaves)))
+            for material, of_leaves in found.items()
+        }
 
     def concerns(self, problem: Problem) -> bool:
         """False for a material that no face wears: whatever is wrong with it, nobody sees it."""
