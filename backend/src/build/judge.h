@@ -65,8 +65,8 @@ public:
     /// Likewise of a candidate that is a mesh. Otherwise its error is at least half as large as the
     /// patches that do not look like the finest's. `used_to`: the error from which on another is used.
     bool prove(Candidate& candidate, double used_to, const Job& job) const;
-    /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others. Where the error is much
-    /// larger than `useless` it may be infinite, which takes less time.
+    /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others. Where the
+    /// error is much larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
                       double useless = std::numeric_limits<double>::infinity(),
                       std::span<const ray::Closest> nearest = {});

@@ -179,8 +179,7 @@ Replacements::Replacements(const Mesh& mesh,
     : mesh_(mesh), whole_(whole), judge_(judge) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
     constexpr double kFewSolids = 32;
-    worth_pictures_ = whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts();
-    if (worth_pictures_) {
+    if (whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts()) {
         crowd_ = crowd_in_mesh();
         by_pictures_ = !judge.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
     }

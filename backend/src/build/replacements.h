@@ -51,7 +51,6 @@ private:
     const Whole& whole_;
     Judge& judge_;
     approximate::Crowd crowd_;
-    bool worth_pictures_;
     bool by_pictures_ = false;  // whatever the levels are like
     std::vector<Candidate> solids_;
 };
