@@ -278,7 +278,7 @@ static void test_many_are_placed_at_once_or_not_at_all(void) {
     for (int i = 0; i < 24; ++i)
         places[i / 12][i % 12] = (float)kIdentity[i % 12];
     places[1][3] = 5;
-    const char* names[2] = {"near", "far"};
+    const char* names = "near\0far";
     const uint32_t hidden[2] = {0, LDS_RAY_SHADOW};
     const uint32_t unknown[2] = {0, 16};
     const float* rows = &places[0][0];

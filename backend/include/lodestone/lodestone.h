@@ -35,7 +35,7 @@ extern "C" {
 #endif
 
 /* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
-#define LDS_ABI_VERSION 3
+#define LDS_ABI_VERSION 4
 
 typedef enum lds_status {
     LDS_OK = 0,
@@ -442,12 +442,12 @@ LDS_API lds_status lds_model_add_group(lds_model* model, const lds_object_info* 
    through the model (INVALID_ARGUMENT). */
 LDS_API lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_object child,
                                            const double transform[12], const char* name);
-/* Places many, in this order: children[count], transforms float32[count][12], names[count]
-   (UTF-8), and the ray classes (lds_ray_class bits) each is hidden from as below; null: none is.
-   All or none. */
+/* Places many, in this order: children[count], transforms float32[count][12], names (count texts of
+   UTF-8 one after the other, each ended by NUL), and the ray classes (lds_ray_class bits) each is
+   hidden from as below; null: none is. All or none. */
 LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
                                             const lds_object* children, const float* transforms,
-                                            const char* const* names, const uint32_t* hidden);
+                                            const char* names, const uint32_t* hidden);
 /* Hides a group's newest placement, with everything below it, from the ray classes in the mask
    (lds_ray_class bits). A group that holds something hidden is always drawn by its children. */
 LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,

@@ -11,7 +11,7 @@ from .errors import LodestoneError
 from .prototypes import declare
 from .structs import text_out
 
-ABI_VERSION = 3
+ABI_VERSION = 4
 NAME = "liblodestone.so"
 
 

@@ -4,7 +4,8 @@
 import ctypes
 from array import array
 from collections.abc import Iterator, Sequence
-from itertools import accumulate
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 from . import structs
@@ -221,9 +222,9 @@ class Model(Handle):
                 self.handle,
                 group,
                 number,
-                (Object * number).from_buffer_copy(b"".join(map(bytes, children))),
+                (Object * number).from_buffer_copy(_packed(children)),
                 rows.buffer_info()[0] if number else None,
-                (ctypes.c_char_p * number).from_buffer(_addresses(texts)),
+                texts,
                 (ctypes.c_uint32 * number)(*hidden) if any(hidden) else None,
             )
         )
@@ -455,9 +456,7 @@ def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
     return structs.ObjectInfo(uid=text_in(uid), name=text_in(name), role=role, deforms=int(deforms))
 
 
-def _addresses(texts: bytes) -> array:
-    """Of each of many texts that NULs part, of 64 bits: half the time that ctypes takes to convert
-    them one by one. Keep the texts as long as these are in use."""
-    first = ctypes.cast(ctypes.c_char_p(texts), ctypes.c_void_p).value or 0
-    lengths = map((1).__add__, map(len, texts.split(b"\0")))
-    return array("Q", list(accumulate(lengths, initial=first))[:-1])
+def _packed(items: Sequence[Object]) -> bytes:
+    """One after the other. Many are followed by the same one."""
+    alike = map(list, map(itemgetter(1), groupby(items, id)))
+    return b"".join(bytes(same[0]) * len(same) for same in alike)

@@ -38,7 +38,7 @@ PROTOTYPES = (
     ("lds_model_add_group", I, [M, P(s.ObjectInfo), P(s.Object)]),
     ("lds_model_add_placement", I, [M, s.Object, s.Object, P(c_double), T]),
     ("lds_model_add_placements", I,
-     [M, s.Object, Z, P(s.Object), c_void_p, P(c_char_p), c_void_p]),
+     [M, s.Object, Z, P(s.Object), c_void_p, c_char_p, c_void_p]),
     ("lds_model_hide_placement", I, [M, s.Object, U]),
     ("lds_model_decide_placement", I, [M, s.Object, Z, D, U]),
     ("lds_model_pin_placement", I, [M, s.Object, Z, U]),

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <iterator>
 
 using namespace lodestone;
@@ -111,7 +112,7 @@ lds_status lds_model_add_placement(lds_model* model, lds_object group, lds_objec
 
 lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t count,
                                     const lds_object* children, const float* transforms,
-                                    const char* const* names, const uint32_t* hidden) {
+                                    const char* names, const uint32_t* hidden) {
     return guard([&] {
         require(model, "model");
         Assembly& into = group_at(*model, group);
@@ -125,7 +126,8 @@ lds_status lds_model_add_placements(lds_model* model, lds_object group, size_t c
         for (size_t i = 0; i < count; ++i) {
             std::array<double, 12> rows{};
             std::copy_n(transforms + 12 * i, rows.size(), rows.begin());
-            added.push_back(placement_of(*model, children[i], rows.data(), names[i]));
+            added.push_back(placement_of(*model, children[i], rows.data(), names));
+            names += std::strlen(names) + 1;
             if (hidden != nullptr)
                 added.back().hidden = ray_mask(hidden[i]);
         }
