@@ -79,6 +79,22 @@ char* write_short(char* at, double value, int digits) {
     return write_decimals(at, left, decimals);
 }
 
+constexpr size_t kMostCharacters = 40;  // of a number
+
+char* write_number(char* at, double value, int digits) {
+    if (!std::isfinite(value))
+        fail(Status::Internal, "a number for POV-Ray is not finite");
+    if (value == 0) {
+        *at = '0';
+        return at + 1;
+    }
+    *at = '-';
+    char* const end = write_short(value < 0 ? at + 1 : at, std::abs(value), digits);
+    if (end != nullptr)
+        return end;
+    return std::to_chars(at, at + kMostCharacters, value, std::chars_format::general, digits).ptr;
+}
+
 }  // namespace
 
 char* write_count(char* at, uint64_t value) {
@@ -97,21 +113,8 @@ char* write_count(char* at, uint64_t value) {
 }
 
 void append_number(std::string& out, double value, int digits) {
-    if (!std::isfinite(value))
-        fail(Status::Internal, "a number for POV-Ray is not finite");
-    if (value == 0) {
-        out += '0';
-        return;
-    }
-    char buffer[40] = {'-'};
-    char* end = write_short(buffer + 1, std::abs(value), digits);
-    if (end != nullptr) {
-        out.append(value < 0 ? buffer : buffer + 1, end);
-        return;
-    }
-    end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits)
-              .ptr;
-    out.append(buffer, end);
+    char buffer[kMostCharacters];
+    out.append(buffer, write_number(buffer, value, digits));
 }
 
 void append_count(std::string& out, uint64_t value) {
@@ -130,14 +133,18 @@ void append_vector(std::string& out, const glm::dvec3& value, int digits) {
 }
 
 void append_matrix(std::string& out, const Affine& transform) {
-    out += "matrix<";
+    char buffer[12 * (kMostCharacters + 1)];
+    char* at = buffer;
     for (int column = 0; column < 4; ++column) {
         const glm::dvec3& image = column < 3 ? transform.linear[column] : transform.offset;
         for (int i = 0; i < 3; ++i) {
-            append_number(out, image[i]);
-            out += column == 3 && i == 2 ? ">" : ",";
+            at = write_number(at, image[i], kSignificantDigits);
+            *at++ = ',';
         }
     }
+    at[-1] = '>';
+    out += "matrix<";
+    out.append(buffer, at);
 }
 
 Lattice::Lattice(double precision, double largest) {

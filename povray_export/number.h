@@ -11,12 +11,14 @@
 
 namespace lodestone::povray {
 
+constexpr int kSignificantDigits = 10;
+
 /// Appends the shortest form with at most `digits` significant digits. Throws Error(Internal) for a
 /// value that is not finite.
-void append_number(std::string& out, double value, int digits = 10);
+void append_number(std::string& out, double value, int digits = kSignificantDigits);
 void append_count(std::string& out, uint64_t value);
 /// <x,y,z>
-void append_vector(std::string& out, const glm::dvec3& value, int digits = 10);
+void append_vector(std::string& out, const glm::dvec3& value, int digits = kSignificantDigits);
 /// matrix<...> of 12 numbers, as POV-Ray's transforms are written.
 void append_matrix(std::string& out, const Affine& transform);
 
