@@ -2,7 +2,6 @@
 """Groups from collections: membership gives the tree, instancing empties the sharing."""
 
 from array import array
-from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import repeat
 from operator import attrgetter
@@ -16,6 +15,7 @@ from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
 from .listed import Rows, gathered, rows
 from .motion import Motion
+from .parts import Parts
 from .placements import Placements
 from .plain import Plain
 from .shutter import Moving
@@ -42,6 +42,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
     """Of what a view layer includes: render-hidden collections are left out, excluded ones lend
     nothing but their included children."""
     claimed: set[Any] = set()
+    taken = _Taken()
 
     def branch(layer: Any, inherited: bool) -> Branch:
         collection = layer.collection
@@ -55,7 +56,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
                 if inner.children or inner.objects:
                     made.children.append(inner)
         if not layer.exclude:
-            made.objects = _own(claimed, collection)
+            made.objects = taken.own(collection)
         return made
 
     root = branch(view_layer.layer_collection, False)
@@ -66,6 +67,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
 def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
     """Of an evaluated collection as its instances show it: layers play no part."""
     claimed: set[Any] = {collection.original}
+    taken = _Taken()
 
     def branch(item: Any, inherited: bool) -> Branch:
         environment = inherited or roles.is_environment(item)
@@ -73,7 +75,7 @@ def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
         for child in item.children:
             if not child.hide_render and _claim(claimed, child):
                 made.children.append(branch(child, environment))
-        made.objects = _own(claimed, item)
+        made.objects = taken.own(item)
         return made
 
     return branch(collection, False)
@@ -87,14 +89,23 @@ def _claim(claimed: set[Any], collection: Any) -> bool:
     return True
 
 
-def _own(claimed: set[Any], collection: Any) -> list[Any]:
-    """The originals of the collection's own objects that belong to no earlier one."""
-    objects = collection.objects  # of an original collection all are originals
-    found = list(map(_ORIGINAL, objects) if collection.is_evaluated else objects)
-    if not claimed.isdisjoint(found):
-        found = [item for item in found if item not in claimed]
-    claimed.update(found)
-    return found
+class _Taken:
+    """Originals of the objects that belong to a branch."""
+
+    def __init__(self) -> None:
+        self._before: set[Any] = set()
+        self._last: list[Any] = []  # one large collection alone is not looked through
+
+    def own(self, collection: Any) -> list[Any]:
+        """The collection's own objects that belong to no earlier one; takes them."""
+        objects = collection.objects  # of an original collection all are originals
+        found = list(map(_ORIGINAL, objects) if collection.is_evaluated else objects)
+        if found:
+            self._before.update(self._last)
+            if not self._before.isdisjoint(found):
+                found = [item for item in found if item not in self._before]
+            self._last = found
+        return found
 
 
 def environment_objects(branch: Branch) -> set[Any]:
@@ -152,7 +163,7 @@ class Groups:
         self._branches: dict[int, Branch] = {}
         self._emitters: dict[Any, list[tuple[list[Emitted], Any]]] = {}
         self.unplaced: list[str] = []  # names of objects no branch holds
-        self.parts: dict[ids.Key, list[Any]] = defaultdict(list)  # what a datablock became
+        self.parts = Parts()
         self.moving: list[Moving] = []
         self.collections: dict[Any, None] = {}  # their groups that stay as they are in every frame
 
@@ -208,7 +219,7 @@ class Groups:
                 aside.movers.extend([original] * (len(made) if changes else 0))
                 for above in self._above:
                     if above.collection is not None:
-                        self.parts[ids.key_of("collection", above.collection)] += made.objects
+                        self.parts.add(ids.key_of("collection", above.collection), made.objects)
             else:
                 placements.extend(made)
                 anew = anew or changes
@@ -222,8 +233,7 @@ class Groups:
         items = list(map(_OBJECT, map(plain.shows.__getitem__, rows)))
         names = list(map(plain.names.__getitem__, rows))
         placements.add_all(items, gathered(plain.places, rows), names)
-        keys = map(plain.keys.__getitem__, rows)
-        self.parts.update(zip(keys, map(list, zip(items))))
+        self.parts.add_each(names, items)
 
     def _note_moving(self, group: Any, lifted: Placements, movers: list[Any]) -> None:
         for position, item in enumerate(movers):
@@ -257,7 +267,7 @@ class Groups:
         if entry.emitted:
             name = f"{entry.name} instances"
             placements.add(self._emitter(entry), IDENTITY, name, *own)
-        self.parts[entry.key] += placements.objects
+        self.parts.add(entry.key, placements.objects)
         return placements
 
     def _emitter(self, entry: Entry) -> Any:
@@ -293,7 +303,7 @@ class Groups:
         if not changes:
             self.collections[group] = None
         if branch.collection is not None:
-            self.parts[ids.key_of("collection", branch.collection)].append(group)
+            self.parts.add(ids.key_of("collection", branch.collection), [group])
         return group
 
     def _decide(self, group: Any, position: int, decision: Decision) -> None:

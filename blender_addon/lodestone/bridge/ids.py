@@ -44,6 +44,11 @@ def key_of(kind: str, datablock: Any) -> Key:
     return (kind, library_of(datablock), name_of(datablock))
 
 
+def key_of_local(name: str) -> Key:
+    """Of an object of this file."""
+    return ("object", "", name)
+
+
 def settings_of(datablock: Any) -> Any | None:
     """Its `.lodestone`, or None when the file holds none: merely reading the attribute would make
     Blender store an empty group."""

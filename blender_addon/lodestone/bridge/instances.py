@@ -125,15 +125,15 @@ class Instances:
         """Plain objects that are made of the same, of which this is the first; what they show is
         in the columns then. False: each is something else for all that."""
         plain = self.scene.plain
-        keys = list(map(plain.keys.__getitem__, rows))
+        names = list(map(plain.names.__getitem__, rows))
         marked = shown.original in self.scene.environment
         look = Look(marked, deforms=self._motion.deforms(shown))
-        leaf = self._leaves.leaf(keys[0], shown, shown, look)
+        leaf = self._leaves.leaf(ids.key_of_local(names[0]), shown, shown, look)
         if leaf is None:
             return True
         if leaf.deforms or leaf.glow is not None or not leaf.settled:
             return False
-        self._leaves.note(leaf, keys)
+        self._leaves.shown.note(leaf, names)
         plain.settle(rows, leaf)
         self.shown += len(rows)
         return True

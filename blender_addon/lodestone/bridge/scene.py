@@ -9,6 +9,7 @@ import gc
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import compress
 from operator import attrgetter
 from typing import Any
@@ -24,8 +25,9 @@ from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
 from .listed import Listed
 from .motion import Motion, Still
+from .parts import Parts
 from .shutter import Moving
-from .users import Users
+from .users import Shown, Users
 from .visibility import Visibility
 
 _TYPE = attrgetter("type")
@@ -40,9 +42,14 @@ class Extraction:
     leaves: list[Leaf] = field(default_factory=list)
     shown: int = 0  # instances the depsgraph shows with faces
     lights: int = 0
-    parts: dict[ids.Key, list[Any]] = field(default_factory=dict)
-    users: dict[Subject, tuple[Subject, ...]] = field(default_factory=dict)  # by material
+    parts: Parts = field(default_factory=Parts)
+    shown_by: Shown = field(default_factory=Shown)
     moving: list[Moving] = field(default_factory=list)  # of what an animation moves
+
+    @cached_property
+    def users(self) -> dict[Subject, tuple[Subject, ...]]:
+        """The objects that show each material."""
+        return self.shown_by.found()
 
     def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
         """The model's objects that these datablocks became; [] (everything) for None."""
@@ -94,7 +101,7 @@ def _extract(
             report_outside(problems, name)
         surroundings(model, scene, walk.found, problems)
         _add_cameras(model, depsgraph)
-        problems.keep(walk.users.concerns)
+        problems.keep(walk.shown.concerns)
     except BaseException:
         model.close()
         raise
@@ -104,8 +111,8 @@ def _extract(
         list(leaves),
         walk.found.shown,
         len(walk.found.lights),
-        dict(tree.parts),
-        walk.users.found(),
+        tree.parts,
+        walk.shown,
         tree.moving,
     )
 
@@ -144,7 +151,7 @@ class Walk:
 
     found: Instances
     branch: groups.Branch
-    users: Users
+    shown: Shown
     roles: ids.Roles
 
 
@@ -164,7 +171,7 @@ def walked(
     visibility = Visibility(depsgraph.view_layer_eval, problems)
     found = Instances(users, visibility, roles, motion or Still(), problems, tick)
     found.walk(listed or Listed(depsgraph), groups.environment_objects(branch))
-    return Walk(found, branch, users, roles)
+    return Walk(found, branch, users.shown, roles)
 
 
 def surroundings(

@@ -47,9 +47,9 @@ def check(
     if eye is not None:
         camera.extract(eye, camera.Frame.of(evaluated.render), problems)
     camera.report_render(evaluated, problems)
-    problems.keep(walk.users.concerns)
+    problems.keep(walk.shown.concerns)
     lenses.detail(evaluated.objects, lambda collection: (), problems)
-    return Check(tuple(problems), walk.users.found())
+    return Check(tuple(problems), walk.shown.found())
 
 
 class Recorder:

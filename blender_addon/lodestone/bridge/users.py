@@ -12,57 +12,36 @@ from . import compat, ids
 from .leaves import material_slots
 
 
-class Users:
-    """Stands before Leaves, or what takes its place, and notes every leaf that is asked for."""
+class Shown:
+    """What shows which material, by leaf and by Blender's names: keeps nothing of Blender's."""
 
-    def __init__(self, leaves: Any) -> None:
-        self._leaves = leaves
-        self._slots_of = partial(material_slots, override=leaves.override)
+    def __init__(self) -> None:
         self._users: dict[Any, dict[Subject, None]] = {}  # by leaf
-        self._more: dict[Any, list[Iterable[Subject]]] = {}  # by leaf; noted many at a time
+        self._more: dict[Any, list[Iterable[str]]] = {}  # by leaf; names of local objects
         self._materials: dict[Any, list[Subject]] = {}  # by leaf
         self._seen: set[Subject] = set()  # materials
 
-    def leaf(self, user: Subject, shown: Any, *how: Any) -> Any:
-        """As Leaves.leaf(), for an object."""
-        leaf = self._leaves.leaf(shown, *how)
-        if leaf is not None:
-            known = self._users.get(leaf)
-            if known is None:
-                known = self._met(leaf, _worn_by_faces(shown, self._slots_of(shown)))
-            known[user] = None
-        return leaf
+    def of(self, leaf: Any) -> dict[Subject, None] | None:
+        """What shows it, to be added to; None: its materials are not known yet."""
+        return self._users.get(leaf)
 
-    def note(self, leaf: Any, users: Iterable[Subject]) -> None:
-        """More objects that show a leaf that was given out."""
-        self._more.setdefault(leaf, []).append(users)
-
-    def hair(self, user: Subject, shown: Any, *how: Any) -> Any:
-        return self._noted(self._leaves.hair(shown, *how), user, shown)
-
-    def point(self, user: Subject, shown: Any, *how: Any) -> Any:
-        return self._noted(self._leaves.point(shown, *how), user, shown)
-
-    def _noted(self, leaf: Any, user: Subject, shown: Any) -> Any:
-        """Of what has no faces all materials are seen."""
-        if leaf is not None:
-            known = self._users.get(leaf)
-            if known is None:
-                known = self._met(leaf, self._slots_of(shown))
-            known[user] = None
-        return leaf
-
-    def _met(self, leaf: Any, worn: list[Any]) -> dict[Subject, None]:
+    def meet(self, leaf: Any, worn: list[Any]) -> dict[Subject, None]:
+        """A new leaf wears these materials."""
         subjects = [ids.key_of("material", material) for material in worn if material]
         self._materials[leaf] = subjects
         self._seen.update(subjects)
         return self._users.setdefault(leaf, {})
 
+    def note(self, leaf: Any, names: Iterable[str]) -> None:
+        """Local objects that show a leaf that was given out, too."""
+        self._more.setdefault(leaf, []).append(names)
+
     def found(self) -> dict[Subject, tuple[Subject, ...]]:
         """The objects of every material that a face of them wears."""
         found: defaultdict[Subject, list[tuple[Subject, ...]]] = defaultdict(list)
         for leaf, users in self._users.items():
-            users |= dict.fromkeys(chain.from_iterable(self._more.pop(leaf, ())))
+            names = chain.from_iterable(self._more.pop(leaf, ()))
+            users |= dict.fromkeys(map(ids.key_of_local, names))
             own = tuple(users)
             for material in self._materials[leaf]:
                 found[material].append(own)
@@ -76,6 +55,40 @@ class Users:
     def concerns(self, problem: Problem) -> bool:
         """False for a material that no face wears: whatever is wrong with it, nobody sees it."""
         return problem.kind != "material" or problem.subject in self._seen
+
+
+class Users:
+    """Stands before Leaves, or what takes its place, and notes every leaf that is asked for."""
+
+    def __init__(self, leaves: Any) -> None:
+        self.shown = Shown()
+        self._leaves = leaves
+        self._slots_of = partial(material_slots, override=leaves.override)
+
+    def leaf(self, user: Subject, shown: Any, *how: Any) -> Any:
+        """As Leaves.leaf(), for an object."""
+        leaf = self._leaves.leaf(shown, *how)
+        if leaf is not None:
+            known = self.shown.of(leaf)
+            if known is None:
+                known = self.shown.meet(leaf, _worn_by_faces(shown, self._slots_of(shown)))
+            known[user] = None
+        return leaf
+
+    def hair(self, user: Subject, shown: Any, *how: Any) -> Any:
+        return self._noted(self._leaves.hair(shown, *how), user, shown)
+
+    def point(self, user: Subject, shown: Any, *how: Any) -> Any:
+        return self._noted(self._leaves.point(shown, *how), user, shown)
+
+    def _noted(self, leaf: Any, user: Subject, shown: Any) -> Any:
+        """Of what has no faces all materials are seen."""
+        if leaf is not None:
+            known = self.shown.of(leaf)
+            if known is None:
+                known = self.shown.meet(leaf, self._slots_of(shown))
+            known[user] = None
+        return leaf
 
 
 def _worn_by_faces(shown: Any, slots: list[Any]) -> list[Any]:
