@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "build/flatten.h"
 #include "build/hierarchy.h"
-#include "build/stand_ins.h"
+#include "build/surroundings.h"
 #include "quality/cut.h"
 #include "ray/scene.h"
 #include "scratch.h"

@@ -5,6 +5,7 @@
 #include "backend/with_rays.h"
 #include "build/flatten.h"
 #include "build/hierarchy.h"
+#include "build/surroundings.h"
 #include "measure/deviation.h"
 #include "quality/cut.h"
 #include "scratch.h"

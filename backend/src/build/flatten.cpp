@@ -149,21 +149,6 @@ double error_to_flatten(const Model& model, ObjectIndex group, uint64_t wanted, 
     return error_of(power);
 }
 
-std::vector<uint64_t> uses_of(const Model& model) {
-    std::vector<uint64_t> uses(model.objects.size(), 0);
-    std::vector<ObjectIndex> order = bottom_up(model);
-    if (!order.empty())
-        uses[model.root] = 1;
-    for (auto at = order.rbegin(); at != order.rend(); ++at) {
-        const Object& object = model.objects[*at];
-        if (!object.group())
-            continue;
-        for (const Placement& placement : object.representations[0].assembly().placements)
-            uses[placement.object] += uses[*at];
-    }
-    return uses;
-}
-
 Drawn drawn_within(const Model& model, ObjectIndex group, double error,
                    const std::vector<uint64_t>& uses, const Job& job) {
     const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);

@@ -21,19 +21,6 @@ struct Flat {
 Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
              const Job& job);
 
-/// What an object must know of the rest of the model; made once for a build.
-struct Surroundings {
-    std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
-    std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
-    std::vector<uint8_t> hidden;       // whether it hides anything from some rays (with_hidden)
-    std::vector<Hash> layers;          // what lies in thin layers (layers_of)
-    std::vector<uint8_t> marked;       // what is nothing but Environment (marked_environment)
-    std::vector<uint8_t> ground;       // what is recognized as such (grounds_of)
-};
-
-/// How often each object is drawn: the number of paths to it from the root.
-std::vector<uint64_t> uses_of(const Model& model);
-
 /// What an occurrence of the group's children is within an error.
 struct Drawn {
     uint64_t triangles = 0;  // of the flat mesh

@@ -5,13 +5,12 @@
 #include "base/parallel.h"
 #include "build/demand.h"
 #include "build/effort.h"
-#include "build/environment.h"
-#include "build/flatten.h"
 #include "build/followed.h"
-#include "build/layers.h"
 #include "build/palette.h"
+#include "build/plan.h"
 #include "build/shelf.h"
 #include "build/stand_ins.h"
+#include "build/surroundings.h"
 
 #include <algorithm>
 #include <atomic>
@@ -27,19 +26,6 @@ namespace {
 constexpr const char* kNotFollowed =
     "drawn as it is: its faces, or what is painted on them, are not those of any frame that levels "
     "are made from";
-
-/// Whether there is anything to stand in for: not for a group of nothing, as of an empty scene.
-bool shows(const Object& object) {
-    return !object.representations.empty() && !object.bound().empty();
-}
-
-/// `layers`: what layers_of tells of it; `ground`: what grounds_of does.
-Hash build_hash_of(const Object& object, Hash settings, Hash layers, uint8_t ground) {
-    const Hash hash = Hasher().value(object.source_hash).value(settings).result();
-    if (layers == 0 && ground == 0)
-        return hash;
-    return Hasher().value(hash).value(layers).value(ground).result();
-}
 
 /// Gives the mesh of a representation of a model, from the store where it is not resident.
 MeshSource mesh_source_of(const segment::Store& store) {
@@ -85,36 +71,9 @@ std::vector<size_t> heights_of(const Model& model, const std::vector<ObjectIndex
     return heights;
 }
 
-/// Whether an object may be built: true for everything below the scope, or for all without one.
-std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& model,
-                         const std::vector<ObjectIndex>& order) {
-    std::vector<bool> inside(model.objects.size(), scope.empty());
-    for (const ObjectIndex index : scope) {
-        if (index >= model.objects.size())
-            fail(Status::InvalidArgument, "the scope names object ", index, " of ",
-                 model.objects.size());
-        inside[index] = true;
-    }
-    for (auto at = order.rbegin(); at != order.rend(); ++at) {  // parents before children
-        const Object& object = model.objects[*at];
-        if (!inside[*at] || !object.group())
-            continue;
-        for (const Placement& placement : object.representations[0].assembly().placements)
-            inside[placement.object] = true;
-    }
-    return inside;
-}
-
-/// Something stale that is to be built.
-struct Task : Stale {
-    Hash wanted = 0;           // its build hash
-    std::optional<Bind> bind;  // of what deforms
-};
-
 /// An object that deforms, and what its levels come from.
 struct Following {
     ObjectIndex index;
-    Hash build_hash;
     Bind bind;
 };
 
@@ -139,65 +98,32 @@ public:
             own.resize(std::min<size_t>(own.size(), 1));
         }
         summarize_assemblies(model_, order);
-        const Hash settings = hash_of(settings_);
         const Shelf shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
-        surroundings_ = {uses_of(model_),
-                         with_environment(model_),
-                         with_hidden(model_),
-                         layers_of(model_, order, mesh_source(), job_),
-                         marked_environment(model_, order),
-                         {}};
-        surroundings_.ground = grounds_of(model_, order, surroundings_.marked);
-        const std::vector<bool> inside = within(settings_.scope, model_, order);
-        const std::vector<uint8_t> deforming = with_deforming(model_);
-        const Poses poses(settings_.poses);
+        surroundings_ = surroundings_of(model_, order, mesh_source(), job_);
+        Plan plan = plan_of(model_, order, surroundings_, shelf, settings_);
+        report.objects = plan.objects;
+        for (const ObjectIndex index : plan.not_followed)
+            problems_.push_back(
+                {model_.objects[index].name, Severity::Info, "not_followed", kNotFollowed});
+        for (const auto& [index, stored] : plan.stored)
+            shelf.adopt(model_.objects[index], *stored, palette_);
 
-        std::vector<Task> tasks;
-        std::map<Hash, size_t> task_of;  // content-equal objects are built once
-        for (const ObjectIndex index : order) {
-            Object& object = model_.objects[index];
-            if (!shows(object))
-                continue;
-            ++report.objects;
-            if (object.group() && std::isinf(object.demand))
-                continue;  // always opened
-            Hash wanted = build_hash_of(object, settings, surroundings_.layers[index],
-                                        surroundings_.ground[index]);
-            std::optional<Bind> bind;
-            if (deforming[index] != 0) {
-                if (!object.deforms || object.group() || poses.empty())
-                    continue;
-                bind = poses.of(object, settings);
-                if (!bind) {
-                    problems_.push_back(
-                        {object.name, Severity::Info, "not_followed", kNotFollowed});
-                    continue;
-                }
-                wanted = Hasher().value(wanted).value(bind->hash).result();
-            }
-            const auto same = task_of.find(wanted);
-            if (same != task_of.end()) {
-                tasks[same->second].copies.push_back(index);
-            } else if (const Object* stored = shelf.find(wanted)) {
-                shelf.adopt(object, *stored, palette_);
-            } else if (inside[index]) {
-                task_of.emplace(wanted, tasks.size());
-                tasks.push_back({{index, {}}, wanted, std::move(bind)});
-            }
-        }
+        std::vector<Task>& tasks = plan.tasks;
         const size_t all = tasks.size();
         if (settings_.demand)
             keep_called_for(tasks);
         report.left = all - tasks.size();
 
+        wanted_.resize(model_.objects.size());
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
         std::vector<std::pair<ObjectIndex, ObjectIndex>> copies;
         for (Task& task : tasks) {
             for (const ObjectIndex copy : task.copies)
                 copies.emplace_back(copy, task.index);
+            wanted_[task.index] = task.wanted;
             if (task.bind) {
-                following_.push_back({task.index, task.wanted, *task.bind});
+                following_.push_back({task.index, *task.bind});
                 continue;
             }
             const Object& object = model_.objects[task.index];
@@ -211,7 +137,7 @@ public:
         for (auto& [height, objects] : stale) {
             // Copies of lower objects must be complete before a group above them is flattened.
             copy_lists(copies, heights, height);
-            build(objects, settings);
+            build(objects);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
         report.bytes_written += kept_bytes_ + store_.write(model_, job_.part(kBuildShare, 1));
@@ -342,14 +268,14 @@ private:
         for (size_t i = 0; i < following_.size(); ++i) {
             Object& object = model_.objects[following_[i].index];
             object.bind_hash = following_[i].bind.hash;
-            add(object, std::move(followed[i]), model_, palette_, following_[i].build_hash);
+            add(object, std::move(followed[i]), model_, palette_, wanted_[following_[i].index]);
         }
         for (const Problems& problems : found)
             problems_.insert(problems_.end(), problems.begin(), problems.end());
     }
 
     /// All objects of one height.
-    void build(std::vector<ObjectIndex>& objects, Hash settings) {
+    void build(std::vector<ObjectIndex>& objects) {
         // Large ones first, so that the last core does not wait for one of them.
         std::stable_sort(objects.begin(), objects.end(), [&](ObjectIndex a, ObjectIndex b) {
             return weight(model_.objects[a]) > weight(model_.objects[b]);
@@ -357,7 +283,7 @@ private:
         std::span<const ObjectIndex> left = objects;
         while (!left.empty()) {
             const size_t count = count_until_kept(left);
-            build_all(left.first(count), settings);
+            build_all(left.first(count));
             left = left.subspan(count);
             keep_when_due();
         }
@@ -373,7 +299,7 @@ private:
         return count;
     }
 
-    void build_all(std::span<const ObjectIndex> objects, Hash settings) {
+    void build_all(std::span<const ObjectIndex> objects) {
         const MeshSource source = mesh_source();
         std::vector<std::optional<StandIns>> made(objects.size());
         std::vector<Problems> found(objects.size());
@@ -398,9 +324,7 @@ private:
             if (!made[i])
                 continue;
             object.attributes = made[i]->attributes;
-            add(object, std::move(made[i]->candidates), model_, palette_,
-                build_hash_of(object, settings, surroundings_.layers[objects[i]],
-                              surroundings_.ground[objects[i]]));
+            add(object, std::move(made[i]->candidates), model_, palette_, wanted_[objects[i]]);
         }
     }
 
@@ -410,6 +334,7 @@ private:
     Problems& problems_;
     const Job& job_;
     Palette palette_;
+    std::vector<Hash> wanted_;  // build hashes, by object
     std::vector<Following> following_;
     Surroundings surroundings_;
     image::TexelCache texels_;
@@ -426,30 +351,16 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     const std::vector<ObjectIndex> order = bottom_up(model);
     summarize_assemblies(model, order);
     const Shelf shelf(store, settings.rebuild);
-    const Hash hash = hash_of(settings);
-    const std::vector<bool> inside = within(settings.scope, model, order);
-    const std::vector<uint8_t> deforming = with_deforming(model);
-    const std::vector<Hash> layers = layers_of(model, order, mesh_source_of(store), {});
-    const std::vector<uint8_t> ground = grounds_of(model, order, marked_environment(model, order));
-    const Poses poses(settings.poses);
+    const Surroundings surroundings = surroundings_of(model, order, mesh_source_of(store), {});
+    const Plan plan = plan_of(model, order, surroundings, shelf, settings);
+    report.objects = plan.objects;
     std::set<Hash> binds;  // counted already
     double seconds = 0;
-    for (const ObjectIndex index : order) {
-        const Object& object = model.objects[index];
-        if (!shows(object))
+    for (const Task& task : plan.tasks) {
+        if (task.bind && (!binds.insert(task.bind->hash).second ||
+                          (!settings.rebuild && store.load_bound(task.bind->hash))))
             continue;
-        ++report.objects;
-        if (!inside[index])
-            continue;
-        if (deforming[index] != 0) {
-            const std::optional<Bind> bind = object.deforms ? poses.of(object, hash) : std::nullopt;
-            if (!bind || !binds.insert(bind->hash).second ||
-                (!settings.rebuild && store.load_bound(bind->hash)))
-                continue;
-        } else if (shelf.find(build_hash_of(object, hash, layers[index], ground[index])) !=
-                   nullptr) {
-            continue;
-        }
+        const Object& object = model.objects[task.index];
         ++report.built;
         if (!object.group())
             report.triangles += object.representations[0].summary.cost.triangles;

@@ -8,6 +8,7 @@
 #include "build/judge.h"
 #include "build/levels.h"
 #include "build/replacements.h"
+#include "build/surroundings.h"
 #include "measure/seen_from_outside.h"
 #include "quality/cut.h"
 

@@ -17,7 +17,7 @@ struct StandIns {
     std::vector<Candidate> candidates;  // errors rise strictly, costs fall
 };
 
-struct Surroundings;  // build/flatten.h
+struct Surroundings;  // build/surroundings.h
 
 /// Gives the mesh of a representation, resident or not. Called from several threads.
 using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;

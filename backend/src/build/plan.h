@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plan: of everything a model draws, what its store has already, and what is to be built.
+#pragma once
+
+#include "build/demand.h"
+#include "build/poses.h"
+#include "build/settings.h"
+#include "build/shelf.h"
+#include "build/surroundings.h"
+#include "model/model.h"
+
+#include <optional>
+#include <utility>
+
+namespace lodestone::build {
+
+/// Something stale that is to be built, for itself and for its copies: objects of the same content.
+struct Task : Stale {
+    Hash wanted = 0;           // its build hash
+    std::optional<Bind> bind;  // of what deforms
+};
+
+struct Plan {
+    uint64_t objects = 0;                                       // that show anything
+    std::vector<std::pair<ObjectIndex, const Object*>> stored;  // what the shelf has for which
+    std::vector<Task> tasks;                                    // children before parents
+    std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
+};
+
+/// Of the objects of `order` (children before parents), within the scope of the settings. Valid as
+/// long as the shelf and the models of poses. Throws Error(InvalidArgument) for a scope that names
+/// no object.
+Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
+             const Surroundings& surroundings, const Shelf& shelf, const Settings& settings);
+
+}  // namespace lodestone::build
