@@ -161,6 +161,26 @@ class Images(TextureCase):
         user.frame_start, user.frame_offset, user.use_cyclic = 11, 1, False
         self.assertEqual(shown(11), "0002")
 
+    def test_checking_called_a_sequence_missing_that_does_not_refresh_by_itself(self):
+        from lodestone.core import last_check
+
+        (self.folder / "clip 0002.png").write_bytes(png(0, 255, 0))
+        node = self.node("ShaderNodeTexImage", ("Color", self.base))
+        node.image = bpy.data.images.load(str(self.folder / "clip 0002.png"))
+        node.image.source = "SEQUENCE"
+        node.image_user.frame_duration, node.image_user.use_auto_refresh = 5, False
+        scene = bpy.context.scene
+        scene.frame_set(2)
+        bpy.ops.mesh.primitive_plane_add()
+        bpy.context.object.data.materials.append(self.material)
+        bpy.ops.lodestone.check_scene()
+        codes = {problem.code for problem in last_check.get(scene.name).problems}
+        self.assertNotIn("image_missing", codes)
+        os.remove(self.folder / "clip 0002.png")
+        bpy.ops.lodestone.check_scene()
+        codes = {problem.code for problem in last_check.get(scene.name).problems}
+        self.assertIn("image_missing", codes)
+
     def test_of_tiles_the_first_is_drawn_and_named(self):
         for tile, color in ((1001, (255, 0, 0)), (1002, (0, 255, 0))):
             (self.folder / f"skin.{tile}.png").write_bytes(png(*color))

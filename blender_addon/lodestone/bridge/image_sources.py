@@ -113,9 +113,8 @@ def _path(image: Any, user: Any, frame: int) -> str:
 
 
 def _frame_of(user: Any, frame: int) -> int:
-    """The number of the file that an image user shows."""
-    if not user.use_auto_refresh:
-        return user.frame_current
+    """The number of the file that a render shows: it looks at no `use_auto_refresh`, and what
+    `frame_current` holds for the viewport may be of any other frame."""
     length = user.frame_duration
     if length <= 0:
         return user.frame_offset
