@@ -185,9 +185,10 @@ private:
         const quality::Node& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
-        if (!make_invertible(use.world)) {
-            problems_.push_back({called(use.node), Severity::Warning, "singular_transform",
-                                 "is scaled to nothing or to a line, so it is not drawn"});
+        if (!make_invertible(use.world)) {  // of a line or a point nothing is seen anyway
+            if (!use.world.finite())
+                problems_.push_back({called(use.node), Severity::Warning, "bad_transform",
+                                     "is not drawn: its transform is not a number"});
             return;
         }
         use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt});

@@ -338,7 +338,7 @@ TEST(PovrayWriter, WhatIsNotFiniteIsRefused) {
     EXPECT_THROW(export_scene(Model{}, {}, view, options, problems), Error);
 }
 
-TEST(PovrayWriter, LinesAndDotsAreSkippedAndSheetsGetAThickness) {
+TEST(PovrayWriter, LinesAndDotsAreSkippedWithoutAWordAndSheetsGetAThickness) {
     Builder builder;
     const ObjectIndex cube = builder.mesh(shapes::cube());
     const auto scaled = [](double x, double y, double z) {
@@ -357,9 +357,9 @@ TEST(PovrayWriter, LinesAndDotsAreSkippedAndSheetsGetAThickness) {
     Problems problems;
     const quality::Cut cut = quality::choose(builder.finish(), above());
     export_scene(builder.model, cut, above(), options, problems);
-    ASSERT_EQ(problems.size(), 4u);
-    EXPECT_EQ(problems[0].object, "line");
-    EXPECT_EQ(problems[0].code, "singular_transform");
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].object, "broken");
+    EXPECT_EQ(problems[0].code, "bad_transform");
     const std::string text = scene_text(options.folder);
     EXPECT_EQ(count(text, "matrix<2,0,0,0,2e-05,0,0,0,1,0,0,0>} // sheet"), 1u) << text;
     EXPECT_EQ(count(text, "matrix<1,0,0,0,0.001,0,0,0,1,0,0,0>} // plate"), 1u) << text;
