@@ -87,7 +87,7 @@ class Materials(MaterialCase):
 
     def test_a_plain_principled_is_exact(self):
         for name, value in (
-            ("Roughness", 0.3),
+            ("Roughness", 0.08),
             ("Metallic", 0.7),
             ("Specular", 0.2),
             ("Emission", (1.0, 0.5, 0.0, 1.0)),
@@ -105,7 +105,7 @@ class Materials(MaterialCase):
         self.close(fields["base_color"], (0.2, 0.4, 0.6))
         self.close(fields["emission"], (0.9, 0.45, 0.0))
         names = ("roughness", "metallic", "specular", "alpha", "transmission", "ior")
-        self.close([fields[n] for n in names], (0.3, 0.7, 0.2, 0.6, 0.9, 1.33))
+        self.close([fields[n] for n in names], (0.08, 0.7, 0.2, 0.6, 0.9, 1.33))
         self.close([fields["clearcoat"], fields["clearcoat_roughness"]], (0.8, 0.1))
         self.assertEqual((look.alpha_mode, look.coordinates, look.other), (1, None, None))
 
@@ -434,6 +434,21 @@ class Materials(MaterialCase):
             self.close(getattr(look, field).color, (0.1, 0.2, 0.3))
             self.assertEqual(codes, expected, kind)
             self.assertEqual(look.transmission, float(kind[14:] in {"Glass", "Refraction"}))
+
+    def test_rough_glass_was_drawn_clear_without_a_word(self):
+        self.principled.inputs["Transmission"].default_value = 1.0
+        for roughness, metallic, expected in (
+            (0.0, 0.0, set()),
+            (0.09, 0.0, set()),
+            (0.5, 0.0, {"rough_glass"}),
+            (0.5, 1.0, set()),  # is no glass
+        ):
+            self.principled.inputs["Roughness"].default_value = roughness
+            self.principled.inputs["Metallic"].default_value = metallic
+            self.assertEqual(self.translate()[1], expected, (roughness, metallic))
+        self.principled.inputs["Metallic"].default_value = 0.0
+        self.picture(self.principled.inputs["Roughness"])
+        self.assertEqual(self.translate()[1], {"rough_glass"})
 
     def test_no_output_is_named(self):
         self.tree.nodes.clear()

@@ -24,6 +24,7 @@ from .textures import Textures, main_coordinates
 
 AlphaMode = native.AlphaMode
 Color = tuple[float, ...]
+_CLEAR = 0.1  # roughness up to which nobody misses the blur of what is behind glass
 
 
 @dataclass(frozen=True)
@@ -214,16 +215,20 @@ class _Translator:
             self.note(WARNING, "normal_map", "its normal map is left out")
         if relief.bump is not None and bump is None:
             self.note(WARNING, "bump", "its bumps are left out")
+        roughness, metallic = textures.number(surface.roughness), textures.number(surface.metallic)
+        transmission = textures.constant(surface.transmission, "transmission")
+        if transmission > 0.0 and metallic.number < 1.0 and roughness.number > _CLEAR:
+            self.note(WARNING, "rough_glass", "its rough glass is drawn clear")
         return Look(
             base_color=textures.color(base),
-            roughness=textures.number(surface.roughness),
-            metallic=textures.number(surface.metallic),
+            roughness=roughness,
+            metallic=metallic,
             specular=textures.constant(surface.specular, "specular"),
             emission=textures.color(surface.emission),
             alpha=value,
             alpha_mode=mode,
             alpha_cutoff=cutoff,
-            transmission=textures.constant(surface.transmission, "transmission"),
+            transmission=transmission,
             ior=textures.constant(surface.ior, "IOR"),
             clearcoat=textures.constant(surface.clearcoat, "clear coat"),
             clearcoat_roughness=textures.constant(
