@@ -177,9 +177,7 @@ class _Run:
                 )
                 kept_model.put(name_of(self.scene), kept)
         self._remember(totals, made)
-        left, top, *part = self.settings.border
-        part = render_result.cropped(image, left, size[1] - top - part[1], *part)
-        self._hand_over(layer, part)
+        self._hand_over(layer, image)
         self._report()
 
     def _read_shutter(self, extraction, model, frame):
@@ -242,7 +240,7 @@ class _Run:
                         model, view, size, self.settings, self.plan.folder, self.work.new_job
                     )
                     self.plan.take(made, *shown)
-                return made, render_result.read(str(made.path))
+                return made, render_result.read(str(made.path), self.settings.border)
         except OSError as error:
             text = f"Cannot write the scene for POV-Ray: {error}"
             raise Refused("folder_unwritable", text) from None

@@ -18,6 +18,8 @@
 #include <cstdio>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
 #include <zlib.h>
 
 namespace lodestone::image {
@@ -242,6 +244,53 @@ TEST(Image, ExrDataWindowIsPlacedInTheDisplayWindow) {
     expect_pixel(image, 0, 1, {1, 101, 201, 301});
     expect_pixel(image, 1, 3, {22, 122, 222, 322});
     expect_pixel(image, 2, 1, {0, 0, 0, 0});  // right of it
+}
+
+TEST(Image, APartOfAnExrIsThatOfTheWhole) {
+    // Two blocks of rows, and a display window that reaches beyond the data on all sides
+    const std::string bytes =
+        exr("RGBA", Imath::Box2i({-1, 2}, {6, 300}), Imath::Box2i({-3, 0}, {8, 310}));
+    const std::filesystem::path path = scratch("parts.exr");
+    write_file(path, bytes);
+    const Image whole = read(path);
+    for (const Part& part : {Part{0, 0, 12, 311}, Part{3, 255, 5, 9}, Part{0, 0, 2, 1},
+                             Part{11, 310, 1, 1}, Part{1, 1, 3, 2}}) {
+        const Image found = read_part(path, part);
+        ASSERT_EQ(found.width, part.width);
+        ASSERT_EQ(found.height, part.height);
+        for (int y = 0; y < part.height; ++y) {
+            for (int x = 0; x < part.width; ++x) {
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_EQ(pixel(found, x, y)[c], pixel(whole, part.left + x, part.top + y)[c]);
+            }
+        }
+    }
+    constexpr int kMost = std::numeric_limits<int>::max();
+    for (const Part& part : {Part{-1, 0, 1, 1}, Part{0, 0, 13, 1}, Part{0, 311, 1, 1},
+                             Part{0, 0, 0, 1}, Part{kMost, 0, kMost, 1}})
+        EXPECT_THROW(read_part(path, part), Error);
+    std::filesystem::remove(path);
+}
+
+TEST(Image, ABorderOfAPosterIsReadThoughThePosterIsTooLarge) {
+    const Imath::Box2i window({0, 0}, {9999, 9999});
+    const std::filesystem::path path = scratch("poster.exr");
+    {
+        Imf::Header header(window, window);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        std::vector<float> row(10000);
+        std::iota(row.begin(), row.end(), 0.0f);
+        Imf::FrameBuffer buffer;
+        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+        buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data()), 4, 0));
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(32);  // the others are missing, which a part above them does not meet
+    }
+    EXPECT_NE(complaint(read_file(path)).find("too large"), std::string::npos);
+    expect_pixel(read_part(path, {9998, 20, 2, 1}), 1, 0, {9999, 9999, 9999, 1});
+    EXPECT_THROW(read_part(path, {0, 20, 1, 80}), Error);
+    std::filesystem::remove(path);
 }
 
 TEST(Image, EncodingUnassociatesAlphaAndClamps) {

@@ -41,6 +41,18 @@ static void test_a_picture_comes_back_either_way_up(void) {
         EXPECT(fabsf(back[4 * y * WIDTH + 1] - given[4 * (HEIGHT - 1 - y) * WIDTH + 1]) < 0.005f);
 }
 
+static void test_parts_are_those_of_an_exr_alone(void) {
+    static float pixels[NUMBERS];
+    const int32_t part[4] = {0, 0, 1, 1};
+    paint(pixels, 0);
+    EXPECT(lds_image_write_png("capi_part.png", WIDTH, HEIGHT, pixels) == LDS_OK);
+    EXPECT(lds_image_read_part("capi_part.png", part, 0, pixels, NUMBERS) == LDS_ERROR_BAD_FILE);
+    EXPECT(lds_image_read_part("no_such_file.exr", part, 0, pixels, NUMBERS) == LDS_ERROR_IO);
+    EXPECT(lds_image_read_part(NULL, part, 0, pixels, NUMBERS) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_image_read_part("a.exr", NULL, 0, pixels, NUMBERS) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_image_read_part("a.exr", part, 0, NULL, 0) == LDS_ERROR_INVALID_ARGUMENT);
+}
+
 static void test_text_is_added_to_a_png_alone(void) {
     static float pixels[NUMBERS];
     paint(pixels, 0);
@@ -83,6 +95,7 @@ static void test_differences_are_those_that_were_painted(void) {
 
 int main(void) {
     test_a_picture_comes_back_either_way_up();
+    test_parts_are_those_of_an_exr_alone();
     test_text_is_added_to_a_png_alone();
     test_differences_are_those_that_were_painted();
     return finish();

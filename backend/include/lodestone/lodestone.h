@@ -1157,6 +1157,10 @@ LDS_API lds_status lds_image_size(const char* path, int32_t* out_width, int32_t*
    out_pixels float32[height][width][4]; capacity counts floats. */
 LDS_API lds_status lds_image_read(const char* path, int32_t bottom_up, float* out_pixels,
                                   size_t capacity);
+/* The same of a part of an EXR, of any size: part int32[4]: left, top, width, height. It takes no
+   memory for the rest, and lds_image_size is not needed before. */
+LDS_API lds_status lds_image_read_part(const char* path, const int32_t part[4], int32_t bottom_up,
+                                       float* out_pixels, size_t capacity);
 /* Linear RGBA (associated alpha, top row first) -> 8-bit sRGB PNG. */
 LDS_API lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
                                        const float* pixels);

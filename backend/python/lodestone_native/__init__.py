@@ -39,6 +39,7 @@ from .image import (
     image_compare_shown,
     image_difference_color,
     image_read,
+    image_read_part,
     image_size,
     image_write_png,
 )
@@ -119,6 +120,7 @@ __all__ = [
     "image_compare_shown",
     "image_difference_color",
     "image_read",
+    "image_read_part",
     "image_size",
     "image_write_png",
     "largest_face",

@@ -30,9 +30,20 @@ def image_size(path: str) -> tuple[int, int]:
 def image_read(path: str, bottom_up: bool = False) -> Image:
     """A PNG, JPEG or EXR. bottom_up: the lowest row first (Blender's order)."""
     width, height = image_size(path)
-    pixels = array("f", bytes(16 * width * height))
+    pixels = _black(width, height)
     check(library().lds_image_read(text_in(path), int(bottom_up), _floats(pixels), len(pixels)))
     return Image(width, height, pixels)
+
+
+def image_read_part(path: str, part: tuple[int, int, int, int], bottom_up: bool = False) -> Image:
+    """A part of an EXR of any size: left, top, width, height in pixels."""
+    pixels, wanted = _black(*part[2:]), (ctypes.c_int32 * 4)(*part)
+    check(
+        library().lds_image_read_part(
+            text_in(path), wanted, int(bottom_up), _floats(pixels), len(pixels)
+        )
+    )
+    return Image(*part[2:], pixels)
 
 
 def image_write_png(path: str, image: Image) -> None:
@@ -76,7 +87,7 @@ def image_compare_shown(
     choice's share of it (pixels that show something in the first are put down to that), and a
     picture of it in false colors."""
     width, height = image_size(paths[0])
-    picture = Image(width, height, array("f", bytes(16 * width * height)))
+    picture = Image(width, height, _black(width, height))
     sums = tuple(array("d", bytes(8 * count)) for count in counts)
     out = structs.Difference()
     check(
@@ -101,6 +112,10 @@ def image_difference_color(difference: float) -> tuple[float, float, float]:
 
 def _doubles(buffer: array) -> Any:
     return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_double))
+
+
+def _black(width: int, height: int) -> array:
+    return array("f", [0.0]) * (4 * width * height)
 
 
 def _floats(buffer: array) -> Any:

@@ -114,6 +114,7 @@ PROTOTYPES = (
     ("lds_povray_false_color", I, [c_int32, c_uint32, P(c_double)]),
     ("lds_image_size", I, [T, P(c_int32), P(c_int32)]),
     ("lds_image_read", I, [T, I, P(c_float), Z]),
+    ("lds_image_read_part", I, [T, P(c_int32), I, P(c_float), Z]),
     ("lds_image_write_png", I, [T, I, I, P(c_float)]),
     ("lds_image_add_text", I, [T, P(c_char_p), P(c_char_p), Z]),
     ("lds_image_compare", I, [T, T, T, P(s.Difference)]),

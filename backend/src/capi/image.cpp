@@ -72,6 +72,17 @@ lds_status lds_image_read(const char* path, int32_t bottom_up, float* out_pixels
     });
 }
 
+lds_status lds_image_read_part(const char* path, const int32_t part[4], int32_t bottom_up,
+                               float* out_pixels, size_t capacity) {
+    return guard([&] {
+        require(path, "path");
+        require(part, "part");
+        require(out_pixels, "out_pixels");
+        const image::Part wanted{part[0], part[1], part[2], part[3]};
+        copy_rows(image::read_part(path, wanted), bottom_up != 0, out_pixels, capacity);
+    });
+}
+
 lds_status lds_image_write_png(const char* path, int32_t width, int32_t height,
                                const float* pixels) {
     return guard([&] {

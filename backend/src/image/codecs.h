@@ -4,11 +4,15 @@
 
 #include "image/image.h"
 
+#include <optional>
+
 namespace lodestone::image {
 
 Image decode_png(std::string_view bytes, const std::string& name);
 Image decode_jpeg(std::string_view bytes, const std::string& name);
-Image decode_exr(std::string_view bytes, const std::string& name);
+/// Without a part: all of it, of at most kMostPixels.
+Image decode_exr(std::string_view bytes, const std::string& name,
+                 const std::optional<Part>& part = std::nullopt);
 
 /// `rows` holds height rows of width * channels bytes; 3 or 4 channels. The file's bytes.
 std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels);

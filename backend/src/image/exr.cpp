@@ -12,6 +12,7 @@
 #include <ImfInputFile.h>
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace lodestone::image {
 namespace {
@@ -102,22 +103,21 @@ Layout layout_of(std::string_view bytes) {
     return layout;
 }
 
-void check_layout(const Layout& layout) {
-    constexpr int64_t kMostSide = 1 << 15;
+constexpr int kRowsAtOnce = 256;  // the largest block of any compression (DWAB)
+
+void check_layout(const Layout& layout, int64_t most_pixels) {
+    constexpr int64_t kMostSide = 1 << 16;
     constexpr uint64_t kMostChannels = 256;
     constexpr uint64_t kMostBufferBytes = uint64_t{1} << 30u;
-    constexpr uint64_t kRowsAtOnce = 256;  // the largest block of any compression (DWAB)
     for (const Window& window : {layout.data, layout.display}) {
         if (window.width() < 1 || window.height() < 1 || window.width() > kMostSide ||
-            window.height() > kMostSide ||
-            window.width() * window.height() > static_cast<int64_t>(kMostPixels))
+            window.height() > kMostSide || window.width() * window.height() > most_pixels)
             throw std::runtime_error(text("a window of ", window.width(), " x ", window.height(),
                                           " pixels is empty or too large"));
     }
-    const uint64_t block =
-        std::max(static_cast<uint64_t>(layout.data.width()) *
-                     std::min(kRowsAtOnce, static_cast<uint64_t>(layout.data.height())),
-                 layout.tile_pixels);
+    const int64_t rows = std::min<int64_t>(kRowsAtOnce, layout.data.height());
+    const auto block =
+        std::max(static_cast<uint64_t>(layout.data.width() * rows), layout.tile_pixels);
     if (layout.channels > kMostChannels || layout.tile_pixels > (uint64_t{1} << 28u) ||
         block * std::max<uint64_t>(layout.channels, 1) * 4 > kMostBufferBytes)
         throw std::runtime_error("too many channels, or tiles too large");
@@ -128,9 +128,65 @@ bool same(const Window& ours, const Imath::Box2i& theirs) {
            ours.y1 == theirs.max.y;
 }
 
-Image decode(std::string_view bytes, const std::string& name) {
+/// The part within the display window; without one, all of that.
+Window window_of(const Layout& layout, const std::optional<Part>& part, const std::string& name) {
+    const Window& all = layout.display;
+    if (!part)
+        return all;
+    if (part->left < 0 || part->top < 0 || part->width < 1 || part->height < 1 ||
+        int64_t{part->left} + part->width > all.width() ||
+        int64_t{part->top} + part->height > all.height())
+        fail(Status::InvalidArgument, "'", name, "' has ", all.width(), " x ", all.height(),
+             " pixels: no part of ", part->width, " x ", part->height, " at ", part->left, ", ",
+             part->top);
+    const int32_t x = all.x0 + part->left;
+    const int32_t y = all.y0 + part->top;
+    return {x, y, x + part->width - 1, y + part->height - 1};
+}
+
+/// Reads what `data` holds of `window` into `pixels` (RGBA, the window's rows), a few rows at a time.
+void read_rows(Imf::InputFile& file, const Window& data, const Window& window, bool gray,
+               std::vector<float>& pixels) {
+    const int32_t first = std::max(window.x0, data.x0);
+    const int64_t columns = int64_t{std::min(window.x1, data.x1)} - first + 1;
+    const int64_t end = int64_t{std::min(window.y1, data.y1)} + 1;
+    if (columns < 1)
+        return;
+    const size_t column = 4 * sizeof(float);
+    const size_t row = column * static_cast<size_t>(data.width());
+    std::vector<float> rows(
+        4 * static_cast<size_t>(data.width() * std::min<int64_t>(kRowsAtOnce, data.height())));
+    int64_t next = std::max(window.y0, data.y0);
+    while (next < end) {  // whole blocks of the file, but for the first and the last
+        const int64_t from = next;
+        next = std::min(end, from + kRowsAtOnce - (from - data.y0) % kRowsAtOnce);
+        // OpenEXR addresses pixel (x, y) at base + x column + y row.
+        const auto base = reinterpret_cast<intptr_t>(rows.data()) -
+                          static_cast<intptr_t>(column) * data.x0 -
+                          static_cast<intptr_t>(row) * static_cast<intptr_t>(from);
+        Imf::FrameBuffer buffer;
+        const char* const names[4] = {gray ? "Y" : "R", "G", "B", "A"};
+        for (size_t i = 0; i < 4; ++i) {
+            if (gray && (i == 1 || i == 2))
+                continue;
+            buffer.insert(names[i], Imf::Slice(Imf::FLOAT,
+                                               reinterpret_cast<char*>(base) +  // NOLINT
+                                                   i * sizeof(float),
+                                               column, row, 1, 1, i == 3 ? 1.0 : 0.0));
+        }
+        file.setFrameBuffer(buffer);
+        file.readPixels(static_cast<int>(from), static_cast<int>(next - 1));
+        for (int64_t y = from; y < next; ++y)
+            std::copy_n(rows.data() + 4 * ((y - from) * data.width() + first - data.x0),
+                        4 * columns,
+                        pixels.data() + 4 * ((y - window.y0) * window.width() + first - window.x0));
+    }
+}
+
+Image decode(std::string_view bytes, const std::string& name, const std::optional<Part>& part) {
     const Layout layout = layout_of(bytes);
-    check_layout(layout);
+    check_layout(layout,
+                 part ? std::numeric_limits<int64_t>::max() : static_cast<int64_t>(kMostPixels));
     Memory memory(bytes, name);
     Imf::InputFile file(memory, 0);
     if (!same(layout.data, file.header().dataWindow()) ||
@@ -142,53 +198,32 @@ Image decode(std::string_view bytes, const std::string& name) {
         throw std::runtime_error("it has neither a channel R nor Y");
     if (channels.findChannel("RY") != nullptr)
         throw std::runtime_error("luminance and chroma are not read");
-    const auto data_width = static_cast<size_t>(layout.data.width());
-    const auto data_height = static_cast<size_t>(layout.data.height());
-    std::vector<float> data(4 * data_width * data_height, 0.0f);
-    const size_t column = 4 * sizeof(float);
-    const size_t row = column * data_width;
-    // OpenEXR addresses pixel (x, y) at base + x column + y row, from the window's own origin.
-    const auto base = reinterpret_cast<intptr_t>(data.data()) -
-                      static_cast<intptr_t>(column) * layout.data.x0 -
-                      static_cast<intptr_t>(row) * layout.data.y0;
-    Imf::FrameBuffer buffer;
-    const char* const names[4] = {gray ? "Y" : "R", "G", "B", "A"};
-    for (size_t i = 0; i < 4; ++i) {
-        if (gray && (i == 1 || i == 2))
-            continue;
-        buffer.insert(names[i],
-                      Imf::Slice(Imf::FLOAT,
-                                 reinterpret_cast<char*>(base) + i * sizeof(float),  // NOLINT
-                                 column, row, 1, 1, i == 3 ? 1.0 : 0.0));
-    }
-    file.setFrameBuffer(buffer);
-    file.readPixels(layout.data.y0, layout.data.y1);
-    Image image = blank(layout.display.width(), layout.display.height(), true, name);
+    const Window window = window_of(layout, part, name);
+    Image image;
+    image.width = static_cast<int>(window.width());
+    image.height = static_cast<int>(window.height());
+    image.linear = true;
+    image.pixels.resize(4 * image.size(), 0.0f);
+    read_rows(file, layout.data, window, gray, image.pixels);
     const bool opaque = channels.findChannel("A") == nullptr;
-    for (int64_t y = 0; y < image.height; ++y) {
-        for (int64_t x = 0; x < image.width; ++x) {
-            const int64_t from_x = x + layout.display.x0 - layout.data.x0;
-            const int64_t from_y = y + layout.display.y0 - layout.data.y0;
-            float* pixel = image.pixels.data() + 4 * (y * image.width + x);
-            if (opaque)
-                pixel[3] = 1;
-            if (from_x < 0 || from_y < 0 || from_x >= layout.data.width() ||
-                from_y >= layout.data.height())
-                continue;
-            std::copy_n(data.data() + 4 * (from_y * layout.data.width() + from_x), 4, pixel);
-            if (gray)
-                pixel[1] = pixel[2] = pixel[0];
-        }
+    for (size_t i = 0; i < image.pixels.size() && (gray || opaque); i += 4) {
+        float* pixel = image.pixels.data() + i;
+        if (gray)
+            pixel[1] = pixel[2] = pixel[0];
+        if (opaque)
+            pixel[3] = 1;
     }
     return image;
 }
 
 }  // namespace
 
-Image decode_exr(std::string_view bytes, const std::string& name) {
+Image decode_exr(std::string_view bytes, const std::string& name, const std::optional<Part>& part) {
     try {
-        return decode(bytes, name);
+        return decode(bytes, name, part);
     } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {  // OpenEXR's own errors are std::exceptions
         fail(Status::BadFile, "'", name, "' cannot be read as OpenEXR: ", e.what());

@@ -56,6 +56,10 @@ Image read(const std::filesystem::path& path) {
     return read(read_file(path, kMostBytes), path.string());
 }
 
+Image read_part(const std::filesystem::path& path, const Part& part) {
+    return decode_exr(read_file(path), path.string(), part);
+}
+
 Image encoded(const Image& image) {
     if (!image.linear)
         return image;

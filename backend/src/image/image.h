@@ -22,12 +22,23 @@ struct Image {
     size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };
 
+/// Pixels of a picture, from its upper left corner.
+struct Part {
+    int left = 0;
+    int top = 0;
+    int width = 0;
+    int height = 0;
+};
+
 /// The kind is told by the first bytes. PNG: every color type and depth; JPEG: gray and RGB;
 /// OpenEXR: R, G, B, A or Y of a flat picture, the display window of it (outside the data window:
 /// 0). Missing alpha is 1. Throws Error(Io) or Error(BadFile) with a sentence naming the file.
 Image read(const std::filesystem::path& path);
 /// The same from memory; `name` is what errors call it.
 Image read(std::string_view bytes, const std::string& name);
+/// A part of an OpenEXR picture, which may have more than kMostPixels, as may the part: memory is
+/// taken for that alone. Throws as read() and Error(InvalidArgument) for what is not within it.
+Image read_part(const std::filesystem::path& path, const Part& part);
 
 /// 8 bit, RGB when every alpha is 1, else RGBA; a linear image is encoded first. All or nothing.
 void write_png(const std::filesystem::path& path, const Image& image);

@@ -11,9 +11,9 @@ from ..core.native import lodestone_native as native
 _ENDLESS = 1e10  # metres, as Cycles has it for the sky
 
 
-def read(path: str) -> Any:
-    """An EXR as Blender wants it: linear, lowest row first."""
-    return native.image_read(path, bottom_up=True)
+def read(path: str, part: tuple[int, int, int, int]) -> Any:
+    """A part of an EXR (left, top, width, height) as Blender wants it: linear, lowest row first."""
+    return native.image_read_part(path, part, bottom_up=True)
 
 
 def cropped(image: Any, left: int, bottom: int, width: int, height: int) -> Any:
