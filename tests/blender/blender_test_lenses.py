@@ -299,6 +299,18 @@ class Drawn(unittest.TestCase):
         settings.use_levels = False
         self.assertEqual(self.statistics().triangles, numbers[0])
 
+    def test_the_panel_counted_what_is_pinned_as_its_original(self):
+        whole = self.statistics().triangles_before
+        pinned = bpy.data.objects["Ball 0 0"].lodestone
+        pinned.use_pin_render, pinned.pin_render = True, 3
+        bpy.ops.lodestone.update_levels()
+        try:
+            self.assertEqual(self.statistics().triangles_before, whole)
+        finally:
+            pinned.property_unset("use_pin_render")
+            pinned.property_unset("pin_render")
+            bpy.ops.lodestone.update_levels()
+
     def test_equal_views_are_chosen_once(self):
         add_lens((40, 0, 0))
         bpy.context.view_layer.update()

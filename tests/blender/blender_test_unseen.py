@@ -13,7 +13,7 @@ import bpy
 import blender_scenes as scenes
 from lodestone.bridge import live_view, quality
 from lodestone.bridge.settings import SceneSettings
-from lodestone.core import unseen
+from lodestone.core import last_render, unseen
 from lodestone.core.native import lodestone_native as native
 from lodestone.panels import unseen as panel
 
@@ -155,3 +155,25 @@ class Drawn(unittest.TestCase):
         bpy.ops.render.render()
         (text,) = [path.read_text() for path in self.blend.parent.rglob("scene.pov")]
         self.assertEqual("no_shadow" in text, wanted > 0)
+
+
+class Originals(unittest.TestCase):
+    def test_the_panel_counted_levels_of_what_is_scaled_to_nothing_as_originals(self):
+        scene = scenes.fresh()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        scene.render.engine = "LODESTONE_POVRAY"
+        data = scenes.bumpy_mesh()
+        for number in range(3):
+            scenes.cube(f"Ball {number}", (3 * number, 0, 0), data=data)
+        bpy.data.objects["Ball 2"].scale = (0, 0, 0)
+        bpy.ops.wm.save_as_mainfile(filepath=os.fspath(Path(folder.name) / "cubes.blend"))
+        bpy.ops.lodestone.update_levels()
+        for error in (1.0, 0.0):
+            scene.lodestone.pixel_error_render = error
+            bpy.ops.render.render()
+            drawn, found = last_render.get(scene.name), live_view.statistics(bpy.context)
+            self.assertEqual(found.pixel_error, error)
+            self.assertEqual(found.kinds, drawn.kinds)
+            self.assertEqual(found.triangles, drawn.triangles)
+            self.assertEqual(found.triangles_before, drawn.triangles_placed)

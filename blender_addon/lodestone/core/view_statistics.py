@@ -3,12 +3,14 @@
 
 import time
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from . import report, unseen
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS, Settings
+
+_ENDLESS = 1e300  # metres
 
 
 @dataclass(frozen=True)
@@ -68,17 +70,19 @@ class Chooser:
     ) -> Statistics:  # fmt: skip
         start = time.perf_counter()
         view = settings.view(camera, size)
+        if what == "render" and not settings.levels:
+            view = _of_originals(view)
         if triangles or settings.budget:
             with native.Cut(model, view, None, native.Budget(triangles, settings.budget)) as cut:
-                return self._statistics(cut, start)
+                return self._statistics(cut, start, cut.pixel_error)
         cut = self._cuts.get(what)
         if cut is None:
             cut = self._cuts[what] = native.Cut(model, view)
         else:
             cut.step(view)
-        return self._statistics(cut, start)
+        return self._statistics(cut, start, settings.pixel_error)
 
-    def _statistics(self, cut: Any, start: float) -> Statistics:
+    def _statistics(self, cut: Any, start: float, pixel_error: float) -> Statistics:
         summary = cut.summary()
         part = report.cut_part(summary)
         met = unseen.met(cut)
@@ -91,7 +95,7 @@ class Chooser:
             occurrences=summary.occurrences,
             largest_error_px=summary.largest_error_px,
             largest_error_name=part["largest_error_name"],
-            pixel_error=cut.pixel_error,
+            pixel_error=pixel_error,
             fits=cut.fits,
             choose_s=time.perf_counter() - start,
             met=met,
@@ -100,7 +104,13 @@ class Chooser:
 
 def _originals(model: Any, camera: Any, size: tuple[int, int]) -> tuple[int, int]:
     """Triangles and bytes of what is placed; the same from everywhere."""
-    view = native.View(camera, *size, 0.0, POVRAY_KINDS)
+    view = _of_originals(native.View(camera, *size, 0.0, POVRAY_KINDS))
     with native.Cut(model, view) as cut:
-        summary = cut.summary()
-        return (summary.triangles, summary.bytes)
+        return (model.totals().triangles_placed, cut.summary().bytes)
+
+
+def _of_originals(view: Any) -> Any:
+    """Also of what is scaled to nothing, whose levels have no error on screen: here nothing but an
+    original is good enough, however far it is."""
+    modifiers = replace(view.modifiers or native.Modifiers(), criterion=native.Criterion.DISTANCE)
+    return replace(view, pixel_error=_ENDLESS, modifiers=modifiers)
