@@ -154,6 +154,19 @@ class Seeing(unittest.TestCase):
         self.scene.lodestone.use_levels = False
         self.assertIn("Original", title())
 
+    def test_why_this_level_missed_instances_of_a_collection_with_an_offset(self):
+        from lodestone.bridge import kept_view
+
+        inner = scenes.collection("Inner")
+        inner.instance_offset = (1, 2, 3)
+        scenes.cube("Member", (1, 2, 3), collection=inner)
+        copy = scenes.instance("Copy", inner, (0, 5, 0), (2, 1, 1), (0, 0, 1))
+        bpy.context.view_layer.update()
+        bpy.ops.lodestone.read_levels()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        found = kept_view.explained(self.scene, depsgraph, copy)
+        self.assertNotEqual(found.title, "Not in the last picture")
+
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):
         from lodestone.bridge import kept_view

@@ -166,7 +166,7 @@ class _Cut:
 
 
 def explain(drawn=Drawn.ITSELF, **values):
-    return why.explain(_Cut(**values), drawn, 0, "Oak")
+    return why.explain(_Cut(**values), drawn, 0)
 
 
 class Why(unittest.TestCase):
@@ -200,6 +200,14 @@ class Why(unittest.TestCase):
 
     def test_what_is_within_a_group_names_it(self):
         self.assertEqual(explain(Drawn.IN_GROUP).title, "In group House: LOD 2  Simplified")
+
+    def test_all_of_the_scene_was_a_group_called_as_the_object(self):
+        class Root(_Cut):
+            def choice_path(self, position):
+                return ""
+
+        found = why.explain(Root(), Drawn.IN_GROUP, 0)
+        self.assertEqual(found.title, "In group House: LOD 2  Simplified")
 
     def test_nothing_coarser_and_nothing_drawn(self):
         self.assertIn("There is no coarser level", explain(coarser_object=Object()).lines)

@@ -157,7 +157,7 @@ class _Met(_Cut):
 
 class Why(unittest.TestCase):
     def lines(self, ray_classes=Rays.SHADOW, **met):
-        return why.explain(_Met(ray_classes, **met), Drawn.ITSELF, 0, "Oak").lines[2:]
+        return why.explain(_Met(ray_classes, **met), Drawn.ITSELF, 0).lines[2:]
 
     def test_classes_that_are_off_are_not_spoken_of(self):
         self.assertEqual(self.lines(ray_classes=0, met=Met.OWN), ())

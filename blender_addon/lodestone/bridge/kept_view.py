@@ -6,7 +6,7 @@ from typing import Any
 
 from ..core import kept_model, why
 from ..core.problems import Problems
-from . import camera, ids, quality, render_result
+from . import camera, ids, preview_live, quality, render_result
 from .settings import SceneSettings
 
 
@@ -37,9 +37,8 @@ def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None"
         if kept.closed:
             return None
         cut = kept.cut(now(kept, scene, depsgraph))
-        matrix = item.evaluated_get(depsgraph).matrix_world
-        world = [value for row in matrix[:3] for value in row]
+        world = preview_live.expected_world(item.evaluated_get(depsgraph))
         drawn, position = kept.find([ids.key_of("object", item.original)], world)
-        return why.explain(cut, drawn, position, ids.name_of(item))
+        return why.explain(cut, drawn, position)
     finally:
         kept.lock.release()

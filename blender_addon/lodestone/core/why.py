@@ -56,8 +56,8 @@ def level_name(lod: int, kind: int) -> str:
     return f"LOD {lod}  {'Original' if lod == 0 else KINDS.get(kind, '?')}"
 
 
-def explain(cut: Any, drawn: Any, position: int, name: str) -> Explanation:
-    """Of something called `name` that a cut was asked for by Kept.find()."""
+def explain(cut: Any, drawn: Any, position: int) -> Explanation:
+    """Of something that a cut was asked for by Kept.find()."""
     if drawn == native.Drawn.MISSING:
         return Explanation(
             "Not in the last picture", ("It was hidden in renders, or is newer, or has moved",)
@@ -69,7 +69,8 @@ def explain(cut: Any, drawn: Any, position: int, name: str) -> Explanation:
     choice = cut.choices()[position]
     title = level_name(choice.lod, choice.kind)
     if drawn == native.Drawn.IN_GROUP:
-        group = cut.choice_path(position).rsplit("/", 1)[-1] or name
+        group = cut.choice_path(position).rsplit("/", 1)[-1]
+        group = group or cut.model.object_summary(choice.object).name  # all of the scene
         title = f"In group {group}: {title}"
     reason = cut.reason(position)
     lines = [_main_line(reason, cut.view.pixel_error)]
