@@ -6,6 +6,16 @@
 #include <cmath>
 
 namespace lodestone::tools {
+namespace {
+
+/// 8, .5 as 0.5, 1e+09: as few digits as tell the number.
+std::string written(double value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    return {digits, end};
+}
+
+}  // namespace
 
 Arguments::Arguments(const std::vector<std::string>& words,
                      const std::vector<OptionHelp>& options) {
@@ -55,7 +65,7 @@ double Arguments::number(const std::string& option, double otherwise, double lea
     const auto parsed = std::from_chars(at->second.data(), end, value);
     if (parsed.ec != std::errc() || parsed.ptr != end || !(value >= least && value <= most))
         throw UsageError("--" + option + " is '" + at->second + "'; a number from " +
-                         std::to_string(least) + " to " + std::to_string(most) + " expected");
+                         written(least) + " to " + written(most) + " expected");
     return value;
 }
 

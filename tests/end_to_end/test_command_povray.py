@@ -107,6 +107,7 @@ class CommandPovray(unittest.TestCase):
             (2, ("povray", self.model), "--out"),
             (2, ("povray", self.model, "--out", "x.jpg"), "--out"),
             (2, ("povray", self.model, *out, "--size", "0x3"), "--size"),
+            (2, ("povray", self.model, *out, "--bounces", "9"), "a number from 0 to 8 expected"),
             (2, ("povray", self.model, *out, "--camera", "Far"), "Far"),
             (2, ("povray", self.model, *out, "--antialias", "some"), "--antialias"),
             (4, ("povray", self.folder / "none.obj", *out), "none.obj"),

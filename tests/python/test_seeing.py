@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core import compare_plan, cost_model, false_colors, legend_strip, overview, why
-from lodestone_native import Camera, Drawn, Image, Kind, Object
+from lodestone_native import Antialias, Camera, Drawn, Image, Kind, Object
 
 WORK = cost_model.Work(245_000_000, 1_000_000, 640 * 360, 640, 360, 1, 1, 2)
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
@@ -37,6 +37,21 @@ class Cost(unittest.TestCase):
         self.assertAlmostEqual(rays, 0.1 / 0.25 * 200 * 2)
         bouncing = cost_model.predict(replace(WORK, gathering=rays)).trace_cpu_s
         self.assertAlmostEqual(bouncing, direct * (4 + rays) / 4)
+
+    def test_depth_of_field_was_expected_to_take_no_longer(self):
+        sharp = cost_model.predict(WORK).trace_cpu_s
+        blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
+        self.assertAlmostEqual(blurred, sharp * 45 / 4)  # both at the usual antialiasing
+        summary = SimpleNamespace(bytes=1, triangles=1)
+        quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
+        for camera, expected in (
+            (CAMERA, True),
+            (replace(CAMERA, aperture=0.0), False),
+            (replace(CAMERA, orthographic=True), False),
+        ):
+            view = SimpleNamespace(camera=camera, width=4, height=3, border=(0, 0, 0, 0))
+            work = cost_model.Work.of(summary, view, 1, Antialias.FINAL, 1, quality)
+            self.assertEqual(work.blurred, expected)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)
