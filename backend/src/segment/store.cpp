@@ -211,7 +211,7 @@ uint64_t Store::write(const Model& model, const Job& job) const {
         fail(Status::Io, "'", tileset.string(), "' would have ", text.size(), " bytes; at most ",
              kMostTilesetBytes, " are read");
     write_file(tileset, text);
-    wanted.merge(files_of_tileset(text));
+    wanted.merge(files_of(model));
     remove_unused(folder_, wanted);
     job.progress(1);
     return bytes + text.size();
