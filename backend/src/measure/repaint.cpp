@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
+#include <span>
 
 namespace lodestone::measure {
 namespace {
@@ -33,6 +33,13 @@ struct UvMap {
 };
 
 using Voters = std::vector<const SurfaceSample*>;
+
+/// That the level's triangle nearest to a point shows the point's slot.
+struct Vote {
+    uint32_t triangle;
+    uint16_t slot;
+    const SurfaceSample* voter;
+};
 
 /// The map of a triangle's plane that suits the voters best; none where they lie in a line.
 std::optional<UvMap> fit(const Mesh& level, uint32_t triangle, const Voters& voters) {
@@ -140,29 +147,46 @@ std::vector<ray::Closest> DeviationReference::repaint(Mesh& level, const ray::Sk
             last = nearest[i].triangle;
         }
     });
-    std::map<uint32_t, std::map<uint16_t, Voters>> votes;  // by triangle and slot
+    std::vector<Vote> votes;
+    votes.reserve(nearest.size());
     for (size_t i = 0; i < nearest.size(); ++i) {
         if (nearest[i].triangle != ray::kNoTriangle)
-            votes[nearest[i].triangle][points[i].slot].push_back(&points[i]);
+            votes.push_back({nearest[i].triangle, points[i].slot, &points[i]});
     }
-    for (const auto& [triangle, slots] : votes) {
-        const auto most = std::max_element(
-            slots.begin(), slots.end(),
-            [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
-        const auto own = slots.find(level.slots[triangle]);
-        if (most->second.size() < kLeastVotes ||
-            (own != slots.end() && most->second.size() <= own->second.size()))
+    std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+        return a.triangle != b.triangle ? a.triangle < b.triangle : a.slot < b.slot;
+    });
+    for (auto first = votes.begin(); first != votes.end();) {
+        const uint32_t triangle = first->triangle;
+        std::span<const Vote> most;
+        size_t own = 0;
+        while (first != votes.end() && first->triangle == triangle) {
+            const auto end = std::find_if(first, votes.end(), [&](const Vote& other) {
+                return other.triangle != triangle || other.slot != first->slot;
+            });
+            const std::span<const Vote> alike(first, end);
+            if (alike.size() > most.size())
+                most = alike;
+            if (first->slot == level.slots[triangle])
+                own = alike.size();
+            first = end;
+        }
+        if (most.size() < kLeastVotes || most.size() <= own)
             continue;
-        if (skin != nullptr && skin->textured(level, most->first)) {
+        const uint16_t slot = most.front().slot;
+        if (skin != nullptr && skin->textured(level, slot)) {
             // Its own coordinates belong to another texture.
-            if (most->second.size() < kLeastTextured)
+            if (most.size() < kLeastTextured)
                 continue;
-            const std::optional<UvMap> map = fit(level, triangle, most->second);
-            if (!map || !shows_the_same(level, triangle, most->first, *map, *skin, most->second))
+            Voters voters;
+            for (const Vote& vote : most)
+                voters.push_back(vote.voter);
+            const std::optional<UvMap> map = fit(level, triangle, voters);
+            if (!map || !shows_the_same(level, triangle, slot, *map, *skin, voters))
                 continue;
             set_uvs(level, triangle, *map);
         }
-        level.slots[triangle] = most->first;
+        level.slots[triangle] = slot;
     }
     return nearest;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace lodestone::measure {
 namespace {
@@ -13,6 +12,22 @@ constexpr double kQuantile = 0.999;
 // their places alone answer for.
 constexpr double kLookQuantile = 0.99;
 constexpr double kLeastLookShare = 0.002;
+
+/// A value for each look; looks are few and numbered from 0.
+template <typename Value>
+class ByLook {
+public:
+    Value& operator[](uint16_t look) {
+        if (look >= values_.size())
+            values_.resize(look + size_t{1});
+        return values_[look];
+    }
+    auto begin() const { return values_.begin(); }
+    auto end() const { return values_.end(); }
+
+private:
+    std::vector<Value> values_;
+};
 
 double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<size_t>& indices) {
     double sum = 0;
@@ -54,22 +69,22 @@ Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vec
                        const std::vector<double>& moves) {
     Deviation out;
     std::vector<size_t> all(samples.size());
-    std::map<uint16_t, std::vector<size_t>> moved;  // looks of which anything moved
+    ByLook<uint8_t> any_moved;
     for (size_t i = 0; i < all.size(); ++i) {
         all[i] = i;
         out.max = std::max({out.max, places[i], moves[i]});
         if (moves[i] > 0)
-            moved[samples[i].look];
+            any_moved[samples[i].look] = 1;
     }
+    ByLook<std::vector<size_t>> moved;
     for (size_t i = 0; i < samples.size(); ++i) {
-        const auto at = moved.find(samples[i].look);
-        if (at != moved.end())
-            at->second.push_back(i);
+        if (samples[i].look != kAnyLook && any_moved[samples[i].look] != 0)
+            moved[samples[i].look].push_back(i);
     }
     const double least = kLeastLookShare * weight_of(samples, all);
     out.error = quantile(samples, places, std::move(all), kQuantile);
-    for (const auto& [look, indices] : moved) {
-        if (weight_of(samples, indices) >= least)
+    for (const std::vector<size_t>& indices : moved) {
+        if (!indices.empty() && weight_of(samples, indices) >= least)
             out.error = std::max(out.error, quantile(samples, moves, indices, kLookQuantile));
     }
     return out;
@@ -107,32 +122,32 @@ bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
     if (!std::isfinite(useless))
         return false;
     Sum place;
-    std::map<uint16_t, Sum> looks;
+    ByLook<Sum> looks;
     for (const size_t i : some) {
         place.add(samples[i].weight, places[i] > useless);
-        looks[samples[i].look].add(samples[i].weight, moves[i] > useless);
+        if (samples[i].look != kAnyLook)
+            looks[samples[i].look].add(samples[i].weight, moves[i] > useless);
     }
     if (place.count >= kFewest && place.above > kPlaces * place.all)
         return true;
-    return std::any_of(looks.begin(), looks.end(), [&](const auto& look) {
-        const Sum& moved = look.second;
+    return std::any_of(looks.begin(), looks.end(), [&](const Sum& moved) {
         return moved.count >= kFewest && moved.above > kMoves * moved.all &&
                moved.all > kLeastShare * place.all;
     });
 }
 
 std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, size_t wanted) {
-    std::map<uint16_t, size_t> counts;
-    for (const SurfaceSample& sample : samples)
-        ++counts[sample.look];
-    counts.erase(kAnyLook);
-    std::map<uint16_t, size_t> ranks;
+    ByLook<size_t> counts;
+    for (const SurfaceSample& sample : samples) {
+        if (sample.look != kAnyLook)
+            ++counts[sample.look];
+    }
+    ByLook<size_t> ranks;
     std::vector<uint8_t> out(samples.size(), 0);
     for (size_t i = 0; i < samples.size(); ++i) {
-        const auto at = counts.find(samples[i].look);
-        if (at == counts.end())
+        if (samples[i].look == kAnyLook)
             continue;
-        const size_t stride = std::clamp<size_t>(at->second / wanted, 1, kEvery);
+        const size_t stride = std::clamp<size_t>(counts[samples[i].look] / wanted, 1, kEvery);
         const size_t rank = ranks[samples[i].look]++;
         out[i] = i % kEvery == 0 || rank == 0 || (stride < kEvery && rank % stride == 0) ? 1 : 0;
     }
@@ -141,7 +156,7 @@ std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, 
 
 void spread(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
             std::vector<double>& moves) {
-    std::map<uint16_t, double> last;
+    ByLook<double> last;
     for (size_t i = 0; i < samples.size(); ++i) {
         if (samples[i].look == kAnyLook)
             continue;
