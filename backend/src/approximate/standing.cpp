@@ -60,6 +60,8 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
         stretch(out, 1, across);
         whole_along *= along;
         whole_across *= across;
+        if (std::max(std::abs(along - 1), std::abs(across - 1)) < kSame)
+            break;
         if (!(std::max(whole_along, whole_across) <= kMost &&
               std::min(whole_along, whole_across) >= 1 / kMost)) {
             out = primitive;
