@@ -90,7 +90,7 @@ glm::dvec3 match_ellipsoid(const glm::dvec3& variances) {
     for (int step = 0; step < 200; ++step) {
         const glm::dvec3 ratio = variances / ellipsoid_shell(half).variances;
         half *= glm::sqrt(ratio);
-        if (glm::length(ratio - 1.0) < 1e-14)
+        if (glm::length(ratio - 1.0) < 1e-11)
             break;
     }
     return half;
