@@ -13,6 +13,7 @@
 #include "measure/visible.h"
 #include "measure/visible_sampler.h"
 
+#include <bit>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -417,6 +418,36 @@ TEST(Visible, AreaAloneIsWhatAllAttributesTell) {
         EXPECT_EQ(measure::visible_area(sampler, options.rays),
                   measure_visible(mesh, scene, nullptr, options).attributes.visible_area);
     }
+}
+
+TEST(Visible, RaysEndOnceTheyChangeLittle) {
+    constexpr uint64_t kSeeds = 16;
+    constexpr double kShare = 0.004;
+    const Mesh mesh = clutter();
+    const Attributes truth = attributes_of(mesh, uint64_t{1} << 18u, 99);
+    VisibleOptions options;
+    options.rays = 65536;
+    const auto settled = [&](double share, uint64_t seed) {
+        options.settled = share;
+        options.seed = seed;
+        return measure_visible(mesh, {}, options).attributes;
+    };
+    double off = 0;
+    uint64_t rays = 0;
+    for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        const Attributes fewer = settled(kShare, seed);
+        EXPECT_TRUE(std::has_single_bit(fewer.rays)) << seed;
+        off += glm::length(fewer.centroid - truth.centroid) / truth.radius_of_gyration() / kSeeds;
+        rays += fewer.rays;
+        // The rays are the first of the same sequence, however many there are.
+        const Attributes same = attributes_of(mesh, fewer.rays, seed);
+        EXPECT_EQ(same.centroid, fewer.centroid) << seed;
+        EXPECT_EQ(same.visible_area, fewer.visible_area) << seed;
+    }
+    EXPECT_LT(off, kShare);
+    EXPECT_LT(rays, kSeeds * options.rays / 2);
+    EXPECT_EQ(settled(1e-9, 1).rays, options.rays);
+    EXPECT_EQ(settled(1, 1).rays, 4096u);
 }
 
 TEST(Visible, RaysThatWereCastBeforeAreNotCastAgain) {

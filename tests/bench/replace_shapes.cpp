@@ -141,6 +141,7 @@ void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const At
     options.seed = settings.seed;
     const Attributes wanted = measure::measure_visible(mesh, {}, options).attributes;
     options.rays *= 8;
+    options.settled = approximate::kSettled;
     const Attributes sure = measure::measure_visible(mesh, {}, options).attributes;
     const auto add = [&](const std::string& name, bool box, const Primitive& fitted,
                          double opacity) {

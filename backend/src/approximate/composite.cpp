@@ -297,6 +297,7 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
         sure.emplace(options.settled, options.seed);
         measure::VisibleOptions visible;
         visible.rays = options.settled;
+        visible.settled = kSettledWhole;
         visible.seed = options.seed;
         const Attributes again =
             measure::measure_visible(mesh, scene, skin, visible, {}, job).attributes;

@@ -40,6 +40,9 @@ struct Clear {
 std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
 std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
 
+/// Many rays that settle a solid end when the last half of them changed no more (VisibleOptions).
+inline constexpr double kSettled = 0.0008;
+
 /// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved with the
 /// centroid, scaled with the area unless it is `clear`.
 Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure, bool clear);

@@ -15,6 +15,9 @@ namespace lodestone::approximate {
 void match_whole(Composite& composite, const Attributes& wanted, double floor,
                  const VisibleSolids& visible, bool shape, int rounds, const Job& job);
 
+/// As kSettled, for several solids.
+inline constexpr double kSettledWhole = 0.0005;
+
 /// Area and centroid as all rays see them, set right by scaling and moving the solids alike, which
 /// hides nothing more of any. What stands keeps its foot and follows along Z by half, so all go
 /// farther.

@@ -93,12 +93,12 @@ void Judge::measure_finest(const Mesh& finest, const Job& job) {
     options.rays = rays_;
     options.seed = seed_;
     // The reference was made with the same rays.
-    const std::vector<measure::Cast> cast = reference_.take_cast();
+    cast_ = reference_.take_cast();
     attributes_ =
-        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast, job)
+        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast_, job)
             .attributes;
     if (!environment_)
-        patches_.emplace(finest, reference_.sampler(), *skin_, cast, seed_);
+        patches_.emplace(finest, reference_.sampler(), *skin_, cast_, seed_);
 }
 
 bool is_flat(double across, double through) {
@@ -182,13 +182,15 @@ void Judge::measure_primitive(Candidate& candidate, const Job& job) {
     least_primitive_ = std::min(least_primitive_, candidate.error);
 }
 
-const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, const Job& job) {
+const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled, const Job& job) {
     if (sure_rays_ < rays) {
         measure::VisibleOptions options;
         options.rays = rays;
+        options.settled = settled;
         options.seed = seed_;
-        sure_ = measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, {}, job)
-                    .attributes;
+        sure_ =
+            measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast_, job)
+                .attributes;
         sure_rays_ = rays;
     }
     return sure_;
@@ -203,9 +205,13 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     if (!candidate.unsettled)
         return;
     candidate.unsettled = false;
+    // Where all of it is two pixels wide or less nobody sees a few thousandths of that.
+    if (candidate.error >= size_)
+        return;
     if (candidate.kind == Kind::Composite) {
         Composite composite = *candidate.composite;
-        approximate::settle_whole(composite, sure(finest, kRaysOfMany, job), floor,
+        approximate::settle_whole(composite,
+                                  sure(finest, kRaysOfMany, approximate::kSettledWhole, job), floor,
                                   approximate::VisibleSolids(kRaysOfMany, seed_), job);
         candidate.composite = std::make_shared<const Composite>(std::move(composite));
         return;
@@ -216,8 +222,8 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     const bool clear = candidate.materials[0].alpha_mode == AlphaMode::Blend;
     Primitive& primitive = candidate.primitive;
     const bool stands = approximate::reach_of(primitive, box).low <= floor + kStands * size_;
-    primitive =
-        approximate::settled(primitive, attributes_, sure(finest, kMoreRays * rays_, job), clear);
+    primitive = approximate::settled(
+        primitive, attributes_, sure(finest, kMoreRays * rays_, approximate::kSettled, job), clear);
     const double low = approximate::reach_of(primitive, box).low;
     if (stands || low < floor)
         primitive.center.z += floor - low;

@@ -75,7 +75,7 @@ public:
 
     /// Sets area and centroid of solids right by many more rays. `finest`: the mesh measured as such;
     /// what stands at `floor` or would reach below it keeps its foot. Single solids stay where the
-    /// finest was measured exactly.
+    /// finest was measured exactly, and all whose error is the radius or more.
     void settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job);
 
     /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
@@ -107,7 +107,7 @@ private:
     /// Whether match_brightness() does anything to what is used so far.
     bool is_matched(double used_to) const;
     /// The finest's, by so many rays or more.
-    const Attributes& sure(const Mesh& finest, uint64_t rays, const Job& job);
+    const Attributes& sure(const Mesh& finest, uint64_t rays, double settled, const Job& job);
     /// What a distance may be where an error is at most that.
     double distance_for(double error) const;
     ray::SkinPtr skin_of(std::span<const Material> materials) const;
@@ -135,6 +135,7 @@ private:
     std::optional<measure::Patches> patches_;
     std::optional<glm::dvec3> glow_;  // all light of the finest's pictures over what it emits
     double opacity_ = 0;
+    std::vector<measure::Cast> cast_;  // what the first rays that measure the finest found
     Attributes attributes_;
     Attributes sure_;         // by many more rays
     uint64_t sure_rays_ = 0;  // so many

@@ -7,13 +7,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 namespace lodestone::measure {
 namespace {
 
-constexpr uint64_t kBatch = uint64_t{1} << 16u;  // rays between two serial sums
-constexpr double kConfidence = 1.96;             // 95 % of a normal distribution
+constexpr uint64_t kBatch = uint64_t{1} << 16u;      // rays between two serial sums
+constexpr uint64_t kEvenBatch = uint64_t{1} << 11u;  // what they find stays in the cache
+constexpr double kConfidence = 1.96;                 // 95 % of a normal distribution
 constexpr double kEarlyStop = 1.04;
 constexpr uint64_t kFirstBatch = 512;
 constexpr uint64_t kLeastBatch = 256;
@@ -136,18 +138,40 @@ void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& nu
     tally.rays += count;
 }
 
+/// Whether twice the rays changed little. The halves of an even sequence make up for each other: what
+/// the second one moves is mostly more than both together are off.
+bool is_settled(const Tally& before, const Tally& now, double share) {
+    constexpr double kArea = 5;
+    if (before.hits < kFewestHits)
+        return false;
+    const glm::dvec3 mean = now.first / now.weight;
+    double square = 0;  // of the radius of gyration
+    for (int axis = 0; axis < 3; ++axis)
+        square += now.second[axis][axis] / now.weight - mean[axis] * mean[axis];
+    const glm::dvec3 moved = mean - before.first / before.weight;
+    const double area = static_cast<double>(before.hits) / static_cast<double>(before.rays) *
+                        static_cast<double>(now.rays) / static_cast<double>(now.hits);
+    return glm::dot(moved, moved) <= share * share * square && std::abs(area - 1) <= kArea * share;
+}
+
 /// A fixed number of rays, as even as can be.
 void sample_evenly(const VisibleSampler& sampler, const Varied& varied,
                    const VisibleOptions& options, std::span<const Cast> known, Tally& tally,
                    const Job& job) {
     const Sobol sobol(options.seed);
     const uint64_t most = std::min<uint64_t>(options.rays, ~0u);
+    Tally half;
     while (tally.rays < most) {
         const auto first = static_cast<uint32_t>(tally.rays);
         const auto numbers = [&](uint32_t i) { return sobol.point(first + i); };
-        cast(sampler, varied, numbers, std::min(kBatch, most - first), true,
+        cast(sampler, varied, numbers, std::min(kEvenBatch, most - first), true,
              known.subspan(std::min<size_t>(first, known.size())), tally, job);
         job.progress(static_cast<double>(tally.rays) / static_cast<double>(most));
+        if (!(options.settled > 0) || !std::has_single_bit(tally.rays))
+            continue;
+        if (is_settled(half, tally, options.settled))
+            break;
+        half = tally;
     }
 }
 

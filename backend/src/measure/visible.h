@@ -13,7 +13,10 @@
 namespace lodestone::measure {
 
 struct VisibleOptions {
-    uint64_t rays = 4096;       // the number of rays, when relative_error is 0
+    uint64_t rays = 4096;  // the number of rays, when relative_error is 0
+    double settled = 0;    // ... or fewer, once the last half of them moved the centroid by less
+                           // than this share of the radius of gyration, and the area by less
+                           // than five times this share of it
     double relative_error = 0;  // else: rays until visible_area is known this well, 95 % confidence
     uint64_t most_rays = uint64_t{1} << 20u;  // ... but never more than these; at most 2^32 - 1
     uint64_t seed = 1;
