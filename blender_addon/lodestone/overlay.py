@@ -114,8 +114,8 @@ def settings(context):
 
 def wanted_key(context, scene, kept, mode):
     """Tells when what is shown is of something else."""
-    view = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
-    return (scene.name, id(kept), mode, view)
+    asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+    return (scene.name, id(kept), mode, asked)
 
 
 def refresh(context, scene, mode):

@@ -199,7 +199,7 @@ class Drawn(unittest.TestCase):
 
         bpy.context.view_layer.update()
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
-        settings = live_view.settings_of(self.scene, store.model)
+        settings = live_view.settings_of(self.scene, lenses.parts_stored(store.model))
         frame = lenses_frame(self.scene)
         found = {}
         with settings.cut(store.model, frame[0], frame[1]) as cut:

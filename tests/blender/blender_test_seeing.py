@@ -167,6 +167,45 @@ class Seeing(unittest.TestCase):
         found = kept_view.explained(self.scene, depsgraph, copy)
         self.assertNotEqual(found.title, "Not in the last picture")
 
+    def explained(self, item):
+        from lodestone.bridge import kept_view
+
+        bpy.context.view_layer.update()
+        return kept_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), item)
+
+    def test_a_lens_was_missing_from_why_this_level_after_read_scene(self):
+        self.scene.lodestone.pixel_error_render = 8.0
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.detail_lens_add(location=self.far.location, radius=4.0, strength=64.0)
+        made = bpy.context.object
+        made.lodestone.lens.falloff = 0.0
+        bpy.ops.lodestone.read_levels()
+        with_lens = self.explained(self.far)
+        self.assertIn("Detail lenses \N{MULTIPLICATION SIGN} 64 finer", with_lens.lines)
+        made.location.z += 1000.0
+        without = self.explained(self.far)
+        self.assertNotIn("Detail lenses", " ".join(without.lines))
+        self.assertNotEqual(with_lens.title, without.title)
+        self.assertFalse(self.kept.get(self.scene.name).outdated, "lenses are followed")
+
+    def test_of_a_budget_why_this_level_and_colors_told_as_of_a_picture_without(self):
+        from lodestone import overlay
+
+        self.near.data = scenes.bumpy_mesh(subdivisions=6)
+        self.scene.lodestone.pixel_error_render = 0.0
+        bpy.context.view_layer.update()
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.read_levels()
+        self.assertEqual(self.explained(self.near).title, "LOD 0  Original")
+        self.scene.lodestone.budget_render = 1
+        found = self.explained(self.near)
+        self.assertNotEqual(found.title, "LOD 0  Original")
+        self.assertNotIn("0 px: nothing finer can be drawn", found.lines[0])
+        self.assertTrue(overlay.refresh(bpy.context, self.scene, "ERROR"))
+        self.addCleanup(overlay.forget)
+        self.assertNotIn("Pixel Error 0:", overlay._shown.lines[0])
+        self.assertNotEqual(overlay._shown.legend[-1][0], "above 0 px")
+
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):
         from lodestone.bridge import kept_view

@@ -1,31 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The view of a kept model as the scene has it now, and how the model's cut draws a datablock."""
+"""The view of a kept model as the scene asks for it now, and how its cut draws a datablock."""
 
 from dataclasses import replace
 from typing import Any
 
 from ..core import kept_model, why
 from ..core.problems import Problems
-from . import camera, ids, preview_live, quality, render_result
-from .settings import SceneSettings
+from . import camera, ids, lenses, live_view, preview_live, render_result
 
 
-def now(kept: Any, scene: Any, depsgraph: Any) -> Any:
-    """The view the scene camera has; the one the model was read for when there is no camera.
-    Everything else that bends quality is as it was when the model was read."""
+def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
+    """What the scene camera's picture asks for; what the model was read for when there is no
+    camera. Motion, Importance and Use are as they were when the model was read."""
     if scene.camera is None or scene.camera.type != "CAMERA":
-        return kept.view
+        return kept_model.Asked(kept.view)
+    read_with = kept.view.modifiers
+    settings = live_view.settings_of(
+        scene, lenses.parts_in(kept), None if read_with is None else read_with.closing
+    )
     frame = camera.Frame.of(scene.render)
     seen = camera.extract(scene.camera.evaluated_get(depsgraph), frame, Problems())
     left, bottom, *part = render_result.border(scene.render, frame.width, frame.height)
-    return replace(
-        kept.view,
-        camera=seen,
-        width=frame.width,
-        height=frame.height,
-        pixel_error=quality.pixel_error(SceneSettings(scene)),
-        border=(left, frame.height - bottom - part[1], *part),
-    )
+    settings = replace(settings, border=(left, frame.height - bottom - part[1], *part))
+    return kept_model.Asked(settings.view(seen, (frame.width, frame.height)), settings.budget)
 
 
 def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None":

@@ -119,7 +119,7 @@ def modifiers(
 
 
 def parts_in(extraction: Any) -> PartsOf:
-    """Of a scene that was just read."""
+    """Of a scene that was read: anything with its `parts`."""
 
     def parts_of(collection: Any) -> Iterable[Any]:
         return extraction.parts.get(ids.key_of("collection", collection), ())

@@ -32,7 +32,7 @@ def statistics(context: Any) -> view_statistics.Statistics | str:
         return "Set a scene camera"
     frame = cameras.Frame.of(scene.render)
     seen = cameras.extract(item, frame, Problems())
-    settings = settings_of(scene, store.model)
+    settings = settings_of(scene, lenses.parts_stored(store.model))
     size = (frame.width, frame.height)
     key = (seen, size, _hashable(settings))
     return _chooser.statistics(store.model, key, seen, size, settings)
@@ -89,10 +89,10 @@ class _Pinned:
 _pinned = _Pinned()
 
 
-def settings_of(scene: Any, model: Any) -> Settings:
-    """As F12 has them, but for motion, which takes another frame to see."""
+def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None) -> Settings:
+    """As F12 has them, but for motion, which takes another frame to see: `closing` is the camera
+    as the shutter closes, where it is known."""
     own = SceneSettings(scene)
-    parts_of = lenses.parts_stored(model)
     detail = lenses.detail(lens_objects(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark
     return Settings(
@@ -103,6 +103,7 @@ def settings_of(scene: Any, model: Any) -> Settings:
             detail,
             scene.camera,
             coarser,
+            closing if coarser else None,
             off_screen=own.off_screen,
             ray_classes=quality.ray_classes(own),
         ),

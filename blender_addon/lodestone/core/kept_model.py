@@ -6,11 +6,19 @@ Of one scene at a time. Any thread may put one, so whoever uses one holds its lo
 
 import threading
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from .native import lodestone_native as native
 
 Key = tuple[str, str, str]  # as bridge.ids.Key
+
+
+class Asked(NamedTuple):
+    """A view, and how many bytes POV-Ray's scene may take; 0: any number."""
+
+    view: Any
+    budget: int = 0
 
 
 class Kept:
@@ -25,17 +33,27 @@ class Kept:
         self.outdated = False  # the scene has changed since
         self._model: Any = model
         self._cut: Any = None
+        self._asked: Asked | None = None  # what the cut is for
 
     @property
     def closed(self) -> bool:
         return self._model is None
 
-    def cut(self, view: Any) -> Any:
-        """For this view; the last one when it was for the same. Valid until the next call."""
-        if self._cut is None:
-            self._cut = native.Cut(self._model, view)
-        elif self._cut.view != view:
-            self._cut.step(view)
+    def cut(self, asked: Asked) -> Any:
+        """For this view; the last one when it was for the same. A budget may make the Pixel Error
+        of its `view` larger. Valid until the next call."""
+        if self._asked == asked:
+            return self._cut
+        if asked.budget:
+            made = native.Cut(self._model, asked.view, None, native.Budget(bytes=asked.budget))
+            made.view = replace(made.view, pixel_error=made.pixel_error)
+            self._drop_cut()
+            self._cut = made
+        elif self._cut is None:
+            self._cut = native.Cut(self._model, asked.view)
+        else:
+            self._cut.step(asked.view)
+        self._asked = asked
         return self._cut
 
     def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[Any, int]:
@@ -58,7 +76,7 @@ class Kept:
     def _drop_cut(self) -> None:
         if self._cut is not None:
             self._cut.close()
-            self._cut = None
+            self._cut, self._asked = None, None
 
 
 _kept: dict[str, Kept] = {}

@@ -65,13 +65,14 @@ def of_viewport(camera, region, view):
     return seen, (region.width, region.height)
 
 
-def picture(kept, view, mode, seen, size, folder, program, new_job):
+def picture(kept, asked, mode, seen, size, folder, program, new_job):
     """The image with its legend, top row first. On any thread: no bpy in here. `seen`: the camera
     to see it from, None for the view's own."""
     with kept.lock:
         if kept.closed:
             raise work.Stopped
-        cut = kept.cut(view)
+        cut = kept.cut(asked)
+        view = cut.view
         cut.set_colors(false_colors.colors(cut, mode))
         shown = replace(view, border=(0, 0, 0, 0), width=size[0], height=size[1])
         if seen is None:
@@ -117,11 +118,11 @@ class _Request:
             camera = native.Camera("", False, (0,) * 3, (0,) * 3, (0,) * 3, (0,) * 3, 0.01)
             self.seen, self.size = of_viewport(camera, region, area.spaces.active.region_3d)
 
-    def make(self, kept, view, new_job):
+    def make(self, kept, asked, new_job):
         with tempfile.TemporaryDirectory(prefix="lodestone-colors-") as folder:
-            size = self.size or (view.width, view.height)
+            size = self.size or (asked.view.width, asked.view.height)
             return picture(
-                kept, view, self.mode, self.seen, size, Path(folder), self.program, new_job
+                kept, asked, self.mode, self.seen, size, Path(folder), self.program, new_job
             )
 
 
@@ -136,10 +137,10 @@ class _Session(read_levels.Reading):
     def start_picture(self, context):
         scene = context.scene
         kept = kept_model.get(scene.name)
-        view = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+        asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
         self._outcome = {}
         self.picturing = True
-        self.start(lambda: self.asked.make(kept, view, self.work.new_job))
+        self.start(lambda: self.asked.make(kept, asked, self.work.new_job))
 
 
 class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, bpy.types.Operator):
@@ -174,12 +175,12 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
         """At once, with what was read last where that is still so."""
         scene = context.scene
         try:
-            asked = self._asked(context)
+            request = self._asked(context)
             kept = kept_model.get(scene.name)
             if kept is None or kept.outdated or kept.frame != scene.frame_current:
                 kept = read_levels.read_levels(scene)
-            view = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
-            into_image(asked.make(kept, view, work.Work().new_job))
+            asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+            into_image(request.make(kept, asked, work.Work().new_job))
         except FAILURES as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}

@@ -7,7 +7,7 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 import bpy
 
 from .. import extract_engine, handlers
-from ..bridge import quality
+from ..bridge import lenses, quality
 from ..bridge.settings import SceneSettings
 from ..core import kept_model, motion_file, store_path
 from ..core.native import lodestone_native as native
@@ -129,11 +129,15 @@ def redraw(context):
 
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
-    """Cameras may move: the view is that of the moment. Everything else makes it out of date."""
+    """Cameras and lenses may move: they are those of the moment. Everything else makes it out of
+    date."""
     for update in depsgraph.updates:
         if not (update.is_updated_transform or update.is_updated_geometry):
             continue
-        if isinstance(update.id, bpy.types.Object) and update.id.type not in {"CAMERA", "LIGHT"}:
+        item = update.id
+        if not isinstance(item, bpy.types.Object) or item.type in {"CAMERA", "LIGHT"}:
+            continue
+        if item.instance_type != "NONE" or not lenses.is_lens(item.original):
             kept_model.outdate()
             return
 
