@@ -290,7 +290,7 @@ TEST(Store, FilesOfTheUserAreNotTakenForUnusedOnes) {
     store.write(rich_model(), {});
     const std::vector<std::string> mine{"i/holiday.png", "r/chair.glb", "r/0123456789ABCDEF.glb",
                                         "r/notes.tmp", "b/0123456789abcde.bound"};
-    const std::vector<std::string> ours{"r/0123456789abcdef.glb", "r/.lodestone-1-2.tmp"};
+    const std::vector<std::string> ours{"r/fedcba9876543210.glb", "r/.lodestone-1-2.tmp"};
     for (const auto* names : {&mine, &ours}) {
         for (const std::string& name : *names) {
             fs::create_directories((store.folder() / name).parent_path());

@@ -425,14 +425,4 @@ std::set<std::string> files_of(const Model& model) {
     return files;
 }
 
-std::set<std::string> files_of_tileset(const std::string& text) {
-    std::set<std::string> files;
-    try {
-        files = files_of(model_of_tileset(text));
-    } catch (const Error&) {
-        files.clear();
-    }
-    return files;
-}
-
 }  // namespace lodestone::segment

@@ -30,7 +30,4 @@ std::string tileset_text(const Model& model);
 /// wrong; nothing in the text is trusted.
 Model model_of_tileset(const std::string& text);
 
-/// All files a tileset.json's model needs; empty when it cannot be read.
-std::set<std::string> files_of_tileset(const std::string& text);
-
 }  // namespace lodestone::segment

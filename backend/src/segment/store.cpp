@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <set>
+#include <string>
 
 namespace lodestone::segment {
 namespace {
@@ -16,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
+constexpr size_t kStem = 16;  // characters of a file's name before its ending
 
 /// What a stranger sees of a representation.
 Mesh drawable(const Representation& representation) {
@@ -36,17 +39,36 @@ bool ours(const fs::path& name) {
     const std::string ending = name.extension().string();
     if (ending == ".tmp")
         return stem.starts_with(".lodestone-");
-    return kEndings.contains(ending) && stem.size() == 16 &&
+    return kEndings.contains(ending) && stem.size() == kStem &&
            stem.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Of r/, b/ and i/; `wanted` are relative names.
-void remove_unused(const fs::path& folder, const std::set<std::string>& wanted) {
+/// All runs of 16 lower-case hexadecimal digits in a text: what its files are called is among them.
+std::set<std::string> stems_in(const std::string& text) {
+    std::set<std::string> stems;
+    size_t run = 0;
+    for (size_t i = 0; i <= text.size(); ++i) {
+        const char c = i < text.size() ? text[i] : ' ';
+        if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f')) {
+            ++run;
+            continue;
+        }
+        if (run == kStem)
+            stems.insert(text.substr(i - run, run));
+        run = 0;
+    }
+    return stems;
+}
+
+/// Of r/, b/ and i/; `wanted` are relative names, `kept` stems.
+void remove_unused(const fs::path& folder, const std::set<std::string>& wanted,
+                   const std::set<std::string>& kept) {
     for (const char* part : {"r", "b", "i"}) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / part, error)) {
             const fs::path name = entry.path().filename();
-            if (ours(name) && !wanted.contains(text(part, "/", name.string())))
+            if (ours(name) && !kept.contains(name.stem().string()) &&
+                !wanted.contains(text(part, "/", name.string())))
                 fs::remove(entry.path(), error);
         }
     }
@@ -202,17 +224,16 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     bytes += write_pictures(model, job);
     job.check();
 
-    std::set<std::string> wanted;
+    std::set<std::string> before;  // of the previous one, which somebody may be reading
     const fs::path tileset = folder_ / "tileset.json";
     if (exists())
-        wanted = files_of_tileset(read_file(tileset, kMostTilesetBytes));
+        before = stems_in(read_file(tileset, kMostTilesetBytes));
     const std::string text = tileset_text(model);
     if (text.size() > kMostTilesetBytes)
         fail(Status::Io, "'", tileset.string(), "' would have ", text.size(), " bytes; at most ",
              kMostTilesetBytes, " are read");
     write_file(tileset, text);
-    wanted.merge(files_of(model));
-    remove_unused(folder_, wanted);
+    remove_unused(folder_, files_of(model), before);
     job.progress(1);
     return bytes + text.size();
 }
