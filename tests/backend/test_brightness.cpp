@@ -129,6 +129,38 @@ TEST_F(Brightness, TexturedLeavesStayAsBrightWhenTheyArePruned) {
     expect_as_bright(model, "textured tree", 2, 0.25);
 }
 
+TEST_F(Brightness, PagesShowAtTheSidesOfABookThatIsABox) {
+    // A pile shows little else of them: it was .63 as bright where each was as dark as its cover.
+    constexpr int kSheets = 24;
+    Mesh book;
+    for (const double z : {0.0, 0.04})
+        append(book, shapes::box({0, 0, z}, {0.17, 0.24, z + 0.003}), {});
+    append(book, shapes::box({0, 0, 0}, {0.003, 0.24, 0.04}), {});
+    book.slots.assign(book.triangles.size(), 0);
+    for (int sheet = 0; sheet < kSheets; ++sheet) {
+        const double z = 0.003 + 0.037 * (sheet + 0.5) / kSheets;
+        append(book, shapes::quad(0.16f, 0.23f), models::moved(0.005, 0.005, z), 1);
+    }
+    Model model;
+    model.root = models::add_leaf(model, "book", book, models::colored("cover", glm::dvec3(0.03)));
+    Representation& finest = model.objects[model.root].representations[0];
+    finest.materials.push_back(static_cast<uint32_t>(model.materials.size()));
+    model.materials.push_back(models::colored("paper", glm::dvec3(0.8)));
+    summarize(finest, model);
+    Problems problems;
+    build::build_hierarchy(model, segment::Store(scratch("book")), build::Settings{}, problems, {});
+    const Representation& last = model.objects[model.root].representations.back();
+    ASSERT_EQ(last.summary.kind, Kind::Mesh);
+    const Mesh& box = last.mesh();
+    ASSERT_EQ(box.triangles.size(), 12u);
+    ASSERT_TRUE(model.materials[last.materials[0]].vertex_colors);
+    float cover = 0;
+    float sides = 0;
+    for (size_t i = 0; i < box.colors.size(); ++i)
+        (std::abs(box.normals[i].z) > 0.5f ? cover : sides) += box.colors[i].x;
+    EXPECT_GT(sides / 16, 2 * cover / 8);
+}
+
 TEST_F(Brightness, ATextureIsBrightenedByItsScaleAndMixturesBothWays) {
     Material inner;
     inner.base_color = {0.5, 0.5, 0.9};

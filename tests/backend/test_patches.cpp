@@ -122,3 +122,29 @@ TEST_F(Patches, NothingIsUnlikeNothing) {
     const measure::Patches patches(point, sampler, *skin, {}, kSeed);
     EXPECT_EQ(patches.unlike_up_to(sphere, ray::Scene(sphere, skin), *skin, false, 0), 0);
 }
+
+TEST_F(Patches, TheSidesOfABookAreNotPaintedAsDarkAsItsCover) {
+    Mesh book = painted(shapes::box({0, 0, 0}, {1, 1, 0.03}), 0);
+    append(book, painted(shapes::box({0, 0, 0.03}, {1, 1, 0.27}), 0), {}, 1);
+    append(book, painted(shapes::box({0, 0, 0.27}, {1, 1, 0.3}), 0), {});
+    const ray::SkinPtr skin = dark_and_bright();
+    const ray::Scene scene(book, skin);
+    const measure::VisibleSampler sampler(book, scene, kSeed);
+    std::vector<measure::Cast> cast(2048);
+    for (uint32_t i = 0; i < cast.size(); ++i)
+        cast[i].count = sampler.cast(i, cast[i].points);
+    const measure::Patches patches(book, sampler, *skin, cast, kSeed);
+    Primitive box;
+    box.center = {0.5, 0.5, 0.15};
+    box.half_size = {0.5, 0.5, 0.15};
+    const Mesh mesh = tessellate_box(box);
+    const std::vector<glm::dvec4> paint = patches.paint_of(mesh, scene);
+    ASSERT_EQ(paint.size(), mesh.positions.size());
+    glm::dvec4 cover(0.0);
+    glm::dvec4 sides(0.0);
+    for (size_t i = 0; i < paint.size(); ++i)
+        (std::abs(mesh.normals[i].z) > 0.5f ? cover : sides) +=
+            glm::dvec4(paint[i].w * glm::dvec3(paint[i]), paint[i].w);
+    EXPECT_NEAR(cover.x / cover.w, 0.1, 0.005);
+    EXPECT_NEAR(sides.x / sides.w, 0.8 * 0.6 + 0.2 * 0.1, 0.05);
+}

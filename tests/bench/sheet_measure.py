@@ -24,11 +24,21 @@ def seen(picture):
     return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def parts_of(stored: Path) -> int:
-    """How many parts a stored mesh has that share no corner."""
+def _read(stored: Path) -> tuple:
     data = stored.read_bytes()
     length = int.from_bytes(data[12:16], "little")
-    text, binary = json.loads(data[20 : 20 + length]), data[28 + length :]
+    return json.loads(data[20 : 20 + length]), data[28 + length :]
+
+
+def painted(stored: Path) -> bool:
+    """Whether a stored mesh has colors of vertices."""
+    primitives = _read(stored)[0]["meshes"][0]["primitives"]
+    return any("COLOR_0" in primitive["attributes"] for primitive in primitives)
+
+
+def parts_of(stored: Path) -> int:
+    """How many parts a stored mesh has that share no corner."""
+    text, binary = _read(stored)
 
     def read(number: int):
         accessor = text["accessors"][number]

@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy
 from sheet_groups import GROUPS
 from sheet_materials import materials
-from sheet_measure import parts_of, samples, seen
+from sheet_measure import painted, parts_of, samples, seen
 from sheet_shapes import Filler
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -198,10 +198,12 @@ class Sheet:
             if lod == 0:
                 kind = "original"
             elif kind == "mesh":
-                # What pictures have judged has no other, larger error.
-                kind = "collapsed"
-                if made.max_error == made.error and not glass:
-                    parts = parts_of(store / "r" / f"{made.hash:016x}.glb")
+                # Pictures have judged what has no larger error; no group has colors of vertices.
+                kind, stored = "collapsed", store / "r" / f"{made.hash:016x}.glb"
+                if painted(stored):
+                    kind = "painted box"
+                elif made.max_error == made.error and not glass:
+                    parts = parts_of(stored)
                     kind = "pruned" if parts >= FEWEST_PARTS else "collapsed"
             elif made.max_error == made.error and kind != "composite":
                 kind = f"{kind} by pictures"

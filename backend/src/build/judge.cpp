@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/judge.h"
 
+#include "approximate/painted_box.h"
 #include "approximate/replace.h"
 #include "approximate/stand_in_material.h"
 #include "approximate/standing.h"
@@ -353,6 +354,20 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
                                                 : kPictures * pictures_->of(traced, current).error;
     candidate.error = std::max(candidate.error, seen + child_error_);
     candidate.max_error = std::max(candidate.max_error, seen + child_error_);
+}
+
+void Judge::paint(Candidate& candidate) const {
+    if (candidate.kind != Kind::Box || candidate.pictured || !patches_ ||
+        candidate.materials[0].alpha_mode != AlphaMode::Opaque || emits(candidate.materials[0]))
+        return;
+    std::optional<approximate::PaintedBox> painted = approximate::painted_box(
+        candidate.primitive, candidate.materials[0],
+        patches_->paint_of(tessellate_box(candidate.primitive), finest_scene()));
+    if (!painted)
+        return;
+    candidate.kind = Kind::Mesh;
+    candidate.mesh = std::make_shared<const Mesh>(std::move(painted->mesh));
+    candidate.materials = {std::move(painted->material)};
 }
 
 bool Judge::looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,

@@ -91,6 +91,10 @@ public:
     /// on pictures agree: what is near something else may have been all that closed a gap.
     void match_brightness(Candidate& candidate, const Mesh& finest, double used_to, const Job& job);
 
+    /// Makes an opaque box whose sides are not of one color a mesh of vertex colors, about as bright
+    /// from each side as the finest. After measure_finest().
+    void paint(Candidate& candidate) const;
+
     /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
     /// in pictures of pixels of that error.
     bool looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,

@@ -236,6 +236,17 @@ std::vector<Candidate> kept_of(std::vector<Candidate>& all,
     }
 }
 
+/// Gives boxes the colors of their sides, if something is of use then: they cost more.
+void paint(std::vector<Candidate>& kept, const std::function<void(std::vector<Candidate>&)>& keep,
+           const Judge& judge) {
+    std::vector<Candidate> painted = kept;
+    for (Candidate& candidate : painted)
+        judge.paint(candidate);
+    keep(painted);
+    if (!painted.empty())
+        kept = std::move(painted);
+}
+
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
 /// less, but do not look like the group where the next level takes over. The same children serve from
 /// less error on, where they look no worse.
@@ -314,6 +325,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     out.candidates = kept_of(out.candidates, keep, judge, *mesh, job);
     for (Candidate& candidate : out.candidates)
         judge.settle(candidate, *mesh, whole.bound.box.low.z, job);
+    paint(out.candidates, keep, judge);
     return out;
 }
 
@@ -439,8 +451,10 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         if (candidate.kind == Kind::Composite)
             judge.settle(candidate, reference.mesh, floor, job);
     }
-    if (saves)  // else children are the cheaper choice, however they look
+    if (saves) {  // else children are the cheaper choice, however they look
+        paint(useful, keep, judge);
         seal(useful, model, group, reference.mesh, uses, source, judge, job);
+    }
     out.candidates = std::move(useful);
     return out;
 }

@@ -17,13 +17,33 @@ constexpr double kAmbient = 0.25;
 // The smallest patches are so many times half as wide as the bound.
 constexpr int kHalvings = 10;
 
+// Of the colors seen, over their mean, the root of the mean square: less is one color.
+constexpr double kOneColor = 0.1;
+
+ray::Shown shown_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit) {
+    const uint16_t slot = mesh.slot(hit.triangle);
+    return skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
+}
+
+/// Of all light on a surface that faces a lamp; `facing`: the cosine.
+double light_of(double facing) {
+    return kAmbient + (1 - kAmbient) * facing;
+}
+
 glm::dvec3 light_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit,
                     const glm::dvec3& towards) {
-    const uint16_t slot = mesh.slot(hit.triangle);
-    const ray::Shown shown =
-        skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
+    const ray::Shown shown = shown_at(mesh, skin, hit);
     const double facing = std::abs(glm::dot(normal_at(mesh, hit, towards), towards));
-    return (kAmbient + (1 - kAmbient) * facing) * shown.color + shown.emission;
+    return light_of(facing) * shown.color + shown.emission;
+}
+
+/// Obliquely beside the eye, around it by the golden angle, not below it.
+glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
+    const double turn = 2.399963229728653 * static_cast<double>(number);
+    const glm::dvec3 other = std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
+    const glm::dvec3 up = glm::cross(towards, right);
+    return glm::normalize(towards + std::cos(turn) * right + std::abs(std::sin(turn)) * up);
 }
 
 /// Which of six sides something is seen from.
@@ -64,11 +84,21 @@ Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::S
                 towards = cosine_direction(at.seen_from, u[2], u[3]);
             }
             const ray::Hit hit{true, at.triangle, at.u, at.v, 0, at.point};
-            seen_.push_back({0, at.point, towards, light_at(finest, skin, hit, towards)});
+            seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards),
+                             shown_at(finest, skin, hit), light_at(finest, skin, hit, towards)});
             low = glm::min(low, at.point);
             mean_ += seen_.back().light;
         }
     }
+    glm::dvec3 color(0.0);
+    for (const Seen& seen : seen_)
+        color += seen.shown.color / static_cast<double>(seen_.size());
+    double off = 0;
+    for (const Seen& seen : seen_) {
+        const glm::dvec3 from_mean = seen.shown.color - color;
+        off += glm::dot(from_mean, from_mean) / static_cast<double>(seen_.size());
+    }
+    colored_ = off > kOneColor * kOneColor * glm::dot(color, color);
     for (Seen& seen : seen_)
         seen.patch = patch_of(seen.towards, (seen.point - low) / (2 * radius_));
     std::stable_sort(seen_.begin(), seen_.end(),
@@ -135,6 +165,79 @@ double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, cons
             return side * (halvings == 0 ? std::min(found.off / kMostOff, kMostFarther) : 1);
     }
     return 0;
+}
+
+std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene& finest) const {
+    // More would take steps (dark trousers under a bright shirt) for slopes that go on.
+    constexpr int kRounds = 2;
+    constexpr double kFromBelow = 0.125;  // how much eyes below the horizon count
+    struct Sample {
+        std::array<uint32_t, 3> vertices;  // of the stand-in
+        glm::dvec3 near;                   // how near to each, 1 in all
+        glm::dvec3 wanted;                 // light of the finest
+        double light;                      // on the stand-in
+        double weight;
+    };
+    std::vector<glm::dvec4> out(stand_in.positions.size(), glm::dvec4(0.0));
+    if (!colored_)
+        return out;
+    const ray::Burst burst;
+    const ray::Scene scene(stand_in);
+    const double lift = ray_lift(radius_);
+    std::vector<Sample> samples;
+    glm::dvec4 all(0.0);
+    glm::dvec4 both(0.0);  // where the stand-in is seen, too
+    for (size_t i = 0; i < seen_.size(); ++i) {
+        const Seen& seen = seen_[i];
+        const glm::dvec3 sun = sun_beside(seen.towards, i);
+        double facing = std::max(0.0, glm::dot(seen.normal, sun));
+        if (facing > 0 && finest.occluded(seen.point + lift * seen.normal, sun))
+            facing = 0;
+        const glm::dvec3 wanted = light_of(facing) * seen.shown.color;
+        const double weight = seen.towards.z >= 0 ? 1 : kFromBelow;
+        all += glm::dvec4(weight * wanted, weight);
+        const ray::Hit hit =
+            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+        if (!hit.hit)
+            continue;
+        both += glm::dvec4(weight * wanted, weight);
+        const Triangle& t = stand_in.triangles[hit.triangle];
+        const double on_it = glm::dot(normal_at(stand_in, hit, seen.towards), sun);
+        samples.push_back({{t.x, t.y, t.z},
+                           {1 - hit.u - hit.v, hit.u, hit.v},
+                           wanted,
+                           light_of(std::max(0.0, on_it)),
+                           weight});
+    }
+    // What is seen beside the stand-in is in the mean of all.
+    glm::dvec3 more(1.0);
+    for (int i = 0; i < 3; ++i) {
+        if (both[i] > 0)
+            more[i] = all[i] / all.w / (both[i] / both.w);
+    }
+    // Likeliest colors by expectation and maximization (Richardson 1972, Lucy 1974): none gets below
+    // 0, and all light together is right in each round.
+    std::fill(out.begin(), out.end(), glm::dvec4(1.0));
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<glm::dvec4> sums(out.size(), glm::dvec4(0.0));
+        for (const Sample& sample : samples) {
+            glm::dvec3 color(0.0);
+            for (int k = 0; k < 3; ++k)
+                color += sample.near[k] * glm::dvec3(out[sample.vertices[k]]);
+            const glm::dvec3 ratio = sample.wanted / glm::max(color, glm::dvec3(1e-9));
+            for (int k = 0; k < 3; ++k)
+                sums[sample.vertices[k]] +=
+                    sample.weight * sample.near[k] * glm::dvec4(ratio, sample.light);
+        }
+        for (size_t i = 0; i < out.size(); ++i) {
+            const double light = sums[i].w;
+            out[i] = light > 0 ? glm::dvec4(glm::dvec3(out[i]) * glm::dvec3(sums[i]) / light, light)
+                               : glm::dvec4(0.0);
+        }
+    }
+    for (glm::dvec4& one : out)
+        one = glm::dvec4(more * glm::dvec3(one), one.w);
+    return out;
 }
 
 }  // namespace lodestone::measure

@@ -31,11 +31,20 @@ public:
     double unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, const ray::Skin& skin,
                         bool matched, double least) const;
 
+    /// Colors (red, green, blue) of the vertices of an opaque, matte, convex stand-in in which it shows
+    /// about as much light as the finest, from each side and at each place, and (the fourth) how much
+    /// light falls around each vertex; 0 where nothing was seen, and for what has one color. The light is that of a sky and of a
+    /// sun obliquely beside the eye, not below it, with shadows; eyes below the horizon count less.
+    /// `finest`: the scene of the mesh this was made of. Any thread.
+    std::vector<glm::dvec4> paint_of(const Mesh& stand_in, const ray::Scene& finest) const;
+
 private:
     struct Seen {
         uint64_t patch;  // the smallest one; of larger ones the first bits
         glm::dvec3 point;
         glm::dvec3 towards;  // the eye, unit length
+        glm::dvec3 normal;   // on its side
+        ray::Shown shown;    // what it is made of
         glm::dvec3 light;
     };
     struct Difference {
@@ -46,6 +55,7 @@ private:
 
     std::vector<Seen> seen_;  // by patch
     glm::dvec3 mean_{0.0};    // light
+    bool colored_ = false;    // in more than one color
     double radius_ = 0;
 };
 
