@@ -50,6 +50,25 @@ TEST(Deviation, OfAMeshFromItselfIsNothing) {
     }
 }
 
+TEST(Deviation, BoxesOnAWideGroundWereMissedRoughlyForEverySecondCornerIsBelow) {
+    Mesh finest = shapes::quad(30, 30);
+    const Mesh ground = finest;
+    for (int i = 0; i < 4; ++i) {
+        Mesh box;
+        for (int k = 0; k < 8; ++k)  // bottom, top, bottom, top, as many programs list them
+            box.positions.emplace_back(8 + 3 * i + 0.8 * (k / 4), 8 + 0.8 * (k / 2 % 2),
+                                       0.8 * (k % 2));
+        box.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                         {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+        append(finest, box, {});
+    }
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    for (uint64_t seed = 1; seed <= 32; ++seed) {
+        const DeviationReference reference(finest, {512, 2048, seed});
+        EXPECT_NEAR(reference.roughly(ground, {}, {}, kAny, {}).max, 0.8, 1e-6) << seed;
+    }
+}
+
 TEST(Deviation, OfParallelQuadsIsTheirDistance) {
     const Mesh quad = shapes::quad(1, 2);
     for (const double d : {1e-4, 0.25, 3.0}) {

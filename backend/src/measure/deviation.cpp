@@ -28,6 +28,11 @@ constexpr size_t kAskedOfMixed = 256;
 // One point of so many is asked for a rough answer.
 constexpr uint32_t kFew = 2;
 
+/// One of kFew points, by no regular step: the corners of boxes are listed bottom, top, bottom, top.
+bool is_of_few(size_t i) {
+    return static_cast<uint32_t>(i) * 0x9E3779B9u >= 0x80000000u;
+}
+
 /// A stand-in of few triangles is not asked at more points than some of each, or than a quarter of
 /// `all`: what it hides, or has lost, the points of the finest tell.
 uint32_t samples_for(const Mesh& stand_in, uint32_t most, uint32_t all) {
@@ -219,8 +224,10 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
             add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), vertices,
                                  ray_lift(diameter_ / 2), options.seed, job, points);
     }
-    for (size_t i = 0; i < points.size(); i += kFew)
-        few_.points.push_back(points[i]);
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (is_of_few(i))
+            few_.points.push_back(points[i]);
+    }
     for (Seen* seen : {&seen_, &few_})
         seen->looks = std::make_unique<const VisibleLooks>(seen->points, palette_);
 }
@@ -239,8 +246,10 @@ Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surfa
                                       std::span<const ray::Closest> nearest, double useless,
                                       const Job& job) const {
     std::vector<ray::Closest> few;
-    for (size_t i = 0; i < nearest.size(); i += kFew)
-        few.push_back(nearest[i]);
+    for (size_t i = 0; i < nearest.size(); ++i) {
+        if (is_of_few(i))
+            few.push_back(nearest[i]);
+    }
     return compare(few_, stand_in, surface,
                    samples_for(stand_in, options_.samples / kFew, options_.samples),
                    std::max(options_.most_vertices, kLevelVertices) / kFew, few, useless, job);
