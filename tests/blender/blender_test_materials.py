@@ -437,16 +437,10 @@ class Materials(MaterialCase):
 
     def test_rough_glass_was_drawn_clear_without_a_word(self):
         self.principled.inputs["Transmission"].default_value = 1.0
-        for roughness, metallic, expected in (
-            (0.0, 0.0, set()),
-            (0.09, 0.0, set()),
-            (0.5, 0.0, {"rough_glass"}),
-            (0.5, 1.0, set()),  # is no glass
-        ):
+        for roughness, metallic, named in ((0.09, 0, False), (0.5, 1, False), (0.5, 0, True)):
             self.principled.inputs["Roughness"].default_value = roughness
             self.principled.inputs["Metallic"].default_value = metallic
-            self.assertEqual(self.translate()[1], expected, (roughness, metallic))
-        self.principled.inputs["Metallic"].default_value = 0.0
+            self.assertEqual("rough_glass" in self.translate()[1], named, (roughness, metallic))
         self.picture(self.principled.inputs["Roughness"])
         self.assertEqual(self.translate()[1], {"rough_glass"})
 
