@@ -311,6 +311,24 @@ class Drawn(unittest.TestCase):
             pinned.property_unset("pin_render")
             bpy.ops.lodestone.update_levels()
 
+    def test_lenses_in_hidden_collections_counted_in_the_panel_s_numbers_alone(self):
+        plain = self.statistics().triangles
+        kept = scenes.collection("Lenses", self.scene.collection)
+        self.addCleanup(bpy.data.collections.remove, kept)
+        made = add_lens((40, 0, 0), radius=20.0, strength=64.0)
+        self.scene.collection.objects.unlink(made)
+        kept.objects.link(made)
+        bpy.context.view_layer.update()
+        refined = self.statistics().triangles
+        self.assertGreater(refined, plain)
+        kept.hide_render = True
+        self.assertEqual(self.statistics().triangles, plain)
+        kept.hide_render = False
+        self.assertEqual(self.statistics().triangles, refined)
+        layer = bpy.context.view_layer.layer_collection.children["Lenses"]
+        layer.exclude = True
+        self.assertEqual(self.statistics().triangles, plain)
+
     def test_equal_views_are_chosen_once(self):
         add_lens((40, 0, 0))
         bpy.context.view_layer.update()

@@ -14,6 +14,7 @@ from ..core.picture import Settings
 from ..core.problems import Problems
 from . import camera as cameras
 from . import lenses, preview_scene, quality, viewport_view
+from .scene_check import rendered_objects
 from .settings import SceneSettings
 
 _chooser = view_statistics.Chooser()
@@ -52,7 +53,7 @@ def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
         _pinned.follow(store, scene)
         model, decided, chooser = _pinned.model, _pinned.decided(), _pinned.chooser
     parts_of = lenses.parts_stored(model)
-    detail = lenses.detail(lens_objects(scene), parts_of, Problems())
+    detail = lenses.detail(rendered_lenses(scene), parts_of, Problems())
     settings = Settings(
         pixel_error=own.pixel_error_viewport if own.use_levels else 0.0,
         modifiers=native.Modifiers(lenses=detail) if detail else None,
@@ -93,7 +94,7 @@ def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None
     """As F12 has them, but for motion, which takes another frame to see: `closing` is the camera
     as the shutter closes, where it is known."""
     own = SceneSettings(scene)
-    detail = lenses.detail(lens_objects(scene), parts_of, Problems())
+    detail = lenses.detail(rendered_lenses(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark
     return Settings(
         pixel_error=quality.pixel_error(own),
@@ -112,6 +113,13 @@ def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None
 
 def lens_objects(scene: Any) -> list[Any]:
     return [item for item in scene.objects if item.type == "EMPTY" and lenses.is_lens(item)]
+
+
+def rendered_lenses(scene: Any) -> list[Any]:
+    """Without those whose collections are excluded or hidden from renders."""
+    found = lens_objects(scene)
+    rendered = rendered_objects(list(scene.view_layers)) if found else {}
+    return [item for item in found if item in rendered]
 
 
 def _hashable(settings: Settings) -> Hashable:
