@@ -3,9 +3,11 @@
 
 import math
 import os
+import shutil
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import bmesh
 import bpy
@@ -15,6 +17,8 @@ from lodestone.bridge import lenses, live_view
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems
 from lodestone.operators import screen_lenses
+
+HAVE_POVRAY = shutil.which(os.environ.get("LODESTONE_POVRAY", "povray")) is not None
 
 
 def ball(name, location, collection=None, subdivisions=3, data=None):
@@ -113,6 +117,37 @@ class Adding(unittest.TestCase):
         bpy.ops.lodestone.copy_decisions()
         self.assertTrue(lenses.is_lens(target))
         self.assertEqual(target.lodestone.lens.strength, 9.0)
+
+
+@unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
+class Animations(unittest.TestCase):
+    def test_keys_of_strength_and_of_a_screen_lens_stayed_as_in_the_frame_that_was_open(self):
+        scene = scenes.fresh()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        scene.render.engine = "LODESTONE_POVRAY"
+        scene.render.resolution_x, scene.render.resolution_y = 16, 9
+        scene.render.filepath = os.path.join(folder.name, "frame_")
+        ball("Ball", (0, 0, 0), subdivisions=1)
+        lens = add_lens().lodestone.lens
+        bpy.ops.lodestone.screen_lens_add()
+        disc = scene.camera.data.lodestone.screen_lenses[0]
+        for frame, strength, x in ((1, 2.0, 0.25), (2, 8.0, 0.75)):
+            lens.strength, disc.x = strength, x
+            lens.keyframe_insert("strength", frame=frame)
+            disc.keyframe_insert("x", frame=frame)
+        scene.frame_set(1)
+        scene.frame_start, scene.frame_end = 1, 2
+        seen, real = [], lenses.modifiers
+
+        def modifiers(*arguments):
+            made = real(*arguments)
+            seen.append((made.lenses[0].strength, made.screen_lenses[0].center[0]))
+            return made
+
+        with mock.patch.object(lenses, "modifiers", modifiers):
+            bpy.ops.render.render(animation=True)
+        self.assertEqual(seen, [(2.0, 0.25), (8.0, 0.75)])
 
 
 class OnTheScreen(unittest.TestCase):

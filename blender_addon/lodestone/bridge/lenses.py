@@ -36,10 +36,10 @@ def detail(
     for item in objects:
         if item.type != "EMPTY":
             continue
-        original = item.original
-        if not is_lens(original) or original.hide_render:
+        # Of the evaluated ones: an animation being rendered writes no keys into originals
+        if not is_lens(item) or item.hide_render:
             continue
-        lens = original.lodestone.lens
+        lens = item.lodestone.lens
         listed = lens.filter != "ALL"
         if listed and lens.collection is None:
             text = f'Lens "{name_of(item)}" works on a collection, but none is chosen'
@@ -76,8 +76,8 @@ def detail(
 
 
 def screen(camera: Any) -> tuple[native.ScreenLens, ...]:
-    """Of a camera object; as many as the backend takes."""
-    settings = ids.settings_of(camera.data.original)
+    """Of a camera object (as in detail()); as many as the backend takes."""
+    settings = ids.settings_of(camera.data)
     if settings is None:
         return ()
     used = [lens for lens in settings.screen_lenses if lens.enabled]
