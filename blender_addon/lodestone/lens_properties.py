@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lenses, kept in the file: a detail lens on its Empty, screen lenses on their camera."""
+"""Lenses, kept in the file: a detail lens on its Empty, screen lenses and depth on their camera."""
 
 import bpy
 from bpy.props import (
@@ -126,6 +126,19 @@ class LODESTONE_PG_screen_lens(bpy.types.PropertyGroup):
 
 
 class LODESTONE_PG_camera(bpy.types.PropertyGroup):
+    depth_exaggeration: decided(
+        FloatProperty,
+        name="Depth Exaggeration",
+        description="How fast detail falls off beyond Focus Distance, and grows before it: 1 is as "
+        "Pixel Error asks for, at 2 what is twice as far as that is twice as coarse",
+        default=1.0,
+        min=0.0,
+        soft_min=1.0,
+        soft_max=3.0,
+        max=8.0,
+        precision=2,
+        step=10,
+    )
     screen_lenses: CollectionProperty(type=LODESTONE_PG_screen_lens, options={"HIDDEN"})
     active_screen_lens: IntProperty(name="Active Lens", options={"HIDDEN"})
 

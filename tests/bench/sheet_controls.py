@@ -2,11 +2,12 @@
 """Pictures of what controls do that no panel shows, with their numbers, for the add-on's README.
 
     BLENDER_USER_SCRIPTS=build/release/stage blender -b --factory-startup \\
-        --python tests/bench/sheet_controls.py -- [--sheets moving deforming build] [--out FOLDER]
+        --python tests/bench/sheet_controls.py -- [--sheets moving depth deforming build] [--out F]
 
 moving: a crowd of which some are carried past or stand in the dark, without and with Coarser When
-Moving or Dark. deforming: a waving flag in three frames, with each choice of Deforming Objects.
-build: false colors of the first and the second picture, with each choice of Build on Render.
+Moving or Dark. depth: false colors of rows of heads, without and with Depth Exaggeration.
+deforming: a waving flag in three frames, with each choice of Deforming Objects. build: false
+colors of the first and the second picture, with each choice of Build on Render.
 """
 
 import argparse
@@ -164,6 +165,31 @@ def moving(folder, out):
     write([beside(cells)], out / "moving.png")
 
 
+def depth(folder, out):
+    """Rows of heads that go away from the camera, the second of them in focus."""
+    scene = started(folder, 400, 225)
+    source = head("head", COLORS[0])
+    for row in range(8):
+        for column in range(-2, 3):
+            item = source if (row, column) == (0, -2) else scenes.link(source.copy())
+            item.location = (3.0 * column, 5.0 * row, 1.0)
+    scenes.sun()
+    look(scene, (0, -11, 6), (0, 8, 0), 35)
+    scene.camera.data.dof.focus_distance = 16.0
+    scene.lodestone.pixel_error_render = 0.25
+    saved(folder)
+    bpy.ops.lodestone.update_levels()
+    cells = []
+    for exaggeration in (1.0, 3.0):
+        scene.camera.data.lodestone.depth_exaggeration = exaggeration
+        bpy.context.view_layer.update()
+        bpy.ops.lodestone.false_color_picture(seen_from="CAMERA", mode="LEVEL")
+        cells.append(rows_of(bpy.data.images["Lodestone False Colors"]))
+        _, _, told = render(scene)
+        print(f"depth {exaggeration:g}: {told.triangles:,} triangles")
+    write([beside(cells)], out / "depth.png")
+
+
 def deforming(folder, out):
     """Frames 1, 9 and 17 of a flag, one line for each choice."""
     scene = started(folder, 240, 160)
@@ -244,7 +270,7 @@ def build(folder, out):
     write(lines, out / "build_on_render.png")
 
 
-SHEETS = {"moving": moving, "deforming": deforming, "build": build}
+SHEETS = {"moving": moving, "depth": depth, "deforming": deforming, "build": build}
 
 
 def main():

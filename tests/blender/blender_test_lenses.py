@@ -296,6 +296,51 @@ class Drawn(unittest.TestCase):
         self.assertGreater(found["Group 1"], plain["Group 1"])
         self.assertEqual(found["Group 0"], plain["Group 0"])
 
+    def test_depth_exaggeration_is_coarser_beyond_the_focus_and_finer_before_it(self):
+        camera = self.scene.camera
+        plain = self.chosen()
+        self.assertIsNone(lenses.modifiers((), camera, False))
+        settings, dof = camera.data.lodestone, camera.data.dof
+        before = dof.focus_distance
+        try:
+            settings.depth_exaggeration = 3.0
+            dof.focus_distance = 40.0  # the balls are 400 m away: 100 times as coarse, 64 at most
+            made = lenses.modifiers((), camera, False)
+            self.assertEqual((made.depth, made.depth_focus), (3.0, 40.0))
+            far = self.chosen()
+            dof.focus_distance = 4000.0
+            near = self.chosen()
+            numbers = self.statistics()
+            dof.focus_distance = 400.0
+            self.assertNotEqual(self.statistics().bytes, numbers.bytes)
+        finally:
+            settings.property_unset("depth_exaggeration")
+            dof.focus_distance = before
+        self.assertLess(sum(far.values()), sum(near.values()))
+        self.assertLessEqual(sum(far.values()), sum(plain.values()))
+        self.assertGreater(sum(near.values()), sum(plain.values()))
+
+    def test_the_button_exaggerates_the_depth_of_the_camera(self):
+        settings = self.scene.camera.data.lodestone
+        self.addCleanup(settings.property_unset, "depth_exaggeration")
+        self.assertEqual(bpy.ops.lodestone.depth_exaggerate(), {"FINISHED"})
+        self.assertEqual(settings.depth_exaggeration, 2.0)
+
+    def test_depth_exaggeration_is_about_what_is_in_focus(self):
+        camera = self.scene.camera
+        settings, dof = camera.data.lodestone, camera.data.dof
+        settings.depth_exaggeration = 2.0
+        target = scenes.link(bpy.data.objects.new("Focus", None))
+        target.location = (0, 0, 150)
+        dof.focus_object = target
+        bpy.context.view_layer.update()
+        try:
+            made = lenses.modifiers((), camera, False)
+            self.assertAlmostEqual(made.depth_focus, 250.0, 3)
+        finally:
+            dof.focus_object = None
+            settings.property_unset("depth_exaggeration")
+
     def test_what_is_off_screen_may_be_coarser(self):
         camera = self.scene.camera
         before = camera.location.copy()

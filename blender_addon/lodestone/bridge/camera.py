@@ -95,17 +95,23 @@ def depth_of_field(camera: Any, problems: Problems) -> tuple[float, float]:
     dof = data.dof
     if not dof.use_dof or data.type == "PANO":
         return (0.0, 0.0)
-    distance = dof.focus_distance
-    if dof.focus_object is not None:
-        matrix = camera.matrix_world
-        ahead = matrix.col[2].to_3d().normalized()
-        distance = abs(ahead.dot(matrix.translation - _focus_place(dof)))
     stop = max(dof.aperture_fstop, 1e-5)
     lens = 1.0 if data.type == "ORTHO" else data.lens * 1e-3
     if dof.aperture_blades > 2 or dof.aperture_ratio != 1.0:
         text = f'Blades of the lens of camera "{name_of(camera)}" are left out: its blur is round'
         problems.add(name_of(camera), INFO, "lens_blades", text)
-    return (max(distance, 1e-5), lens / stop)
+    return (focus_distance(camera), lens / stop)
+
+
+def focus_distance(camera: Any) -> float:
+    """Metres to the plane in focus, whether or not anything is blurred."""
+    dof = camera.data.dof
+    distance = dof.focus_distance
+    if dof.focus_object is not None:
+        matrix = camera.matrix_world
+        ahead = matrix.col[2].to_3d().normalized()
+        distance = abs(ahead.dot(matrix.translation - _focus_place(dof)))
+    return max(distance, 1e-5)
 
 
 def _focus_place(dof: Any) -> Vector:

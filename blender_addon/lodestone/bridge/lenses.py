@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What bends quality, from Blender: detail lenses are Empties, screen lenses are the camera's."""
+"""What bends quality, from Blender: detail lenses are Empties, screen lenses and depth are the
+camera's."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -7,6 +8,7 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
+from . import camera as cameras
 from . import ids
 from .ids import name_of
 from .listed import rows
@@ -105,11 +107,17 @@ def modifiers(
     dark. `closing`: the camera as the shutter closes, None: it rests. `off_screen`: what the
     picture does not show, by native.OffScreen's names; `ray_classes`: of native.Rays."""
     screen_lenses = screen(camera)
-    if not (lenses or screen_lenses or coarser or off_screen != FULL or ray_classes):
+    settings = ids.settings_of(camera.data)
+    depth = 1.0 if settings is None else settings.depth_exaggeration
+    if not (
+        lenses or screen_lenses or depth != 1.0 or coarser or off_screen != FULL or ray_classes
+    ):
         return None
     return native.Modifiers(
         lenses=lenses,
         screen_lenses=screen_lenses,
+        depth=depth,
+        depth_focus=cameras.focus_distance(camera) if depth != 1.0 else 10.0,
         when_moving=coarser,
         when_dark=coarser,
         closing=closing,

@@ -134,6 +134,8 @@ def _hashable(settings: Settings) -> Hashable:
                 for lens in modifiers.lenses
             ),
             modifiers.screen_lenses,
+            modifiers.depth,
+            modifiers.depth_focus,
             modifiers.when_dark,
             modifiers.off_screen,
             modifiers.ray_classes,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The list of a camera's screen lenses: adding, removing, and dragging one on the image."""
+"""The list of a camera's screen lenses: adding, removing, and dragging one on the image. And the
+button that begins Depth Exaggeration."""
 
 import bpy
 from bpy.types import Operator
@@ -146,6 +147,17 @@ class LODESTONE_OT_screen_lens_drag(_OfCamera, Operator):
         return outcome
 
 
+class LODESTONE_OT_depth_exaggerate(_OfCamera, Operator):
+    bl_idname = "lodestone.depth_exaggerate"
+    bl_label = "Exaggerate Depth"
+    bl_description = "Draw what is twice as far as this camera's focus twice as coarse"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        camera_of(context).lodestone.depth_exaggeration = 2.0
+        return {"FINISHED"}
+
+
 def camera_region(context, camera):
     """(region, image_corners()) of a 3D view of this window that looks through the scene's camera,
     when that has this data; else None."""
@@ -192,5 +204,6 @@ _CLASSES = (
     LODESTONE_OT_screen_lens_add,
     LODESTONE_OT_screen_lens_remove,
     LODESTONE_OT_screen_lens_drag,
+    LODESTONE_OT_depth_exaggerate,
 )
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

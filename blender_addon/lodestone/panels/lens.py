@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Detail Lens in Properties > Data of an Empty, Screen Lenses in Properties > Data of a camera."""
+"""Detail Lens in Properties > Data of an Empty; Screen Lenses and Levels of Detail in those of a
+camera."""
 
 import bpy
 from bpy.types import Panel, UIList
 
-from ..bridge import lenses
+from ..bridge import ids, lenses
 from ..operators import screen_lenses
 
 
@@ -96,9 +97,38 @@ class LODESTONE_CAMERA_PT_screen_lenses(Panel):
         layout.operator("lodestone.screen_lens_drag", icon="VIEW_PAN")
 
 
+class LODESTONE_CAMERA_PT_levels(Panel):
+    bl_label = "Levels of Detail"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "data"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return getattr(context, "camera", None) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        settings, dof = ids.settings_of(context.camera), context.camera.dof
+        if settings is None:  # looking must store nothing
+            layout.operator("lodestone.depth_exaggerate", icon="FULLSCREEN_ENTER")
+            return
+        layout.use_property_split = True
+        layout.enabled = context.camera.library is None
+        layout.prop(settings, "depth_exaggeration")
+        column = layout.column()
+        column.active = settings.depth_exaggeration != 1.0
+        column.prop(dof, "focus_object", text="Focus on Object")
+        sub = column.column()
+        sub.active = dof.focus_object is None
+        sub.prop(dof, "focus_distance")
+
+
 _CLASSES = (
     LODESTONE_EMPTY_PT_lens,
     LODESTONE_UL_screen_lenses,
     LODESTONE_CAMERA_PT_screen_lenses,
+    LODESTONE_CAMERA_PT_levels,
 )
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)
