@@ -77,7 +77,7 @@ class Window(unittest.TestCase):
         self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate"))
 
     def test_seeing(self):
-        self.succeeds(self.blender("window_seeing.py"))
+        self.succeeds(self.blender("window_seeing.py", "--enable-event-simulate"))
 
     def test_viewport(self):
         child = self.blender("window_viewport.py")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inside a Blender window (see test_window.py): false colors over the viewport, and Compare."""
+"""Inside a Blender window (see test_window.py): false colors over the viewport, Compare, and screen
+lenses that are dragged."""
 
 import math
 import sys
@@ -55,6 +56,7 @@ def colors_are_drawn_and_follow_the_camera():
 
     yield from steps.wait_until(read)
     chosen = bpy.context.window_manager.lodestone_overlay
+    painted = {item.name: tuple(item.color) for item in bpy.data.objects}
     for mode in ("LEVEL", "ERROR", "COST"):
         chosen.mode = mode
 
@@ -63,6 +65,7 @@ def colors_are_drawn_and_follow_the_camera():
 
         yield from steps.wait_until(drawn)
         assert chosen.mode == mode, "an exception while it was drawn turns it off"
+        assert painted == {item.name: tuple(item.color) for item in bpy.data.objects}
     before = overlay()._shown._batch
     with steps.window():
         bpy.ops.ed.undo_push(message="Before")
@@ -107,6 +110,49 @@ def compare_fills_the_slots():
     assert compare_plan.get("Scene").pixels > 100
 
 
+def a_screen_lens_is_dragged_in_the_camera_view():
+    from lodestone.operators import screen_lenses
+
+    context = bpy.context
+    first = context.window_manager.windows[0]
+    camera = context.scene.camera.data
+    with steps.window():
+        bpy.context.region_data.view_perspective = "CAMERA"
+        bpy.ops.lodestone.screen_lens_add()
+    lens = camera.lodestone.screen_lenses[0]
+    for _ in range(4):
+        yield
+
+    def to(x, y, kind="MOUSEMOVE", value="NOTHING"):
+        region, (left, bottom, right, top) = screen_lenses.camera_region(context, camera)
+        at = (region.x + left + x * (right - left), region.y + bottom + y * (top - bottom))
+        first.event_simulate(type=kind, value=value, x=round(at[0]), y=round(at[1]))
+
+    def begin():
+        with steps.window():
+            found = bpy.ops.lodestone.screen_lens_drag("INVOKE_DEFAULT")
+        assert found == {"RUNNING_MODAL"}
+
+    begin()
+    to(0.25, 0.75)
+    yield from steps.wait_until(lambda: abs(lens.x - 0.25) < 0.02)
+    assert abs(lens.y - 0.75) < 0.02
+    before = lens.radius
+    to(0.25, 0.75, "WHEELUPMOUSE", "PRESS")
+    yield from steps.wait_until(lambda: lens.radius > before)
+    to(0.25, 0.75, "LEFTMOUSE", "PRESS")
+    to(0.25, 0.75, "LEFTMOUSE", "RELEASE")
+    for _ in range(4):
+        yield
+    begin()
+    to(0.6, 0.4)
+    yield from steps.wait_until(lambda: abs(lens.x - 0.6) < 0.02)
+    to(0.6, 0.4, "ESC", "PRESS")
+    to(0.6, 0.4, "ESC", "RELEASE")
+    yield from steps.wait_until(lambda: abs(lens.x - 0.25) < 0.02)
+    assert lens.radius > before
+
+
 def disabling_the_add_on_takes_the_colors_away():
     with steps.window():
         bpy.ops.lodestone.read_levels()
@@ -122,6 +168,7 @@ STEPS = (
     colors_are_drawn_and_follow_the_camera,
     it_is_off_when_another_file_is_opened,
     compare_fills_the_slots,
+    a_screen_lens_is_dragged_in_the_camera_view,
     disabling_the_add_on_takes_the_colors_away,
 )
 if __name__ == "__main__":
