@@ -4,9 +4,10 @@
 #include "build/beside.h"
 #include "build/environment.h"
 #include "build/flatten.h"
-#include "build/glow.h"
 #include "build/judge.h"
+#include "build/kept.h"
 #include "build/levels.h"
+#include "build/measured_levels.h"
 #include "build/replacements.h"
 #include "build/surroundings.h"
 #include "measure/seen_from_outside.h"
@@ -26,61 +27,6 @@ namespace {
 constexpr size_t kManyChildren = 32;
 // Rays from a triangle that decide whether anything outside can see it.
 constexpr int kRaysPerTriangle = 16;
-
-/// What makes levels worth measuring.
-struct Wanted {
-    /// The error from which on a mesh of so many triangles is no use, whatever else there is.
-    std::function<double(size_t triangles)> useless;
-    /// Of what is kept in any case and costs less than a level; infinite where there is nothing.
-    double solid = std::numeric_limits<double>::infinity();
-    /// Errors up to this are told in any case where they are measured.
-    double told = 0;
-};
-
-/// From the coarsest on: what will not be near enough, by the one before it, is not measured at all.
-void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
-                const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Wanted& wanted, Judge& judge, const Job& job) {
-    // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
-    // in groups: a tenth; of 275 that would have to be, one).
-    constexpr double kMostNearer = 4;
-    if (targets.empty())
-        return;
-    Mesh plain;
-    const Mesh& source = without_unseen_colors(mesh, materials, plain);
-    std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
-    std::vector<Candidate> measured;
-    std::vector<double> nexts{wanted.solid};  // where a level may end, and one of them takes over
-    double coarser = 0;
-    for (size_t i = levels.size(); i-- > 0;) {
-        Mesh& level = levels[i];
-        // What it saves is asked for half way to the next, on a scale of powers.
-        const double useless = wanted.useless(level.triangles.size());
-        double most = wanted.told;
-        for (const double next : nexts)
-            most = std::max(
-                most, std::isfinite(next) ? std::min(next, useless * useless / next) : useless);
-        if (level.empty() || (useless > 0 && coarser > kMostNearer * useless)) {
-            coarser /= kMostNearer;
-            continue;
-        }
-        const std::vector<ray::Closest> nearest = judge.repaint(level, job);
-        Candidate candidate;
-        candidate.mesh = std::make_shared<Mesh>(std::move(level));
-        candidate.materials = materials;
-        candidate.unproven = true;
-        judge.measure_mesh(candidate, job, most, nearest);
-        coarser = std::min(candidate.error, std::max(most, useless));
-        if (!std::isfinite(coarser))
-            coarser = most;  // it is farther than that
-        if (candidate.error < wanted.solid)
-            nexts.push_back(candidate.error);
-        if (std::isfinite(candidate.error))
-            measured.push_back(std::move(candidate));
-    }
-    candidates.insert(candidates.end(), std::make_move_iterator(measured.rbegin()),
-                      std::make_move_iterator(measured.rend()));
-}
 
 /// What a group's children cost within rising errors.
 class Children {
@@ -170,83 +116,6 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
     });
 }
 
-/// Whether both stand for one thing that was tried.
-bool is_same(const Candidate& a, const Candidate& b) {
-    return a.kind == b.kind && a.mesh == b.mesh && a.composite == b.composite &&
-           a.primitive.center == b.primitive.center &&
-           a.primitive.half_size == b.primitive.half_size;
-}
-
-/// Looks at those of `some` that nobody has looked at: what shows too little is in neither list any
-/// more, and what does not look like the finest is farther off. Whether anything changed.
-bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
-           const Job& job) {
-    bool changed = false;
-    for (size_t i = some.size(); i-- > 0;) {
-        if (!some[i].unproven)
-            continue;
-        Candidate proven = some[i];
-        const double next =
-            i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
-        const bool good = judge.prove(proven, next, job);
-        changed = changed || !good || proven.error > some[i].error;
-        for (size_t k = all.size(); k-- > 0;) {
-            if (!is_same(all[k], some[i]))
-                continue;
-            if (good)
-                all[k] = proven;
-            else
-                all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
-        }
-        if (good)
-            some[i] = std::move(proven);
-        else
-            some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-    return changed;
-}
-
-/// Those that `keep` leaves of all (finest first), as bright as the finest. What turns out to be
-/// farther off than it was thought is one among all again, what shows too little is gone.
-std::vector<Candidate> kept_of(std::vector<Candidate>& all,
-                               const std::function<void(std::vector<Candidate>&)>& keep,
-                               Judge& judge, const Mesh& finest, const Job& job) {
-    for (;;) {
-        std::vector<Candidate> kept = all;
-        keep(kept);
-        if (prove(kept, all, judge, job))
-            continue;
-        bool farther = false;
-        for (size_t i = 0; i < kept.size(); ++i) {
-            const bool last = i + 1 == kept.size();
-            const Candidate before = kept[i];
-            judge.match_brightness(
-                kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
-                job);
-            farther = farther || kept[i].error > before.error;
-            if (before.kind != Kind::Mesh || before.matched == kept[i].matched)
-                continue;
-            for (Candidate& candidate : all) {
-                if (candidate.mesh == before.mesh)
-                    candidate = kept[i];
-            }
-        }
-        if (!farther)
-            return kept;
-    }
-}
-
-/// Gives boxes the colors of their sides, if something is of use then: they cost more.
-void paint(std::vector<Candidate>& kept, const std::function<void(std::vector<Candidate>&)>& keep,
-           const Judge& judge) {
-    std::vector<Candidate> painted = kept;
-    for (Candidate& candidate : painted)
-        judge.paint(candidate);
-    keep(painted);
-    if (!painted.empty())
-        kept = std::move(painted);
-}
-
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
 /// less, but do not look like the group where the next level takes over. The same children serve from
 /// less error on, where they look no worse.
@@ -272,18 +141,6 @@ uint64_t seed_of(const Object& object, const Settings& settings) {
 }
 
 }  // namespace
-
-Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 24;  // raised whenever the same settings give other stand-ins
-    return Hasher()
-        .value(kAlgorithms)
-        .value(settings.level_ratio)
-        .value(settings.rays)
-        .value(settings.samples)
-        .value(settings.group_triangles)
-        .value(settings.seed)
-        .result();
-}
 
 StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
                            const Settings& settings, const MeshSource& source,
