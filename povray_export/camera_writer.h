@@ -13,8 +13,8 @@ namespace lodestone::povray {
 /// Throws Error(InvalidArgument) for a view that cannot be a picture.
 void check_view(const View& view);
 
-/// Whether depth is blurred: then each pixel has many samples, spread over it, and antialiasing would
-/// only repeat all of them (measured: 3 times the time for the same edges).
+/// Whether depth is blurred: then each pixel has many samples, spread over it, and antialiasing
+/// would only repeat all of them (measured: 3 times the time for the same edges).
 bool blurred(const Camera& camera);
 
 /// camera{...} with explicit vectors: no angles, no look_at, no flip. The blur of the depth is that

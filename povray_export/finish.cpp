@@ -25,9 +25,9 @@ void append_named(std::string& out, const char* name, double value) {
 /// What tests/bench/fit_finish.py found for one roughness, against Cycles of Blender 3.4: specular
 /// .5 and clear coat 1, times what they are. Exponents are of Blinn's half vector (`specular`), the
 /// coat's of Phong's mirror direction. A metal is a highlight and a diffuse term, both tinted:
-/// without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky` are what comes
-/// back from a uniform sky of 1, between the mean of a sphere and what faces the eye. Entries below
-/// .05 repeat it: there Cycles without indirect light shows no sun.
+/// without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky` are what
+/// comes back from a uniform sky of 1, between the mean of a sphere and what faces the eye. Entries
+/// below .05 repeat it: there Cycles without indirect light shows no sun.
 struct Row {
     double roughness;
     double log_exponent;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finish: how a surface of the principled model reflects light, in POV-Ray's terms. All such fitting is in this file.
+// Finish: how a surface of the principled model reflects light, in POV-Ray's terms. All such
+// fitting is in this file.
 #pragma once
 
 #include "model/material.h"

@@ -19,7 +19,8 @@ constexpr double kSmallestStretch = 1e-9;
 bool make_invertible(Affine& transform) {
     if (!transform.finite())
         return false;
-    // The smallest stretch is the volume over the other two, whose product is less than half of this
+    // The smallest stretch is the volume over the other two, whose product is less than half of
+    // this
     const double squares = glm::dot(transform.linear[0], transform.linear[0]) +
                            glm::dot(transform.linear[1], transform.linear[1]) +
                            glm::dot(transform.linear[2], transform.linear[2]);

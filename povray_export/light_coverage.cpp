@@ -59,7 +59,8 @@ private:
         uint32_t speaker = kNobody;
     };
 
-    /// Once in every part of a row; where that is alone, some more times, at most twice as many in all.
+    /// Once in every part of a row; where that is alone, some more times, at most twice as many in
+    /// all.
     void look(size_t row, std::vector<Look>& out) const {
         Random random(2, row);
         size_t more = columns_;

@@ -21,8 +21,8 @@ constexpr double kMostPoints = 65536;
 constexpr int kMostHanded = 2;  // bounces that are looked at: light of later ones is faint
 constexpr size_t kMostLamps = 20000;
 constexpr uint64_t kMostTriangles = 2'000'000;  // distinct: 130 bytes each
-// Of all lamps: POV-Ray remembers for each lamp what last hid it, but not for those of groups, whose
-// shadows cost it up to 2.4 times as much.
+// Of all lamps: POV-Ray remembers for each lamp what last hid it, but not for those of groups,
+// whose shadows cost it up to 2.4 times as much.
 constexpr double kWorth = 0.6;
 
 uint64_t distinct_triangles(std::span<const Lit> drawn) {

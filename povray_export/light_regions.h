@@ -14,10 +14,10 @@ struct LightRegions {
 };
 inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 
-/// `points[i].region` is the index of the thing a point lies on, and becomes its region. Things with
-/// many points are regions of their own, those with few join their neighbors. One that `divisible`
-/// allows is cut where that makes shorter lists of lamps for its points, into at most 128 boxes that
-/// fill its bound.
+/// `points[i].region` is the index of the thing a point lies on, and becomes its region. Things
+/// with many points are regions of their own, those with few join their neighbors. One that
+/// `divisible` allows is cut where that makes shorter lists of lamps for its points, into at most
+/// 128 boxes that fill its bound.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
                                 const quality::LightShares& shares,
                                 std::vector<quality::LitPoint>& points);

@@ -155,7 +155,8 @@ private:
     /// Of the usual 17 along the edge of a lamp, and others in proportion: 2^n + 1, 3 or more.
     int rays_of(int usual) const { return std::max((usual - 1) * (rays_ - 1) / 16, 2) + 1; }
 
-    /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is wanted.
+    /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is
+    /// wanted.
     void append_grid(const glm::dvec3& u, const glm::dvec3& v, Grid grid) {
         grid.u = std::min(rays_of(grid.u), most_);
         grid.v = std::min(rays_of(grid.v), most_);

@@ -29,8 +29,8 @@ public:
     /// Throws Error(RaysUnavailable); needs what is drawn to be resident, and to outlive it.
     LitScene(const Model& model, std::span<const Lit> drawn, const Job& job);
 
-    /// About `count` cells, a ray through each; `region` of a point is the index of the drawn thing.
-    /// `bounces`: then from where it ends on, each where light may come from.
+    /// About `count` cells, a ray through each; `region` of a point is the index of the drawn
+    /// thing. `bounces`: then from where it ends on, each where light may come from.
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
     /// What is seen at a place of the picture (0...1 from its left, top), nearest first.
     std::vector<quality::LitPoint> seen(const View& view, double x, double y) const {

@@ -215,8 +215,8 @@ private:
         }
         Pool position = share(order_, count, [&](uint32_t v) { return points[v]; });
         job_.check();
-        // Without seams (every position once, at least as many triangles as vertices) indices of their
-        // own cost more numbers than any sharing of normals or uvs could save.
+        // Without seams (every position once, at least as many triangles as vertices) indices of
+        // their own cost more numbers than any sharing of normals or uvs could save.
         const bool seamless = position.size() == order_.size() && kept_.size() >= order_.size();
         if (seamless || (!smooth_ && !has_uvs_)) {
             positions_ = std::move(position);

@@ -42,8 +42,8 @@ private:
     uint64_t whole_;  // steps of a unit, where they are a whole number; else 0
 };
 
-/// Writes at most 20 characters, and returns the end: for numbers by the million, where appending each
-/// to a string would take longer.
+/// Writes at most 20 characters, and returns the end: for numbers by the million, where appending
+/// each to a string would take longer.
 char* write_count(char* at, uint64_t value);
 
 }  // namespace lodestone::povray

@@ -17,15 +17,16 @@ struct OwnUse {
     bool textures = true;  // what throws the shadow of something opaque needs none
 };
 
-/// Each once. `softened`: lights are as soft as the choice was made for; else soft edges are no reason
-/// for one.
+/// Each once. `softened`: lights are as soft as the choice was made for; else soft edges are no
+/// reason for one.
 std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
                              std::span<const quality::RayCut> rays, bool softened);
 
 /// For each node whether no ray meets it, nor anything below it, as something else stands for it.
 std::vector<uint8_t> left_out(const quality::Cut& cut, std::span<const quality::RayCut> rays);
 
-/// For each node the classes that meet something else in its place: its own and those of groups above.
+/// For each node the classes that meet something else in its place: its own and those of groups
+/// above.
 std::vector<RayMask> spread(const quality::Cut& cut, std::vector<RayMask> replaced);
 
 }  // namespace lodestone::povray

@@ -22,8 +22,8 @@ enum class Content : uint8_t {
     Height = 3,  // of a normal map: height_map()
 };
 
-/// Texture coordinates a surface uses. What a picture shows outside 0...1 costs POV-Ray time when it
-/// is no plain repetition, so it is written only where it can be seen.
+/// Texture coordinates a surface uses. What a picture shows outside 0...1 costs POV-Ray time when
+/// it is no plain repetition, so it is written only where it can be seen.
 struct UvRange {
     glm::dvec2 low{0.0};
     glm::dvec2 high{1.0};
@@ -61,7 +61,8 @@ public:
     /// uv_mapping. Throws Error(Internal) for a picture that is not resident.
     std::string pigment(const Texture& texture, Content content, const UvRange& range);
 
-    /// `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often. Throws as above.
+    /// `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often. Throws as
+    /// above.
     std::string file_reference(const Texture& texture, Content content, int halvings = 0);
 
     /// Comments that name all files, then a guarded declaration of every image, so that POV-Ray

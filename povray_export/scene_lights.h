@@ -9,7 +9,8 @@
 
 namespace lodestone::povray {
 
-/// All arguments must outlive it; `shading` is filled up. `bound`: of everything, magnified by `times`; `occluders` are not.
+/// All arguments must outlive it; `shading` is filled up. `bound`: of everything, magnified by
+/// `times`; `occluders` are not.
 class SceneLights {
 public:
     SceneLights(const View& view, std::span<const Bound> occluders, const Bound& bound,

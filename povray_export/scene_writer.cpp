@@ -53,8 +53,8 @@ struct Use {
     std::optional<glm::dvec3> dull = {};  // in this color alone
 };
 
-/// What glows and is hidden from gathering rays, as lights shine in its place: its color without its
-/// glow. Nothing for all else.
+/// What glows and is hidden from gathering rays, as lights shine in its place: its color without
+/// its glow. Nothing for all else.
 std::optional<glm::dvec3> without_glow(const Model& model, const Representation& representation,
                                        RayMask hidden) {
     if ((hidden & kRadiosityRays) == 0)

@@ -25,8 +25,8 @@ struct ExportOptions {
     bool covered_only = false;
     /// How far lights are approximated, in place of the view's Pixel Error; 0: all as they are.
     std::optional<double> light_error;
-    /// What classes of rays meet in place of parts of the cut, by its nodes; not in false colors, nor
-    /// where only what is covered counts.
+    /// What classes of rays meet in place of parts of the cut, by its nodes; not in false colors,
+    /// nor where only what is covered counts.
     std::span<const quality::RayCut> rays{};
     bool uvs =
         true;  // texture coordinates where a texture uses them; false: textures are their means
@@ -47,10 +47,10 @@ struct ExportReport {
 /// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the
 /// pictures they show as i/<16 hex>.png or .jpg; those that are there already are used as they are,
 /// for their name is their content. The same input gives the
-/// same bytes. Occurrences that cannot be drawn (flattened to a line, too small, not finite) are left
-/// out with a problem each; those flattened to a sheet get a thickness of 1/100000.
-/// `view` may be another one than the cut was made for: an overview of what another camera's picture
-/// uses. Throws Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as
+/// same bytes. Occurrences that cannot be drawn (flattened to a line, too small, not finite) are
+/// left out with a problem each; those flattened to a sheet get a thickness of 1/100000. `view` may
+/// be another one than the cut was made for: an overview of what another camera's picture uses.
+/// Throws Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as
 /// many as the chosen occurrences, Error(Io) naming the file,
 /// Error(Cancelled). cost: 0.1-0.2 s CPU a million triangles written.
 ExportReport export_scene(const Model& model, const quality::Cut& cut, const View& view,

@@ -6,8 +6,8 @@
 
 namespace lodestone::povray {
 
-/// The designer's controls below Pixel Error (Figure 2.20), each with its value. A count or threshold
-/// of 0 is the one its setting of antialiasing stands for.
+/// The designer's controls below Pixel Error (Figure 2.20), each with its value. A count or
+/// threshold of 0 is the one its setting of antialiasing stands for.
 struct Shading {
     double threshold = 0;         // Final: neighbors that differ by more (0 ... 1) get more samples
     int depth = 0;                // Final: its square is how many

@@ -27,14 +27,15 @@ struct Sky {
 };
 
 /// Writes an environment's picture into `folder`/i when it is not there. One that cannot be decoded
-/// becomes a problem, and its world counts as its color. Without lights all of its light is uniform. Throws Error(Io).
+/// becomes a problem, and its world counts as its color. Without lights all of its light is
+/// uniform. Throws Error(Io).
 Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
               Problems& problems);
 
 /// An environment's picture behind everything.
 std::string sky_sphere(const Sky& sky);
-/// The same as a ball around the eye, for pictures with indirect light: gathering rays go through it
-/// and meet the background, as lights stand for most of the picture.
+/// The same as a ball around the eye, for pictures with indirect light: gathering rays go through
+/// it and meet the background, as lights stand for most of the picture.
 std::string sky_ball(const Sky& sky, const glm::dvec3& eye);
 
 }  // namespace lodestone::povray

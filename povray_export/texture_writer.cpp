@@ -28,8 +28,8 @@ double share(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
 
-/// What all channels are multiplied by, where that is all that is done to them and about 1 (a picture
-/// cannot hold more than 1); else 1.
+/// What all channels are multiplied by, where that is all that is done to them and about 1 (a
+/// picture cannot hold more than 1); else 1.
 double even_scale(const Texture& texture) {
     constexpr double kMost = 2;
     const glm::dvec3& scale = texture.scale;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing: what --max-triangles, --max-memory, --criterion, --off-screen and --ray-classes mean, for every verb that makes a cut.
+// Choosing: what --max-triangles, --max-memory, --criterion, --off-screen and --ray-classes mean,
+// for every verb that makes a cut.
 #pragma once
 
 #include "arguments.h"
@@ -21,8 +22,8 @@ public:
     Choosing(const Choosing&) = delete;
     Choosing& operator=(const Choosing&) = delete;
 
-    /// The view's cut; with a budget view.pixel_error becomes what fits, and a warning is said where
-    /// nothing does.
+    /// The view's cut; with a budget view.pixel_error becomes what fits, and a warning is said
+    /// where nothing does.
     CutHandle cut(lds_model* model, lds_job* job);
     /// What the classes of rays asked for meet: printed, and for a report; empty without any.
     Fields rays(const lds_cut* cut) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The `lodestone` command. Exit codes: 0 done, 1 failed, 2 usage, 4 input unreadable, 130 cancelled.
+// The `lodestone` command. Exit codes: 0 done, 1 failed, 2 usage, 4 input unreadable, 130
+// cancelled.
 #include "session.h"
 #include "terminal.h"
 #include "verbs.h"

@@ -7,8 +7,8 @@
 
 namespace lodestone::tools {
 
-/// The text with '?' for each character that controls a terminal, ends a line or turns the direction
-/// of reading; of at most that many bytes, cut between characters.
+/// The text with '?' for each character that controls a terminal, ends a line or turns the
+/// direction of reading; of at most that many bytes, cut between characters.
 std::string shown(std::string_view text, size_t most = std::string_view::npos);
 
 /// " (text)" as shown() shows it; nothing for no text.

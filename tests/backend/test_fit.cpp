@@ -145,7 +145,8 @@ TEST(Fit, CoarseRoundThingsAreNotSeenLarger) {
     EXPECT_LT(out, 3 * in);
 }
 
-// Bricks of four triangles became tetrahedra: from the side half of a wall showed the mortar behind.
+// Bricks of four triangles became tetrahedra: from the side half of a wall showed the mortar
+// behind.
 TEST(Fit, BricksOfFewTrianglesStayFlat) {
     Mesh wall;
     for (int i = 0; i < 30; ++i) {

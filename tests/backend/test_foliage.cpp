@@ -47,8 +47,8 @@ std::vector<Material> materials_of(const Model& model, const Representation& rep
     return out;
 }
 
-/// Lists in order, every mesh as visible as the finest to a quarter; opaque solids only where the whole is
-/// a few pixels large, and some mesh with at most half of the triangles before them.
+/// Lists in order, every mesh as visible as the finest to a quarter; opaque solids only where the
+/// whole is a few pixels large, and some mesh with at most half of the triangles before them.
 void expect_see_through_levels(const Model& model, ObjectIndex index) {
     const Object& object = model.objects[index];
     ASSERT_TRUE(object.attributes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards materials of foreign glTF files: what they say of textures, alpha, glass and vertex colors,
-// and that no picture crashes us or comes from elsewhere.
+// Guards materials of foreign glTF files: what they say of textures, alpha, glass and vertex
+// colors, and that no picture crashes us or comes from elsewhere.
 #include "base/error.h"
 #include "base/files.h"
 #include "format/format.h"

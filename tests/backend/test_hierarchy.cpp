@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards the building of hierarchies: lists in order, only stale objects built, cancel without loss.
+// Guards the building of hierarchies: lists in order, only the stale built, cancel without loss.
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "base/files.h"
@@ -139,7 +139,7 @@ TEST_F(Hierarchy, CubeBecomesABoxThatIsTheCube) {
 }
 
 TEST_F(Hierarchy, SmoothClosedMeshKeepsItsFineLevels) {
-    // Errors that grew on the way down to a floor of coarse pictures let no level but the last one stay.
+    // Errors that grew on the way down to a floor of coarse pictures left no level but the last.
     Model model;
     model.root = models::add_leaf(model, "ring", shapes::torus(80, 32),
                                   models::colored("red", {0.8, 0.1, 0.1}, 0.3));

@@ -23,7 +23,8 @@ namespace {
 constexpr ObjectIndex kBall = 0;
 constexpr ObjectIndex kPair = 1;
 
-/// Four balls of radius 1 in two pairs; LOD 1 of a ball is off by .1 m, LOD 2 by .2, a pair's by .4.
+/// Four balls of radius 1 in two pairs; LOD 1 of a ball is off by .1 m, LOD 2 by .2, a pair's by
+/// .4.
 Model pairs() {
     Model model = models::row_of_balls(4);
     add_level(model, kBall, 0.1, shapes::sphere(1, 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards the step that makes solids show what is wanted: exact where nothing hides anything, as little
-// as possible, never into the ground.
+// Guards the step that makes solids show what is wanted: exact where nothing hides anything, as
+// little as possible, never into the ground.
 #include "approximate/least_change.h"
 #include "approximate/standing.h"
 #include "approximate/visible_solids.h"

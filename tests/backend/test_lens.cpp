@@ -101,7 +101,8 @@ TEST(Lens, ReachHoldsForEveryPointOfTheBound) {
 }
 
 TEST(Lens, OnACornerOpensItsGroupAndLeavesTheFarChildren) {
-    // Four times .4 m are more than the pixel's .467; four times .1 m are not, on the left ball only.
+    // Four times .4 m are more than the pixel's .467; four times .1 m are not, on the left ball
+    // only.
     EXPECT_EQ(drawn(bent::pairs(), through(lens(-1, 0.5, 4))),
               "pair 0/left 1, pair 0/right 2, pair 1 1");
 }

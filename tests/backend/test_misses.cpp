@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards how pictures are compared: what shows nothing is not looked at, and nothing else is left out.
+// Guards how pictures are compared: what shows nothing is not looked at, and nothing else is left
+// out.
 #include "base/random.h"
 #include "measure/misses.h"
 

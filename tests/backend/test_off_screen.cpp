@@ -121,8 +121,8 @@ TEST(OffScreen, AShadowThatFallsBehindTheEyeDoesNotCount) {
 TEST(OffScreen, AShadowCountsWhereItEntersThePicture) {
     Model model = plain();
     model.lights = {sun({-1, 3, 0})};
-    // The way of the ball's center meets the frame's side, x = y / 2, at (46, 92, 0), 103 m away; the
-    // ball itself is 77 m away.
+    // The way of the ball's center meets the frame's side, x = y / 2, at (46, 92, 0), 103 m away;
+    // the ball itself is 77 m away.
     const double coarser = shadows_only(model, ball({60, 50, 0}, 1));
     EXPECT_NEAR(coarser, 102.7 / 77.1, 0.04);
     EXPECT_LT(coarser, 102.7 / 77.1);

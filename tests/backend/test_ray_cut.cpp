@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards what classes of rays meet: nothing a picture can tell, nothing that shadows its own original.
+// Guards what classes of rays meet: nothing a picture can tell, nothing that shadows its own
+// original.
 #include "backend/bent.h"
 #include "quality/ray_cut.h"
 
@@ -46,7 +47,8 @@ Material rough() {
     return models::colored("rough", {0.5, 0.5, 0.5}, 0.8);
 }
 
-/// A ball `height` metres above the ground, 20 m before the eye, under a lamp; its LOD 1 is an ellipsoid.
+/// A ball `height` metres above the ground, 20 m before the eye, under a lamp; its LOD 1 is an
+/// ellipsoid.
 Model floating(double height = 4, const Mesh& mesh = shapes::sphere(1, 3),
                const Material& material = rough()) {
     Model model;

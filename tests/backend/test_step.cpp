@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards a cut that goes along with the camera: it is, to the last bit, the one that would be made anew.
+// Guards a cut that goes along with the camera: it is, to the last bit, the one that would be made
+// anew.
 #include "backend/walk.h"
 #include "quality/budget.h"
 
@@ -134,7 +135,8 @@ TEST(Step, IsTheCutOfABudgetAtTheThresholdThatItFinds) {
 }
 
 TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
-    // Each of these makes all that was kept worthless, or is no perspective camera's distance at all.
+    // Each of these makes all that was kept worthless, or is no perspective camera's distance at
+    // all.
     Forest forest(7);
     const auto table = table_of(forest.model);
     for (int i = 0; i < 160; ++i) {

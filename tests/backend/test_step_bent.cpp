@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards a cut that goes along with the camera where more than Pixel Error counts: lenses that move, all
-// that bends quality, and what rays meet are as of a cut made anew.
+// Guards a cut that goes along with the camera where more than Pixel Error counts: lenses that
+// move, all that bends quality, and what rays meet are as of a cut made anew.
 #include "backend/walk.h"
 
 #include <limits>

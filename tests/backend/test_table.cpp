@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards the flat table that choosing reads: it changes no cut, opens nothing in vain, and is safe from
-// any thread.
+// Guards the flat table that choosing reads: it changes no cut, opens nothing in vain, and is safe
+// from any thread.
 #include "backend/forest.h"
 #include "base/parallel.h"
 #include "quality/criterion.h"
@@ -93,8 +93,8 @@ TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
 }
 
 TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
-    // Two balls at LOD 2 (20 triangles, .2 m) cost 2 (20 * 245 + 1500) = 12,800 bytes, at LOD 1 42,200;
-    // a stand-in of 80 triangles and .15 m costs 21,100.
+    // Two balls at LOD 2 (20 triangles, .2 m) cost 2 (20 * 245 + 1500) = 12,800 bytes, at LOD 1
+    // 42,200; a stand-in of 80 triangles and .15 m costs 21,100.
     Model model = models::row_of_balls(2);
     models::add_level(model, bent::kBall, 0.1, shapes::sphere(1, 1));
     models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));

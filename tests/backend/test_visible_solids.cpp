@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards what is seen of boxes and ellipsoids that hide parts of each other, found without triangles.
+// Guards what is seen of boxes and ellipsoids that hide parts of each other, found without
+// triangles.
 #include "approximate/visible_solids.h"
 #include "backend/with_rays.h"
 #include "measure/visible.h"

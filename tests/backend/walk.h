@@ -70,8 +70,8 @@ struct Walked {
     size_t own = 0;     // that rays met and the camera did not
 };
 
-/// Walks over a forest, most steps short, some far, and compares every cut and what rays meet of it.
-/// `change`: what else becomes of the view between steps.
+/// Walks over a forest, most steps short, some far, and compares every cut and what rays meet of
+/// it. `change`: what else becomes of the view between steps.
 inline Walked walk(
     Forest& forest, View view, int steps, const std::function<void(View&)>& change = [](View&) {}) {
     Walked walked;

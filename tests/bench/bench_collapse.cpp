@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What simplifying costs within one process, in JSON lines for bench_simplify.py:
 //   bench_collapse MODE(fast|best|cluster) TARGET MILLIONS ROUNDS THREADS FILE.ply...
-// TARGET: a part of the triangles. MILLIONS of triangles: every triangle of the file is cut into four
-// until there are as many, with a little noise; 0 takes it as it is. Wall and CPU seconds of every
-// round (the first one with fresh memory) and the most memory beside input, bytes a triangle.
+// TARGET: a part of the triangles. MILLIONS of triangles: every triangle of the file is cut into
+// four until there are as many, with a little noise; 0 takes it as it is. Wall and CPU seconds of
+// every round (the first one with fresh memory) and the most memory beside input, bytes a triangle.
 #include "approximate/cluster.h"
 #include "approximate/simplify.h"
 #include "base/clock.h"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What choosing costs: `cmake --build build/release --target bench_cut`, then build/release/tests/bench_cut.
-// A plain of 4^10 = 1,048,576 houses in groups of four, each group with a stand-in; the Pixel Error is
-// such that about 20,000 things are chosen. Prints nanoseconds a visit and milliseconds a cut (goals:
-// 100 and 5), least / median / most of 21 cuts, once with every level's groups shared, once without; the
-// same through a lens around the eye; what making the table costs (once per change of the model) and finding
-// the Pixel Error for a budget of memory. Then the eye moves: milliseconds of the cut that goes along with
-// it, and of whole ones in turns with it, each the mean of 50 steps, least / median / most of five walks.
+// What choosing costs: `cmake --build build/release --target bench_cut`, then
+// build/release/tests/bench_cut. A plain of 4^10 = 1,048,576 houses in groups of four, each group
+// with a stand-in; the Pixel Error is such that about 20,000 things are chosen. Prints nanoseconds
+// a visit and milliseconds a cut (goals: 100 and 5), least / median / most of 21 cuts, once with
+// every level's groups shared, once without; the same through a lens around the eye; what making
+// the table costs (once per change of the model) and finding the Pixel Error for a budget of
+// memory. Then the eye moves: milliseconds of the cut that goes along with it, and of whole ones in
+// turns with it, each the mean of 50 steps, least / median / most of five walks.
 #include "backend/models.h"
 #include "base/clock.h"
 #include "quality/budget.h"
@@ -88,7 +89,8 @@ void print_times(int runs, double unit, const Run& run) {
                 unit * seconds.back());
 }
 
-/// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the camera.
+/// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the
+/// camera.
 void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, double metres,
                  const char* what, const char* how, bool lenses_move = false) {
     quality::Stepper stepper(table);

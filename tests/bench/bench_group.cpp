@@ -133,8 +133,8 @@ Model read(const std::string& path) {
     return model;
 }
 
-/// Everything directly in the root: how the scene is without its collections. At most so many, those
-/// nearest to the middle.
+/// Everything directly in the root: how the scene is without its collections. At most so many,
+/// those nearest to the middle.
 void flatten(Model& model, size_t most) {
     auto flat = std::make_shared<Assembly>();
     const glm::dvec3 middle = model.objects[model.root].bound().center;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How alike the outlines of shapes and of their replacements are: replace_shapes FILE.ply...
-// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes, how
-// far off area, centroid and tensor of solids and composites are, in percent, by a million other rays
-// from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
+// Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes,
+// how far off area, centroid and tensor of solids and composites are, in percent, by a million
+// other rays from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
 #include "approximate/composite.h"
 #include "approximate/replace.h"
 #include "approximate/simplify.h"
@@ -100,8 +100,8 @@ double mesh_bytes_within(const std::vector<Mesh>& levels, const std::vector<doub
     return best;
 }
 
-/// In percent: area, centroid over the radius of gyration, tensor over the true trace, each over its
-/// own where the size is not asked for.
+/// In percent: area, centroid over the radius of gyration, tensor over the true trace, each over
+/// its own where the size is not asked for.
 std::array<double, 3> misses(const Attributes& now, const Attributes& truth, bool size) {
     const auto trace = [](const glm::dmat3& m) { return m[0][0] + m[1][1] + m[2][2]; };
     const double over = trace(size ? truth.moments : now.moments);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Guards choosing from C: what bends quality is refused by name where it makes no sense, views of version 1
-   go on working, budgets say what fits, reasons name every factor. */
+/* Guards choosing from C: what bends quality is refused by name where it makes no sense, views of
+   version 1 go on working, budgets say what fits, reasons name every factor. */
 #include "cube.h"
 
 #include <stddef.h>

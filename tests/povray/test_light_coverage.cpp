@@ -32,8 +32,8 @@ View along_a_floor() {
 
 }  // namespace
 
-// The far end of a corridor was black: points of the near half, which see the far half well, spoke for
-// it, and no lamp of the far half reached one of them.
+// The far end of a corridor was black: points of the near half, which see the far half well, spoke
+// for it, and no lamp of the far half reached one of them.
 TEST_F(LightCoverage, NothingIsSpokenForByAPointFarFromIt) {
     scenes::Builder builder;
     const ObjectIndex box = builder.mesh(shapes::cube());

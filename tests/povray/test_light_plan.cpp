@@ -199,8 +199,8 @@ TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall)
     }
 }
 
-// One wall behind all storeys of a tower, of which slits as wide as a pixel show a little: most storeys
-// had no point of the wall, so no lamp of theirs, and were black.
+// One wall behind all storeys of a tower, of which slits as wide as a pixel show a little: most
+// storeys had no point of the wall, so no lamp of theirs, and were black.
 TEST_F(PovrayRenderLights, AWallPieceAcrossStoreysHasTheLampsOfEachStoreyThatIsSeen) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards light that surfaces hand on: its energy is what geometric series say, skies are not counted
-// twice, rooms behind windows are not black, and nothing of it is there where nobody asked.
+// Guards light that surfaces hand on: its energy is what geometric series say, skies are not
+// counted twice, rooms behind windows are not black, and nothing of it is there where nobody asked.
 #include "image/image.h"
 #include "povray/scene.h"
 #include "povray_export/radiosity.h"

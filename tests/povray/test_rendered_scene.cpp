@@ -213,8 +213,8 @@ TEST(PovrayRender, ABoxLooksLikeItsMesh) {
 TEST(PovrayRender, EachRayClassSeesWhatItMay) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
-    // A slanting sun over a white floor: what stands at x casts its shadow at x + 0.5. One red thing
-    // a row, from the top down.
+    // A slanting sun over a white floor: what stands at x casts its shadow at x + 0.5. One red
+    // thing a row, from the top down.
     struct Row {
         Kind kind;
         RayMask hidden;

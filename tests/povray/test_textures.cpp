@@ -22,8 +22,8 @@ Mesh patch(double low = -1.25, double high = 2.25) {
     return mesh;
 }
 
-/// Under a sun that makes a matte surface as bright as its base color: one patch for every material,
-/// from left to right.
+/// Under a sun that makes a matte surface as bright as its base color: one patch for every
+/// material, from left to right.
 scenes::Image shown(const std::vector<Material>& materials, const Mesh& mesh,
                     const std::string& name, const glm::dvec3& world = glm::dvec3(0.0)) {
     Builder builder;

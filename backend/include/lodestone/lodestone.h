@@ -510,7 +510,7 @@ typedef struct lds_structure_report {
    they are. Children that deform, or hold something hidden from some rays, are not moved. The
    result depends neither on the order of the children nor on the number of threads. groups null:
    all below the root.
-   
+
    source   Sewell, Managing complex models for computer graphics: 4.5.3, 4.5.4 */
 LDS_API lds_status lds_model_structure(lds_model* model, const lds_object* groups,
                                        size_t group_count, const lds_structure_options* options,

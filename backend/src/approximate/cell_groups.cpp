@@ -87,8 +87,9 @@ Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group, size_t count)
     return out;
 }
 
-/// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when none
-/// is, one above. `left` is how many cells to try first (0: unknown), and becomes how many it has.
+/// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when
+/// none is, one above. `left` is how many cells to try first (0: unknown), and becomes how many it
+/// has.
 ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
                                size_t& count, size_t& left) {
     size_t few = 1;  // cells that give too few triangles, and how many

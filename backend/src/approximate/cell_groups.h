@@ -23,8 +23,8 @@ struct GroupingPlan {
     GroupingPlan(size_t triangles, size_t target);
 };
 
-/// Groups that leave at most `target` triangles, as near to it as a few tries come; more, where fewer
-/// cells would leave none. Empty when the cells have no triangles.
+/// Groups that leave at most `target` triangles, as near to it as a few tries come; more, where
+/// fewer cells would leave none. Empty when the cells have no triangles.
 Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target, const Job& job);
 
 }  // namespace lodestone::approximate

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cell quadric: squared distances to all planes and lines of a cell's vertices, in single precision.
+// Cell quadric: squared distances to all planes and lines of a cell's vertices, in single
+// precision.
 #pragma once
 
 #include "base/maths.h"
@@ -47,8 +48,8 @@ struct CellQuadric {
     /// The sum of all weights.
     float trace() const { return x[0] + y[1] + z[2]; }
 
-    /// Adds the squared distances P to planes through a point; P is given as xx xy xz yy, yz, zz, the
-    /// point relative to the origin.
+    /// Adds the squared distances P to planes through a point; P is given as xx xy xz yy, yz, zz,
+    /// the point relative to the origin.
     void add_planes(const Four& p, float yz, float zz, const Four& away) {
         const Four pull = Four{p[0], p[1], p[2], 0} * away[0] + Four{p[1], p[3], yz, 0} * away[1] +
                           Four{p[2], yz, zz, 0} * away[2];

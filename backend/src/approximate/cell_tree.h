@@ -8,16 +8,16 @@
 
 namespace lodestone::approximate {
 
-/// A binary tree over the cells, a node being a box of the grid halved along one axis in turn. Joining
-/// what costs least first leaves small cells where the surface bends and large ones where it is flat.
-/// source: Schaefer & Warren 2003 (adaptive vertex clustering using octrees), with the plane quadrics
-/// of Lindstrom 2000 (out-of-core simplification).
+/// A binary tree over the cells, a node being a box of the grid halved along one axis in turn.
+/// Joining what costs least first leaves small cells where the surface bends and large ones where
+/// it is flat. source: Schaefer & Warren 2003 (adaptive vertex clustering using octrees), with the
+/// plane quadrics of Lindstrom 2000 (out-of-core simplification).
 class CellTree {
 public:
     explicit CellTree(const Cells& cells);
 
-    /// Joins nodes until `count` cells (from 1 to all) are left; returns the node each cell is in now.
-    /// Cells that stay alone have numbers below cells.count(); valid until the next call.
+    /// Joins nodes until `count` cells (from 1 to all) are left; returns the node each cell is in
+    /// now. Cells that stay alone have numbers below cells.count(); valid until the next call.
     std::span<const uint32_t> joined(size_t count);
 
     size_t nodes() const { return parent_.size(); }

@@ -11,8 +11,8 @@ namespace lodestone::approximate {
 
 constexpr uint32_t kNoCell = ~uint32_t{0};
 
-/// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in a
-/// frame whose unit is the mesh's largest extent.
+/// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in
+/// a frame whose unit is the mesh's largest extent.
 struct Cells {
     glm::dvec3 low{0.0};           // origin of the frame, metres
     double unit = 0;               // metres; 0: the mesh has no extent, and there are no cells

@@ -94,7 +94,8 @@ bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corn
     for (Corner& corner : corners) {
         const glm::dvec3& end_next = points[corner.next];
         const glm::dvec3& end_last = points[corner.last];
-        // Differences are all that single precision is asked for; products of areas leave its range.
+        // Differences are all that single precision is asked for; products of areas leave its
+        // range.
         const glm::vec3 next(end_next - point);
         const glm::vec3 last(end_last - point);
         const glm::vec3 facet = 0.5f * glm::cross(next, last);

@@ -24,8 +24,9 @@ public:
     /// triangles went; of the mesh, `live` still counts them.
     size_t collapse(const Candidate& edge);
 
-    /// Asks for what collapse() of this edge will need: what it reads lies anywhere, and waiting for
-    /// memory is most of its time. First for the lists, some edges later for the triangles in them.
+    /// Asks for what collapse() of this edge will need: what it reads lies anywhere, and waiting
+    /// for memory is most of its time. First for the lists, some edges later for the triangles in
+    /// them.
     void expect_lists(const Candidate& edge) const {
         for (const uint32_t end : {edge.a, edge.b})
             __builtin_prefetch(adjacency_.triangles.data() + adjacency_.first[end]);
@@ -61,8 +62,8 @@ private:
             return room.data();
         }
     };
-    /// Around an end of the edge: triangles on the edge, and the others. False: one of their corners
-    /// is not in the chunk.
+    /// Around an end of the edge: triangles on the edge, and the others. False: one of their
+    /// corners is not in the chunk.
     bool find_corners(uint32_t vertex, uint32_t other, Corners& corners, Corners& shared) const;
     /// True when the surface stays as connected as it was. Fills doomed_ if it could be true, or
     /// always with `search`.

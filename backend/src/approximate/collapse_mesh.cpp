@@ -116,8 +116,8 @@ void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<ui
     mesh.live = count;
 }
 
-/// Vertices have the input's numbers as ids, copies those after them. Of the input's vertices at one
-/// position all are the first one (by `first`).
+/// Vertices have the input's numbers as ids, copies those after them. Of the input's vertices at
+/// one position all are the first one (by `first`).
 void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<uint32_t> first) {
     const auto inputs = static_cast<std::ptrdiff_t>(first.size());
     const auto welded = static_cast<std::ptrdiff_t>(order.size());

@@ -68,16 +68,16 @@ struct Adjacency;
 CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {},
                   Adjacency* adjacency = nullptr);
 
-/// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when given,
-/// which takes less time than building it afterwards.
+/// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when
+/// given, which takes less time than building it afterwards.
 void compact(CollapseMesh& mesh, Adjacency* adjacency = nullptr);
 
 /// Gives back the memory that dead triangles and unused vertices took before they were dropped.
 void shrink(CollapseMesh& mesh);
 
 /// Back to metres; vertices are split only where attributes differ. `vertices`, when given, gets
-/// the vertex of `mesh` that each of the result's was. `corner_normals`: empty, or three a triangle,
-/// each shown in place of its wedge's unless it is zero.
+/// the vertex of `mesh` that each of the result's was. `corner_normals`: empty, or three a
+/// triangle, each shown in place of its wedge's unless it is zero.
 Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr,
              std::span<const glm::vec3> corner_normals = {});
 

@@ -118,8 +118,8 @@ double lowest(const Mesh& mesh) {
     return bound_of(mesh.positions).box.low.z;
 }
 
-/// No edge longer than `longest`, as far as 65,536 triangles go: what spans several clusters (a trunk
-/// of two triangles) belongs to each in part. `source`: of each triangle, where it was.
+/// No edge longer than `longest`, as far as 65,536 triangles go: what spans several clusters (a
+/// trunk of two triangles) belongs to each in part. `source`: of each triangle, where it was.
 Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
     constexpr size_t kMost = size_t{1} << 16u;
     Mesh out = mesh;
@@ -166,8 +166,8 @@ Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
     return out;
 }
 
-/// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that is
-/// nearest where it has none.
+/// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that
+/// is nearest where it has none.
 std::vector<uint32_t> clusters_of(const Mesh& mesh, const Clusters& clusters) {
     std::vector<std::map<uint32_t, uint32_t>> votes(mesh.triangles.size());
     for (uint32_t i = 0; i < clusters.all().size(); ++i) {

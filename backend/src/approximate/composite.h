@@ -44,13 +44,13 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                   const Attributes& wanted, const CompositeOptions& options,
                                   const Job& job = {});
 
-/// Likewise of what has much air between its parts (foliage, crowds): clusters of all of its surface,
-/// hidden or not, each as opaque as it is alone, in a shell around its surface. All shells are made
-/// more or less opaque alike until the whole shows as much as the mesh. `parts`: empty, or one number
-/// a triangle of what are no details of one body (leaves; see Crowd::part_of). A cluster that fills
-/// its shell and is not of many parts is a solid. Nothing where nothing is clear.
-/// source: 4.3.3, 4.36, 4.37 for each cluster; differs: shells are a fifth larger than the variances
-/// ask for, which would leave gaps between clusters.
+/// Likewise of what has much air between its parts (foliage, crowds): clusters of all of its
+/// surface, hidden or not, each as opaque as it is alone, in a shell around its surface. All shells
+/// are made more or less opaque alike until the whole shows as much as the mesh. `parts`: empty, or
+/// one number a triangle of what are no details of one body (leaves; see Crowd::part_of). A cluster
+/// that fills its shell and is not of many parts is a solid. Nothing where nothing is clear.
+/// source: 4.3.3, 4.36, 4.37 for each cluster; differs: shells are a fifth larger than the
+/// variances ask for, which would leave gaps between clusters.
 std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
                                         std::span<const uint32_t> parts, const Attributes& wanted,
                                         const CompositeOptions& options, const Job& job = {});

@@ -23,8 +23,8 @@ constexpr double kMostSources = 0.5;
 constexpr size_t kLeastSources = 1000;
 /// On a triangle: fewer do not tell its shading.
 constexpr size_t kSamplesToShade = 4;
-/// Mean square difference of normals above which a triangle is shaded anew (6 degrees), and the part
-/// of it that may then be left: noise of a scan is in both.
+/// Mean square difference of normals above which a triangle is shaded anew (6 degrees), and the
+/// part of it that may then be left: noise of a scan is in both.
 constexpr float kLeastOff = 0.01f;
 constexpr float kLeft = 0.25f;
 /// Cosines: corners at one vertex that share a normal (26 degrees), and wedges that always did.

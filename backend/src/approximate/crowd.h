@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Crowd: the many small, similar parts of a mesh (leaves, pickets, people), and the order they go in.
+// Crowd: the many small, similar parts of a mesh (leaves, pickets, people), and the order they go
+// in.
 #pragma once
 
 #include "model/mesh.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edge costs in vectors of LODESTONE_LANES numbers; for edge_costs*.cpp alone. Everything in here is
-// each one's own: what is compiled for other processors must not be shared.
+// Edge costs in vectors of LODESTONE_LANES numbers; for edge_costs*.cpp alone. Everything in here
+// is each one's own: what is compiled for other processors must not be shared.
 #pragma once
 
 #include "approximate/edge_costs.h"

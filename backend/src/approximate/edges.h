@@ -58,8 +58,8 @@ public:
     /// when not as many can be collapsed.
     uint32_t key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
                     size_t count) const;
-    /// Fills the chunks' candidates with the possible ones up to a cost, the cheapest of each chunk:
-    /// not more than `held` for each of its vertices.
+    /// Fills the chunks' candidates with the possible ones up to a cost, the cheapest of each
+    /// chunk: not more than `held` for each of its vertices.
     void take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort, uint32_t limit,
               double held, const Job& job);
     const std::vector<Chunk>& chunks() const { return chunks_; }

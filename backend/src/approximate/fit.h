@@ -22,10 +22,10 @@ struct FitOptions {
 
 /// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was
 /// opened from) to the surface they are nearest to, over all vertices together; those on open
-/// borders also to the outline's. Of closed parts what lies outside of the original counts more, the
-/// more sweeps the more; those of at most 8 triangles (bricks, boards) stay as they are. `mesh` must be
-/// compact and `adjacency` its own. No triangle turns over. A mesh with other poses is left as it is. source: Hoppe et al. 1993 (mesh
-/// optimization), with distances to planes.
+/// borders also to the outline's. Of closed parts what lies outside of the original counts more,
+/// the more sweeps the more; those of at most 8 triangles (bricks, boards) stay as they are. `mesh`
+/// must be compact and `adjacency` its own. No triangle turns over. A mesh with other poses is left
+/// as it is. source: Hoppe et al. 1993 (mesh optimization), with distances to planes.
 void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const FitOptions& options,
          const Job& job);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit samples: points of an original surface, and the places of its simplified mesh nearest to them.
+// Fit samples: points of an original surface, and the places of its simplified mesh nearest to
+// them.
 #pragma once
 
 #include "approximate/adjacency.h"
@@ -37,8 +38,8 @@ public:
     /// The vertex that one of the original became; kNone when it vanished with its part.
     uint32_t place(uint32_t vertex) const { return place_of_[mesh_.merged[vertex]]; }
 
-    /// Numbers a vertex that the mesh and its points have got. One of the original, unless it stands
-    /// for others or is kNone, is at that place from now on.
+    /// Numbers a vertex that the mesh and its points have got. One of the original, unless it
+    /// stands for others or is kNone, is at that place from now on.
     void add(uint32_t vertex, uint32_t original);
 
     CollapseMesh& mesh() { return mesh_; }
@@ -73,8 +74,8 @@ private:
 /// Real-Time Collision Detection, 5.1.5.
 glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
-/// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is in
-/// `samples`; room for `more` after them.
+/// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is
+/// in `samples`; room for `more` after them.
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
                     const Job& job, FitSamples& samples);
 

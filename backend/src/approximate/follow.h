@@ -58,8 +58,8 @@ private:
     Rings rings_;
 };
 
-/// Where an anchor is on a surface: the point, the surface's axes there (columns; those that it does
-/// not have are zero) and the length that offsets are parts of.
+/// Where an anchor is on a surface: the point, the surface's axes there (columns; those that it
+/// does not have are zero) and the length that offsets are parts of.
 struct Footing {
     glm::dvec3 point{0.0};
     glm::dmat3 axes{0.0};

@@ -129,8 +129,8 @@ std::optional<HeightGrid> grid_in(const Mesh& mesh, int across, int along) {
 class Resampler {
 public:
     Resampler(size_t from, size_t count) : from_(from), count_(count) {
-        // What each fine value contributes to the integrals of f with the coarse tents: those of the
-        // fine tents with the coarse ones, by Simpson's rule on each piece, which is exact.
+        // What each fine value contributes to the integrals of f with the coarse tents: those of
+        // the fine tents with the coarse ones, by Simpson's rule on each piece, which is exact.
         const double ratio =
             static_cast<double>(count - 1) / static_cast<double>(std::max<size_t>(from - 1, 1));
         for (size_t i = 0; i + 1 < from; ++i) {

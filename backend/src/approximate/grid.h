@@ -20,15 +20,15 @@ struct HeightGrid {
     std::vector<uint32_t> vertex;  // of the mesh, row by row
 };
 
-/// The grid that the mesh is; nothing when it is none: vertices off the grid (by a thousandth of its
-/// spacing), split, or left over, cells that are missing or not cut in two, more than one slot.
+/// The grid that the mesh is; nothing when it is none: vertices off the grid (by a thousandth of
+/// its spacing), split, or left over, cells that are missing or not cut in two, more than one slot.
 std::optional<HeightGrid> find_grid(const Mesh& mesh);
 
-/// A grid of at most `triangles` (at least 2) over the same rectangle, in about the same proportion.
-/// Heights, texture coordinates and colors are those whose interpolation has the least squared
-/// distance from the finer grid's: a weighted sum of all around each sample (fine detail does not
-/// alias), separable. Border lines depend on border lines alone and corners stay, so that equally
-/// sampled neighbors go on fitting. Normals, if there are any, are the new surface's.
+/// A grid of at most `triangles` (at least 2) over the same rectangle, in about the same
+/// proportion. Heights, texture coordinates and colors are those whose interpolation has the least
+/// squared distance from the finer grid's: a weighted sum of all around each sample (fine detail
+/// does not alias), separable. Border lines depend on border lines alone and corners stay, so that
+/// equally sampled neighbors go on fitting. Normals, if there are any, are the new surface's.
 /// source: dissertation 3.3.1.
 Mesh subsample(const Mesh& mesh, const HeightGrid& grid, size_t triangles, const Job& job = {});
 

@@ -93,8 +93,8 @@ bool Inserter::fits(const Stray& stray, const glm::vec3& point, const TrianglePo
     return true;
 }
 
-/// Whether triangles `after`, of which `point` is new, fit, and the original's vertices that `before`
-/// were nearest to miss less with them.
+/// Whether triangles `after`, of which `point` is new, fit, and the original's vertices that
+/// `before` were nearest to miss less with them.
 bool Inserter::better(const Stray& stray, const glm::vec3& point, std::span<const uint32_t> before,
                       std::span<const TrianglePoints> after, std::span<const uint32_t> was) const {
     for (size_t i = 0; i < after.size(); ++i) {

@@ -30,8 +30,8 @@ Row numbers_of(const Missing& of) {
             v[1][1], v[2][2],       twice * v[0][1], twice * v[0][2], twice * v[1][2]};
 }
 
-/// How much the logarithm of a shell's area grows with that of each half size. source: of ellipsoids
-/// Thomsen's formula, right within a hundredth; with a power of 1 it is a box's area.
+/// How much the logarithm of a shell's area grows with that of each half size. source: of
+/// ellipsoids Thomsen's formula, right within a hundredth; with a power of 1 it is a box's area.
 glm::dvec3 growth_of(const Solid& solid) {
     const double power = solid.box ? 1 : 1.6075;
     const glm::dvec3 p = glm::pow(solid.primitive.half_size, glm::dvec3(power));

@@ -17,8 +17,8 @@ inline int corner_of(const Triangle& t, uint32_t vertex) {
     return t.x == vertex ? 0 : (t.y == vertex ? 1 : 2);
 }
 
-/// What comes after the corner of a triangle that is `vertex`: the corner next, and the last one. No
-/// branches: which corner it is nobody can predict.
+/// What comes after the corner of a triangle that is `vertex`: the corner next, and the last one.
+/// No branches: which corner it is nobody can predict.
 struct Ends {
     uint32_t at, next, last;
 };
@@ -37,8 +37,8 @@ public:
         bool leaving0, leaving1;        // the triangle runs vertex -> neighbor
     };
 
-    /// Of its triangles around a vertex, all turned alike. Closed: one fan or several, each around the
-    /// whole vertex. Open: one that begins and ends on a border. Those are the usual cases.
+    /// Of its triangles around a vertex, all turned alike. Closed: one fan or several, each around
+    /// the whole vertex. Open: one that begins and ends on a border. Those are the usual cases.
     enum class Fan : uint8_t { None, Closed, Open };
     Fan find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
         const auto count = static_cast<uint32_t>(ring.size());
@@ -72,9 +72,9 @@ public:
         return Fan::Open;
     }
 
-    /// After find_fan() has found one: puts the ring in order, so that corner next of each triangle is
-    /// the last one of that before it; a closed one begins anywhere. False, and nothing done, for
-    /// several fans.
+    /// After find_fan() has found one: puts the ring in order, so that corner next of each triangle
+    /// is the last one of that before it; a closed one begins anywhere. False, and nothing done,
+    /// for several fans.
     bool order(std::span<uint32_t> ring) const {
         const auto count = static_cast<uint32_t>(ring.size());
         uint32_t ordered[kMost];

@@ -19,10 +19,10 @@ struct PaintedBox {
     Material material;
 };
 
-/// `shown`: of each vertex of tessellate_box(box) the color that it should have (red, green, blue), and
-/// how much light falls on the box there. Near colors are merged, mostly to two to five; all light
-/// together stays. None where one color is enough. `material`: the box's; its color is not used.
-/// Throws Error: Internal, for another number of vertices.
+/// `shown`: of each vertex of tessellate_box(box) the color that it should have (red, green, blue),
+/// and how much light falls on the box there. Near colors are merged, mostly to two to five; all
+/// light together stays. None where one color is enough. `material`: the box's; its color is not
+/// used. Throws Error: Internal, for another number of vertices.
 std::optional<PaintedBox> painted_box(const Primitive& box, const Material& material,
                                       std::span<const glm::dvec4> shown);
 

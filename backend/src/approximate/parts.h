@@ -16,7 +16,8 @@ class Parts {
 public:
     /// Collects the parts; with one the list is empty (it is never removed).
     /// The cost is `weight` x the second moment of its area about its centroid: what squeezing it
-    /// to a point does. Asked before the first pass to a target: collapses must not make a part look smaller.
+    /// to a point does. Asked before the first pass to a target: collapses must not make a part
+    /// look smaller.
     void measure(const CollapseMesh& mesh, double weight);
     /// What is left of them before another pass.
     void count(const CollapseMesh& mesh);

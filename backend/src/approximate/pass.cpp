@@ -198,8 +198,8 @@ private:
         return went;
     }
 
-    /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most` triangles
-    /// at most; `left` gets the others.
+    /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most`
+    /// triangles at most; `left` gets the others.
     size_t within(const Chunk& chunk, size_t next, size_t last, size_t most, size_t work,
                   std::vector<uint32_t>& left) {
         if (next == last)

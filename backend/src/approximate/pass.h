@@ -25,8 +25,8 @@ public:
     Reducer(CollapseMesh& mesh, const SimplifyOptions& options);
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
-    /// `after_pass` is called after every pass. `adjacency` holds the mesh's lists, at first and, as
-    /// the mesh is compact again, at the end.
+    /// `after_pass` is called after every pass. `adjacency` holds the mesh's lists, at first and,
+    /// as the mesh is compact again, at the end.
     bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
                 Adjacency& adjacency);
 

@@ -6,12 +6,12 @@
 
 namespace lodestone::approximate {
 
-/// A tunnel three edges around ends, when one of these is collapsed, as an edge with four triangles:
-/// two fans around each of its ends that share it. Each fan gets a vertex of its own, which cuts the
-/// tunnel there and caps both stumps by nothing. So do fans that share no edge. Edges with four
-/// triangles whose fans run on from one such edge to another (walls that cross, loops around a closed
-/// tunnel) stay, unless `loops`: then solids that touch there part. False: there was nothing to cut.
-/// Otherwise a part may have become several.
+/// A tunnel three edges around ends, when one of these is collapsed, as an edge with four
+/// triangles: two fans around each of its ends that share it. Each fan gets a vertex of its own,
+/// which cuts the tunnel there and caps both stumps by nothing. So do fans that share no edge.
+/// Edges with four triangles whose fans run on from one such edge to another (walls that cross,
+/// loops around a closed tunnel) stay, unless `loops`: then solids that touch there part. False:
+/// there was nothing to cut. Otherwise a part may have become several.
 bool cut_pinches(CollapseMesh& mesh, bool loops);
 
 /// Whether any edge has more than two triangles.

@@ -23,8 +23,8 @@ std::optional<Primitive> fit_box(const Attributes& attributes, const Bound& boun
 /// up to 9 %.
 std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound& bound);
 
-/// Whether a box shows its outline better than an ellipsoid does: by the fourth moment of the normals
-/// (box 1, sphere .6).
+/// Whether a box shows its outline better than an ellipsoid does: by the fourth moment of the
+/// normals (box 1, sphere .6).
 bool boxlike(const Attributes& attributes);
 
 /// A primitive that shows what is behind it.
@@ -43,12 +43,12 @@ std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bou
 /// Many rays that settle a solid end when the last half of them changed no more (VisibleOptions).
 inline constexpr double kSettled = 0.0008;
 
-/// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved with the
-/// centroid, scaled with the area unless it is `clear`.
+/// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved
+/// with the centroid, scaled with the area unless it is `clear`.
 Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure, bool clear);
 
-/// A clear primitive whatever it covers: opacity may be more than 1, where no shell is dense enough. Nothing
-/// where there is no extent to match.
+/// A clear primitive whatever it covers: opacity may be more than 1, where no shell is dense
+/// enough. Nothing where there is no extent to match.
 std::optional<Clear> shell_box(const Attributes& attributes);
 std::optional<Clear> shell_ellipsoid(const Attributes& attributes);
 

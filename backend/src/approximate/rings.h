@@ -47,8 +47,8 @@ private:
     std::vector<uint32_t> triangles_;
 };
 
-/// Looks for the nearest point of some triangles; among equally near ones the lowest. Triangles with
-/// corners that are no numbers are passed over.
+/// Looks for the nearest point of some triangles; among equally near ones the lowest. Triangles
+/// with corners that are no numbers are passed over.
 class Nearest {
 public:
     static constexpr uint32_t kNone = ~uint32_t{0};
@@ -62,8 +62,8 @@ public:
     /// True when the triangle is the nearest so far.
     bool visit(uint32_t index);
 
-    /// Visits what is around the corner of a triangle that has least around it: the triangle itself,
-    /// or what it has become where its polygon is cut another way.
+    /// Visits what is around the corner of a triangle that has least around it: the triangle
+    /// itself, or what it has become where its polygon is cut another way.
     template <typename NumberOf>
     void start(const Rings& rings, const NumberOf& number_of, const Triangle& corners) {
         std::span<const uint32_t> least = rings.some_around(number_of(corners.x));

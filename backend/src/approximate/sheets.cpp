@@ -87,8 +87,8 @@ void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
     std::vector<uint32_t> parents;
     std::vector<uint32_t> copy_of_root;
     const auto vertices = static_cast<uint32_t>(mesh.points.size());
-    // One fan, all turned alike: nothing to split. Most vertices are that, and splitting others does
-    // not change it.
+    // One fan, all turned alike: nothing to split. Most vertices are that, and splitting others
+    // does not change it.
     constexpr uint32_t kChunk = 8192;
     std::vector<uint8_t> whole(vertices, 0);
     parallel_for((vertices + kChunk - 1) / kChunk, [&](size_t chunk) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false};
 constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true};
-/// Mode best collapses this share of the triangles too many and puts them back where they are missed
-/// most: what is farthest off is a few spots.
+/// Mode best collapses this share of the triangles too many and puts them back where they are
+/// missed most: what is farthest off is a few spots.
 constexpr double kPutBack = 0.0025;
 
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,

@@ -10,7 +10,8 @@ namespace lodestone::approximate {
 /// Means by visible area, kept within what a material may hold; "stand-in" as its name.
 Material mean_material(const Attributes& attributes);
 
-/// Of a solid that covers `opacity` of what is behind it, both its surfaces together; unchanged at 1.
+/// Of a solid that covers `opacity` of what is behind it, both its surfaces together; unchanged
+/// at 1.
 Material clear_material(Material material, double opacity);
 
 /// Scatters `factor` times as much light, by color, kept within 0...1; of a textured color all

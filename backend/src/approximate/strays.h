@@ -30,18 +30,18 @@ struct Stray {
     uint32_t source = kNone;  // triangle of the original that the point is on
 };
 
-/// Looks from the original's vertices to the mesh, and from the mesh's vertices, edges and triangles
-/// to the original. Both only go downhill from where one is known to be: distances are never too
-/// small, sometimes too large. The mesh may be changed meanwhile as long as its triangles and
-/// vertices keep their numbers; `adjacency` stays that of the beginning.
+/// Looks from the original's vertices to the mesh, and from the mesh's vertices, edges and
+/// triangles to the original. Both only go downhill from where one is known to be: distances are
+/// never too small, sometimes too large. The mesh may be changed meanwhile as long as its triangles
+/// and vertices keep their numbers; `adjacency` stays that of the beginning.
 class Strays {
 public:
     /// `samples`: of the original's surface, many; others (without a source) do no harm.
     Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
            const Job& job);
 
-    /// Of each triangle the worst, worst first. Right as far as the first `most`: what cannot be one
-    /// of them is not looked for.
+    /// Of each triangle the worst, worst first. Right as far as the first `most`: what cannot be
+    /// one of them is not looked for.
     std::vector<Stray> list(size_t most, const Job& job) const;
     /// Looks from other sides, too: for the original's vertex from where its neighbors went, from a
     /// place of the mesh to all that is sampled around it. False: it is not far off after all.

@@ -15,8 +15,8 @@ namespace lodestone::approximate {
 namespace {
 
 /// Solids of one kind, each in the frame in which it is the unit ball, or the cube -1...1. Single
-/// precision: points are relative to the middle of all. All of them are asked for at once, four in one
-/// instruction, which takes less time than to stop at the first.
+/// precision: points are relative to the middle of all. All of them are asked for at once, four in
+/// one instruction, which takes less time than to stop at the first.
 struct Frames {
     std::array<std::vector<float>, 12> columns;  // of a 3 x 4 matrix, row by row
 

@@ -16,8 +16,9 @@ namespace lodestone::approximate {
 
 /// Area, center and second moments of what of opaque solids can be seen from outside. Of whole
 /// surfaces all that is exact; what is hidden of it is found by rays that leave them, which meet
-/// ellipsoids and boxes as they are: no triangles, no tree. The rays of two calls are the same ones,
-/// so results of solids that differ little differ little. The same bits on any number of threads.
+/// ellipsoids and boxes as they are: no triangles, no tree. The rays of two calls are the same
+/// ones, so results of solids that differ little differ little. The same bits on any number of
+/// threads.
 class VisibleSolids {
 public:
     VisibleSolids(uint32_t rays, uint64_t seed);

@@ -23,7 +23,8 @@ struct Witness {
     float longest = 0;  // its longest edge then, metres
 };
 
-/// Of the two directions: points of the source (its vertices), and of the level (vertices and area).
+/// Of the two directions: points of the source (its vertices), and of the level (vertices and
+/// area).
 struct Witnesses {
     std::vector<Witness> of_source;
     std::vector<Witness> of_level;

@@ -24,8 +24,8 @@ bool safe_relative_name(std::string_view name);
 /// Holds an exclusive advisory lock on a file for one writer; released when destroyed or killed.
 class FileLock {
 public:
-    /// Waits while somebody else holds it. Throws Error(Io) naming the file where it cannot be made,
-    /// and what `job` throws when it is cancelled.
+    /// Waits while somebody else holds it. Throws Error(Io) naming the file where it cannot be
+    /// made, and what `job` throws when it is cancelled.
     explicit FileLock(const std::filesystem::path& path, const Job& job = {});
     ~FileLock();
     FileLock(const FileLock&) = delete;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Beside: the environment of a group as a mesh of few triangles, and solids for everything else in it.
+// Beside: the environment of a group as a mesh of few triangles, and solids for everything else in
+// it.
 #pragma once
 
 #include "build/candidate.h"
@@ -7,9 +8,10 @@
 
 namespace lodestone::build {
 
-/// One mesh each: the environment simplified to about as many triangles as what stands on it has, which
-/// is a box, an ellipsoid, or a composite of four or eight. Judged by distance, to be proven by patches.
-/// `mesh`: the finest; `environment`: by triangle. Nothing where it has no environment, or nothing else.
+/// One mesh each: the environment simplified to about as many triangles as what stands on it has,
+/// which is a box, an ellipsoid, or a composite of four or eight. Judged by distance, to be proven
+/// by patches. `mesh`: the finest; `environment`: by triangle. Nothing where it has no environment,
+/// or nothing else.
 void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh,
                             const std::vector<uint8_t>& environment,
                             const std::vector<Material>& materials, const Settings& settings,

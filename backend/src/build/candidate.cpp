@@ -40,7 +40,8 @@ double tracing_of(const Candidate& candidate) {
     }
     if (!(area > 0))
         return 0;
-    // A convex surface shows a quarter of its area from any side, in the mean, and is crossed twice.
+    // A convex surface shows a quarter of its area from any side, in the mean, and is crossed
+    // twice.
     return kBytesPerCrossing * 0.5 * area / (candidate.error * candidate.error);
 }
 

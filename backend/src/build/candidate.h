@@ -27,10 +27,10 @@ struct Candidate {
 
 /// In POV-Ray's memory, of one.
 uint64_t bytes_of(const Candidate& candidate);
-/// What tracing clear surfaces takes, over opaque ones: the bytes that POV-Ray reads in that time, of
-/// one occurrence where it is used first, as far away that its error is a pixel. Measured (POV-Ray
-/// 3.7, trees, hedges and fences of 4 to 32 clear solids): each surface that a sample crosses takes
-/// 1.7 to 2.4 microseconds, mostly of shadow rays, a byte of a mesh 15 ns to read.
+/// What tracing clear surfaces takes, over opaque ones: the bytes that POV-Ray reads in that time,
+/// of one occurrence where it is used first, as far away that its error is a pixel. Measured
+/// (POV-Ray 3.7, trees, hedges and fences of 4 to 32 clear solids): each surface that a sample
+/// crosses takes 1.7 to 2.4 microseconds, mostly of shadow rays, a byte of a mesh 15 ns to read.
 double tracing_of(const Candidate& candidate);
 /// Of all its occurrences together, tracing included.
 double bytes_of(const Candidate& candidate, uint64_t uses);

@@ -108,8 +108,8 @@ double error_to_flatten(const Model& model, ObjectIndex group, uint64_t wanted, 
                         const std::vector<uint64_t>& uses, const Job& job) {
     constexpr int kFinest = -12;  // powers of two, over the radius
     constexpr int kCoarsest = 3;
-    // One mesh for a group has fewer triangles than its children at the same error, by this or more.
-    // (Kept ones: by 1.4 in the worst case of 105, by 4 in the middle.)
+    // One mesh for a group has fewer triangles than its children at the same error, by this or
+    // more. (Kept ones: by 1.4 in the worst case of 105, by 4 in the middle.)
     constexpr double kJoined = 1.5;
     constexpr double kFiner = 1.0 / 8;   // than the stand-ins
     constexpr double kLeast = 1.0 / 16;  // over the radius: for what only solids can stand for

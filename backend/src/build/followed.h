@@ -14,9 +14,9 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
                                           const MeshSource& source, image::TexelCache& texels,
                                           const Job& job);
 
-/// These levels where the object has them now. The errors are those of now, by witnesses: nothing is
-/// measured anew. All that can be drawn, fine to coarse; an error is raised to the finer one's where
-/// it would not be larger.
+/// These levels where the object has them now. The errors are those of now, by witnesses: nothing
+/// is measured anew. All that can be drawn, fine to coarse; an error is raised to the finer one's
+/// where it would not be larger.
 std::vector<Candidate> followed_levels(const Model& model, const Object& object,
                                        const segment::BoundLevels& levels, const Job& job);
 

@@ -23,12 +23,12 @@ struct Report {
 /// What build_hierarchy would do; wall_s is a guess from the triangles.
 Report estimate(Model& model, const segment::Store& store, const Settings& settings);
 
-/// `model` has its finest representations resident, what else it has is replaced; afterwards every reachable object has its
-/// list and the store holds it. Objects are matched with the store's by source hash, so names and
-/// places may change freely. The same result on any number of threads.
-/// Throws Error(Cancelled): then the model's lists are as before, and the store has what was finished by
-/// settings.keep_every_s before.
-/// A broken object gets a problem and only its finest level.
+/// `model` has its finest representations resident, what else it has is replaced; afterwards every
+/// reachable object has its list and the store holds it. Objects are matched with the store's by
+/// source hash, so names and places may change freely. The same result on any number of threads.
+/// Throws Error(Cancelled): then the model's lists are as before, and the store has what was
+/// finished by settings.keep_every_s before. A broken object gets a problem and only its finest
+/// level.
 Report build_hierarchy(Model& model, const segment::Store& store, const Settings& settings,
                        Problems& problems, const Job& job);
 

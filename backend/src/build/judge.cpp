@@ -56,8 +56,8 @@ const Mesh& traced_mesh(const Candidate& candidate, Mesh& solid) {
     return solid;
 }
 
-/// The ground is large, and what lies on it (roads, fields) a small share of it; a few triangles, with
-/// all of their corners, are known from a few points of each.
+/// The ground is large, and what lies on it (roads, fields) a small share of it; a few triangles,
+/// with all of their corners, are known from a few points of each.
 uint32_t samples_of(const Mesh& finest, bool environment, const Settings& settings) {
     constexpr uint64_t kOfTriangle = 8;
     constexpr uint64_t kFewest = 512;
@@ -198,8 +198,8 @@ const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled,
 }
 
 void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job) {
-    // 4,096 rays know the centroid of the reference shapes to .32 % of the radius of gyration, 32,768 to
-    // .07 %; of solids that hide each other to .3 and .1 %, 262,144 to .04 %.
+    // 4,096 rays know the centroid of the reference shapes to .32 % of the radius of gyration,
+    // 32,768 to .07 %; of solids that hide each other to .3 and .1 %, 262,144 to .04 %.
     constexpr uint64_t kMoreRays = 8;
     constexpr uint32_t kRaysOfMany = 262144;
     constexpr double kStands = 1e-9;  // over the size
@@ -347,8 +347,8 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     candidate.matched = true;
     if (candidate.kind != Kind::Mesh || layer_)
         return;
-    // Near something else that is left a point may have been all that closed a gap. Where the error is
-    // as large as the pictures' pixels all that they show counts, half.
+    // Near something else that is left a point may have been all that closed a gap. Where the error
+    // is as large as the pictures' pixels all that they show counts, half.
     const double own = candidate.error - child_error_;
     const double seen = own < kUsedNear * size_ ? pictures_->gaps_of(traced, current, own)
                                                 : kPictures * pictures_->of(traced, current).error;

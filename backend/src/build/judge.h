@@ -36,12 +36,12 @@ public:
     /// prove() need.
     void measure_finest(const Mesh& finest, const Job& job);
 
-    /// Errors of a flat thing (road, carpet, wall) that lies in layers count as those of environment
-    /// from here on. After measure_finest().
+    /// Errors of a flat thing (road, carpet, wall) that lies in layers count as those of
+    /// environment from here on. After measure_finest().
     void count_layers();
 
-    /// Errors of meshes are those of half of the points from here on: of a group's, which are far off
-    /// beside those of a leaf. What a solid of one color hides takes all points to be told.
+    /// Errors of meshes are those of half of the points from here on: of a group's, which are far
+    /// off beside those of a leaf. What a solid of one color hides takes all points to be told.
     void measure_roughly() { rough_ = true; }
 
     const Attributes& attributes() const { return attributes_; }
@@ -63,40 +63,42 @@ public:
     /// False for a level of the finest's materials that shows another amount of surface.
     bool shows_as_much(const Mesh& level, const Job& job) const;
     /// Likewise of a candidate that is a mesh. Otherwise its error is at least half as large as the
-    /// patches that do not look like the finest's. `used_to`: the error from which on another is used.
+    /// patches that do not look like the finest's. `used_to`: the error from which on another is
+    /// used.
     bool prove(Candidate& candidate, double used_to, const Job& job) const;
-    /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others. Where the
-    /// error is much larger than `useless` it may be infinite, which takes less time.
+    /// Fill the errors of a candidate; a mesh has the finest's materials, or these and others.
+    /// Where the error is much larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
                       double useless = std::numeric_limits<double>::infinity(),
                       std::span<const ray::Closest> nearest = {});
     /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 
-    /// Sets area and centroid of solids right by many more rays. `finest`: the mesh measured as such;
-    /// what stands at `floor` or would reach below it keeps its foot. Single solids stay where the
-    /// finest was measured exactly, and all whose error is the radius or more.
+    /// Sets area and centroid of solids right by many more rays. `finest`: the mesh measured as
+    /// such; what stands at `floor` or would reach below it keeps its foot. Single solids stay
+    /// where the finest was measured exactly, and all whose error is the radius or more.
     void settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job);
 
-    /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for candidates
-    /// that will be far from the finest. `finest`: all of it, or what of it can be seen.
+    /// Takes the pictures that compare_pictures() needs. `coarse`: four times faster, for
+    /// candidates that will be far from the finest. `finest`: all of it, or what of it can be seen.
     void take_pictures(const Mesh& finest, bool coarse, const Job& job);
-    /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures. It
-    /// is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
+    /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures.
+    /// It is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
     void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
     /// Makes any other candidate that is used from far enough (up to an error of `used_to`, where
-    /// the next one takes over) as bright as the finest, by the colors of all its slots, and lets it
-    /// glow as much. Shades that much alike are one look to errors; but of a mesh counts what is seen
-    /// through gaps, and where it is off by a twelfth of the radius half of the pixel size from which
-    /// on pictures agree: what is near something else may have been all that closed a gap.
+    /// the next one takes over) as bright as the finest, by the colors of all its slots, and lets
+    /// it glow as much. Shades that much alike are one look to errors; but of a mesh counts what is
+    /// seen through gaps, and where it is off by a twelfth of the radius half of the pixel size
+    /// from which on pictures agree: what is near something else may have been all that closed a
+    /// gap.
     void match_brightness(Candidate& candidate, const Mesh& finest, double used_to, const Job& job);
 
-    /// Makes an opaque box whose sides are not of one color a mesh of vertex colors, about as bright
-    /// from each side as the finest. After measure_finest().
+    /// Makes an opaque box whose sides are not of one color a mesh of vertex colors, about as
+    /// bright from each side as the finest. After measure_finest().
     void paint(Candidate& candidate) const;
 
-    /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
-    /// in pictures of pixels of that error.
+    /// Whether what is drawn of a group's children is about as bright as the finest, and looks like
+    /// it in pictures of pixels of that error.
     bool looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,
                      double error, const Job& job);
 

@@ -8,9 +8,9 @@ namespace lodestone::build {
 
 /// By object. 0: nothing of it lies in thin layers; else a hash that tells which of its leaves do
 /// (for a leaf any other number). A flat leaf does where, at one of its first places, most of the
-/// narrower of two surfaces is nearer to the other than a sixteenth of its width. Environment is not
-/// asked, but lies under others. What would take too long to find out counts as lying in layers.
-/// `order` is bottom_up's.
+/// narrower of two surfaces is nearer to the other than a sixteenth of its width. Environment is
+/// not asked, but lies under others. What would take too long to find out counts as lying in
+/// layers. `order` is bottom_up's.
 std::vector<Hash> layers_of(const Model& model, const std::vector<ObjectIndex>& order,
                             const MeshSource& source, const Job& job);
 

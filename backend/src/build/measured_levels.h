@@ -20,8 +20,8 @@ struct Wanted {
     double told = 0;
 };
 
-/// Levels of so many triangles, fine to coarse. Measured from the coarsest on: what will not be near
-/// enough, by the one before it, is not measured at all.
+/// Levels of so many triangles, fine to coarse. Measured from the coarsest on: what will not be
+/// near enough, by the one before it, is not measured at all.
 void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
                 const Wanted& wanted, Judge& judge, const Job& job);

@@ -38,8 +38,8 @@ struct ReductionReport {
 };
 
 /// Finest meshes must be resident; for `pixels` the root's bound must be known. Each object's error
-/// counts as large as its largest occurrence makes it. Throws Error(InvalidArgument) when not exactly
-/// one target is set.
+/// counts as large as its largest occurrence makes it. Throws Error(InvalidArgument) when not
+/// exactly one target is set.
 ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job);
 
 }  // namespace lodestone::build

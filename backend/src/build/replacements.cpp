@@ -117,10 +117,10 @@ bool would_pay(const Candidate& composite, double error, const std::vector<Candi
 void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
                     const approximate::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
                     const Whole& whole, const Job& job) {
-    // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one that
-    // shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or more):
-    // only those that may pay by these are matched. Fewer solids are hardly ever much nearer: where
-    // not even that would pay, one picture is enough.
+    // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
+    // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
+    // more): only those that may pay by these are matched. Fewer solids are hardly ever much
+    // nearer: where not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
     constexpr double kFewerNearer = 0.75;
     constexpr uint32_t kFewRays = 1024;

@@ -46,8 +46,8 @@ struct Settings {
     /// Build only what one picture gains most from, in a share of its time. What is left keeps its
     /// finest level alone, and stays stale. Not part of the hash.
     std::optional<Demand> demand;
-    /// What is finished goes to the store about this often, so that a build that is stopped or killed
-    /// is gone on with, not begun again. Not part of the hash.
+    /// What is finished goes to the store about this often, so that a build that is stopped or
+    /// killed is gone on with, not begun again. Not part of the hash.
     double keep_every_s = 20;
 };
 

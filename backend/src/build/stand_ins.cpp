@@ -48,7 +48,8 @@ public:
     }
 
     double bytes() const { return steps_.front().bytes; }
-    /// The error from which on they cost no more than `bytes`; a step too large rather than too small.
+    /// The error from which on they cost no more than `bytes`; a step too large rather than too
+    /// small.
     double cheaper_from(double bytes) const {
         for (const Step& step : steps_) {
             if (step.bytes <= bytes)
@@ -117,8 +118,8 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
 }
 
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
-/// less, but do not look like the group where the next level takes over. The same children serve from
-/// less error on, where they look no worse.
+/// less, but do not look like the group where the next level takes over. The same children serve
+/// from less error on, where they look no worse.
 void seal(std::vector<Candidate>& levels, const Model& model, ObjectIndex group, const Mesh& finest,
           const std::vector<uint64_t>& uses, const MeshSource& source, Judge& judge,
           const Job& job) {
@@ -287,7 +288,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     std::vector<Candidate> useful = kept_of(out.candidates, keep, judge, reference.mesh, job);
     const bool saves = !useful.empty();
     if (!saves) {
-        // Every group has a stand-in, even one that saves nothing but the occurrences: the cheapest.
+        // Every group has a stand-in, even one that saves nothing but the occurrences: the
+        // cheapest.
         while (useful.empty() && !out.candidates.empty()) {
             useful = out.candidates;
             keep_useful(useful, ~uint64_t{0});

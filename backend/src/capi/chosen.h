@@ -19,8 +19,8 @@ std::vector<Representation>& levels_with(lds_model& model, const quality::Node& 
 /// Index of the node that a choice is; throws unless the cut is current and has it.
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);
 
-/// Reads the meshes of these levels of cut.chosen that are not in memory yet; a level that no object
-/// has (quality::kBoxOnly) needs none.
+/// Reads the meshes of these levels of cut.chosen that are not in memory yet; a level that no
+/// object has (quality::kBoxOnly) needs none.
 void load_levels(lds_model& model, const quality::Cut& cut, const std::vector<uint32_t>& levels,
                  const Job& job);
 

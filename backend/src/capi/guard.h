@@ -69,8 +69,8 @@ void require_size(const Struct* value, size_t least, const char* what) {
              " or more expected");
 }
 
-/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least` is
-/// the size of version 1.
+/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least`
+/// is the size of version 1.
 template <typename Struct>
 Struct grown(const Struct* value, size_t least, const char* what) {
     require_size(value, least, what);
@@ -79,7 +79,8 @@ Struct grown(const Struct* value, size_t least, const char* what) {
     return out;
 }
 
-/// Copies as much of a result out as the caller's struct can hold; throws before anything is written.
+/// Copies as much of a result out as the caller's struct can hold; throws before anything is
+/// written.
 template <typename Struct>
 void hand_out_grown(Struct* out, Struct value, size_t least, const char* what) {
     require_size(out, least, what);

@@ -34,9 +34,9 @@ struct Baked {
     double limit = 1;
 };
 
-/// An 8 bit PNG of the largest picture's size. All textures of the recipe have the same layout. What
-/// exceeds 1 is clamped, or, `bright`, divided by a power of two. Nothing when a picture is not
-/// resident or broken, or there are too many pixels.
+/// An 8 bit PNG of the largest picture's size. All textures of the recipe have the same layout.
+/// What exceeds 1 is clamped, or, `bright`, divided by a power of two. Nothing when a picture is
+/// not resident or broken, or there are too many pixels.
 std::optional<Baked> bake(const Recipe& recipe, ColorSpace space, bool bright = false);
 
 /// Of all that bake() looks at.

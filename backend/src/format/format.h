@@ -13,8 +13,9 @@ namespace lodestone::format {
 /// opened only inside the folder of `path`. Throws Error(Io) or Error(BadFile) naming the file.
 Model read_model(const std::filesystem::path& path, Problems& problems);
 
-/// .glb keeps placements and sharing. .obj (with an .mtl and the pictures, "<16 hex>.png", beside it)
-/// and .ply (without materials) hold the finest representations of all occurrences in one mesh. Throws Error(Io) or Error(InvalidArgument).
+/// .glb keeps placements and sharing. .obj (with an .mtl and the pictures, "<16 hex>.png", beside
+/// it) and .ply (without materials) hold the finest representations of all occurrences in one mesh.
+/// Throws Error(Io) or Error(InvalidArgument).
 void write_model(const std::filesystem::path& path, const Model& model);
 
 /// All occurrences below the root in one mesh. `materials[slot]` indexes model.materials; slots of

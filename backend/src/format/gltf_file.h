@@ -12,10 +12,10 @@ class Model;
 
 namespace lodestone::format {
 
-/// GLB or glTF text, told by the first bytes. Buffers in files of their own are read only from below
-/// `folder` (empty: none); pictures in files of their own are not read, those of data: URIs stay
-/// encoded, in Image::image. References inside the model are not checked. Throws Error(BadFile)
-/// naming `name`.
+/// GLB or glTF text, told by the first bytes. Buffers in files of their own are read only from
+/// below `folder` (empty: none); pictures in files of their own are not read, those of data: URIs
+/// stay encoded, in Image::image. References inside the model are not checked. Throws
+/// Error(BadFile) naming `name`.
 void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesystem::path& folder,
                const std::string& name);
 

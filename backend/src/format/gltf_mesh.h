@@ -5,8 +5,8 @@
 //   version  1
 //   slots    the slot of each primitive, in order of first use (absent: the mesh has no slots)
 //   order    accessor of the slot of each triangle (absent: triangles are sorted as primitives are)
-// Where v does not survive 1 - (1 - v), the attribute _LODESTONE_V has the true one. Colors that the
-// material does not use are _LODESTONE_COLOR: glTF would multiply by COLOR_0.
+// Where v does not survive 1 - (1 - v), the attribute _LODESTONE_V has the true one. Colors that
+// the material does not use are _LODESTONE_COLOR: glTF would multiply by COLOR_0.
 #pragma once
 
 #include "model/mesh.h"

@@ -110,7 +110,8 @@ private:
         return true;
     }
 
-    /// The texture of a map line, with its picture; nothing when that is not there (a problem then).
+    /// The texture of a map line, with its picture; nothing when that is not there (a problem
+    /// then).
     std::optional<MapLine> map_of(std::string_view line, ColorSpace space,
                                   const Material& material) {
         MapLine map = map_line(line);

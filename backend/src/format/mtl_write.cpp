@@ -90,8 +90,8 @@ private:
         out_.pictures.emplace(name, texture.picture);
     }
 
-    /// As MTL can say it: the picture's own values times `limit`; Luma: its one number; Alpha: that,
-    /// or the picture's alpha if it has one. Without a picture when that is not to be had.
+    /// As MTL can say it: the picture's own values times `limit`; Luma: its one number; Alpha:
+    /// that, or the picture's alpha if it has one. Without a picture when that is not to be had.
     Baked drawn(const Texture& texture, ColorSpace space, Channel channel, bool bright = false) {
         if (!texture || texture.picture->bytes.empty())
             return {};

@@ -66,8 +66,8 @@ bool pays(const std::vector<Part>& parts, size_t triangles) {
     return 2 * in_small >= triangles;
 }
 
-/// Cuts lists of parts in two until each has few triangles: where the sum of (surface of the bound) x
-/// (triangles) of both sides is least, so that what is near shares a cluster (4.5.3).
+/// Cuts lists of parts in two until each has few triangles: where the sum of (surface of the bound)
+/// x (triangles) of both sides is least, so that what is near shares a cluster (4.5.3).
 class Cutter {
 public:
     Cutter(const std::vector<Part>& parts, size_t triangles, const Job& job)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grouping by position: what stands together becomes a group, so that no assembly has many children.
+// Grouping by position: what stands together becomes a group, so that no assembly has many
+// children.
 #pragma once
 
 #include "model/model.h"

@@ -15,12 +15,12 @@ struct StructureReport {
     double cost_after = 0;
 };
 
-/// Gives those of the groups that have more than options.fewest children small groups in their place, to
-/// any depth, by place, size, color, orientation and shape of the children. Every placement keeps
-/// its transform (groups are placed where they are: by the identity), so occurrences stay exactly
-/// where they were; what is in a group keeps its order. What deforms or hides something from some
-/// rays stays where it is, for nothing ever stands for its group; environment is grouped with
-/// environment. No group is left with more than options.most children.
+/// Gives those of the groups that have more than options.fewest children small groups in their
+/// place, to any depth, by place, size, color, orientation and shape of the children. Every
+/// placement keeps its transform (groups are placed where they are: by the identity), so
+/// occurrences stay exactly where they were; what is in a group keeps its order. What deforms or
+/// hides something from some rays stays where it is, for nothing ever stands for its group;
+/// environment is grouped with environment. No group is left with more than options.most children.
 ///
 /// Uids come from the group's and the members': the same members make the same group again.
 /// Throws Error(InvalidArgument) when an object is no group, or most < kLeastChildren;

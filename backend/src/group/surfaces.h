@@ -9,8 +9,8 @@
 namespace lodestone::group {
 
 /// One number a triangle, rising from 0 in order of first triangles: those that share a whole edge
-/// have the same. Where more than one surface meets in an edge (boxes that touch) it joins each with
-/// itself alone.
+/// have the same. Where more than one surface meets in an edge (boxes that touch) it joins each
+/// with itself alone.
 std::vector<uint32_t> loose_parts(const Mesh& mesh);
 
 }  // namespace lodestone::group

@@ -50,15 +50,15 @@ struct BakeStep {
 inline constexpr size_t kMostBakeSteps = 256;
 inline constexpr int kMostBakeSide = 4096;
 
-/// The last step's color for each texel of a picture of that size that fills 0...1 x 0...1; alpha 1.
-/// Not a number counts as 0. Throws Error(InvalidArgument) when a step uses a later one, or a
-/// texture or table that is not there.
+/// The last step's color for each texel of a picture of that size that fills 0...1 x 0...1;
+/// alpha 1. Not a number counts as 0. Throws Error(InvalidArgument) when a step uses a later one,
+/// or a texture or table that is not there.
 Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures, int width,
            int height, const Job& job = {});
 
-/// What is baked, as a picture: an 8-bit PNG, display-encoded for Srgb, else the numbers as they are.
-/// The newest ones (256 MiB) are remembered for the life of the process: an animation bakes once.
-/// Any thread.
+/// What is baked, as a picture: an 8-bit PNG, display-encoded for Srgb, else the numbers as they
+/// are. The newest ones (256 MiB) are remembered for the life of the process: an animation bakes
+/// once. Any thread.
 PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
                         int width, int height, ColorSpace space, const std::string& name,
                         const Job& job = {});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OpenEXR allocates by what the header says, so the header's sizes are checked by our own walk
-// through it first (OpenEXR's own limits are global and would hold for our host program, too). Where
-// OpenEXR reads a header otherwise than we do (it takes an attribute's size from its type), it is refused.
+// through it first (OpenEXR's own limits are global and would hold for our host program, too).
+// Where OpenEXR reads a header otherwise than we do (it takes an attribute's size from its type),
+// it is refused.
 #include "base/error.h"
 #include "image/codecs.h"
 
@@ -144,7 +145,8 @@ Window window_of(const Layout& layout, const std::optional<Part>& part, const st
     return {x, y, x + part->width - 1, y + part->height - 1};
 }
 
-/// Reads what `data` holds of `window` into `pixels` (RGBA, the window's rows), a few rows at a time.
+/// Reads what `data` holds of `window` into `pixels` (RGBA, the window's rows), a few rows at a
+/// time.
 void read_rows(Imf::InputFile& file, const Window& data, const Window& window, bool gray,
                std::vector<float>& pixels) {
     const int32_t first = std::max(window.x0, data.x0);

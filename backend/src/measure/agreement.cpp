@@ -27,7 +27,8 @@ constexpr double kMostMisses = 2;
 // Bounds of the finest and of larger stand-ins: pictures show this much around.
 constexpr double kMargin = 1.1;
 
-/// Towards 13 faces, edges and corners of a cube from its middle: of each opposite pair one, in turns.
+/// Towards 13 faces, edges and corners of a cube from its middle: of each opposite pair one, in
+/// turns.
 std::vector<glm::dvec3> directions() {
     std::vector<glm::dvec3> out;
     for (int number = 0; number < 13; ++number) {
@@ -54,8 +55,9 @@ struct View {
     }
 };
 
-/// Where in its cell a sample lies. Points of a sequence that fills space evenly would lie in one half
-/// of all cells of even columns and in the other half of the odd ones, and miss what lies between.
+/// Where in its cell a sample lies. Points of a sequence that fills space evenly would lie in one
+/// half of all cells of even columns and in the other half of the odd ones, and miss what lies
+/// between.
 std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
     constexpr double kUnit = 1.0 / 4294967296.0;
     const uint64_t bits = scramble(scramble(seed) + number);
@@ -154,7 +156,8 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
     const std::vector<glm::dvec3> views = directions();
     const double lift = ray_lift(radius_);
     const Glass glass(mesh, skin, scene, lift);
-    // Of most things nine of ten rays would miss: they are long and narrow, and their bound is round.
+    // Of most things nine of ten rays would miss: they are long and narrow, and their bound is
+    // round.
     std::vector<std::optional<Frame>> frames(kViews);
     parallel_for(kViews, [&](size_t number) {
         frames[number].emplace(mesh, View(views[number], number), center_, radius_);

@@ -11,8 +11,8 @@
 namespace lodestone::measure {
 namespace {
 
-// An edge that rises above its neighbor by less is flat: a share of its length (what it hides is lit at
-// this angle: 2 % of the light), or of the mesh's size
+// An edge that rises above its neighbor by less is flat: a share of its length (what it hides is
+// lit at this angle: 2 % of the light), or of the mesh's size
 constexpr double kGrazing = 0.02;
 constexpr double kFlatAngle = 1e-3;
 constexpr double kFlatSize = 1e-6;

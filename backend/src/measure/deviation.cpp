@@ -21,14 +21,15 @@ using Sample = SurfaceSample;
 // Of levels as fine as scans a few vertices decide the quantile: those of the stand-in are taken
 // all, up to so many at least.
 constexpr uint32_t kLevelVertices = 16384;
-// At so many samples of each look, if it has them, what became of it is asked; what solids of a mean
-// color miss changes little from one sample to the next, and takes long.
+// At so many samples of each look, if it has them, what became of it is asked; what solids of a
+// mean color miss changes little from one sample to the next, and takes long.
 constexpr size_t kAsked = 512;
 constexpr size_t kAskedOfMixed = 256;
 // One point of so many is asked for a rough answer.
 constexpr uint32_t kFew = 2;
 
-/// One of kFew points, by no regular step: the corners of boxes are listed bottom, top, bottom, top.
+/// One of kFew points, by no regular step: the corners of boxes are listed bottom, top, bottom,
+/// top.
 bool is_of_few(size_t i) {
     return static_cast<uint32_t>(i) * 0x9E3779B9u >= 0x80000000u;
 }

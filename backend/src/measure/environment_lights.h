@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Environment lights: few suns and one uniform sky that light surfaces as a picture all around does.
+// Environment lights: few suns and one uniform sky that light surfaces as a picture all around
+// does.
 #pragma once
 
 #include "model/view.h"
@@ -18,8 +19,8 @@ struct EnvironmentLights {
     std::vector<EnvironmentLight> lights;  // at most as many as asked for
 };
 
-/// Replaces a world's environment. The darkest part of it everywhere is the uniform sky; the rest is
-/// cut into regions of equal brightness, each a sun from the middle of its light, and the suns'
+/// Replaces a world's environment. The darkest part of it everywhere is the uniform sky; the rest
+/// is cut into regions of equal brightness, each a sun from the middle of its light, and the suns'
 /// strengths are then fitted so that surfaces facing any way receive what the picture gives them.
 /// Throws Error(BadFile) for a picture that cannot be decoded. cost: that of decoding.
 /// source: Debevec, A median cut algorithm for light probe sampling (the regions)

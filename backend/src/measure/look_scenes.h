@@ -28,7 +28,8 @@ public:
     }
     bool several() const { return by_look_.size() > 1; }
     bool has(uint16_t look) const { return looks_.empty() ? look == 0 : by_look_.count(look) != 0; }
-    /// The nearest point of a look; at infinity when there is none within `radius`. From any thread.
+    /// The nearest point of a look; at infinity when there is none within `radius`. From any
+    /// thread.
     ray::Closest nearest(uint16_t look, const glm::dvec3& point,
                          double radius = std::numeric_limits<double>::infinity()) const;
 

@@ -11,8 +11,8 @@ namespace lodestone::measure {
 
 /// Numbers for materials; those whose display-encoded colors, and what they emit and let through,
 /// differ by at most kSameLook share one (the first seen decides, so ask for the finest's materials
-/// first). What varies by texture or vertex color has a look of its own, as long as the mesh has what
-/// it varies by; its color is the mean.
+/// first). What varies by texture or vertex color has a look of its own, as long as the mesh has
+/// what it varies by; its color is the mean.
 class Looks {
 public:
     static constexpr double kSameLook = 0.1;

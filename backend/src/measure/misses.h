@@ -24,8 +24,8 @@ struct Difference {
         squares += both * both;
         products += first * second;
     }
-    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent between
-    /// the halves, so their products know what it added to the squares.
+    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent
+    /// between the halves, so their products know what it added to the squares.
     double mean(double count) const {
         const double real = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0;
         return sum / count * std::sqrt(real);

@@ -215,8 +215,8 @@ std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene
         if (both[i] > 0)
             more[i] = all[i] / all.w / (both[i] / both.w);
     }
-    // Likeliest colors by expectation and maximization (Richardson 1972, Lucy 1974): none gets below
-    // 0, and all light together is right in each round.
+    // Likeliest colors by expectation and maximization (Richardson 1972, Lucy 1974): none gets
+    // below 0, and all light together is right in each round.
     std::fill(out.begin(), out.end(), glm::dvec4(1.0));
     for (int round = 0; round < kRounds; ++round) {
         std::vector<glm::dvec4> sums(out.size(), glm::dvec4(0.0));

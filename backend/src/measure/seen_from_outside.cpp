@@ -64,8 +64,8 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         }
         return false;
     };
-    // Half of the rays first. A triangle that they do not find, with no found triangle at its corners,
-    // lies in the dark with everything around it.
+    // Half of the rays first. A triangle that they do not find, with no found triangle at its
+    // corners, lies in the dark with everything around it.
     std::vector<uint8_t> bright(mesh.positions.size(), 0);
     const std::vector<uint32_t> welded = weld(mesh);
     const auto corners_of = [&](size_t index) {

@@ -147,8 +147,8 @@ private:
         }
     }
 
-    /// All uses of edges by their lower end; a part with an edge that is not used twice, in opposite
-    /// directions, is open.
+    /// All uses of edges by their lower end; a part with an edge that is not used twice, in
+    /// opposite directions, is open.
     void list_edges() {
         first_.resize(welded_.size() + 2, 0);
         for_all_uses([&](uint32_t low, Use) { ++first_[low + 2]; });

@@ -56,8 +56,8 @@ void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
                         std::vector<SurfaceSample>& out);
 
 /// Points that rays from outside hit, sharing the visible area of one side equally. Of something
-/// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found, up to
-/// twice as many as points were wanted; with glass none.
+/// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found,
+/// up to twice as many as points were wanted; with glass none.
 std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
                                      const Surface& surface, uint32_t count, const Job& job,
                                      std::vector<SurfaceSample>& out);

@@ -138,8 +138,8 @@ void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& nu
     tally.rays += count;
 }
 
-/// Whether twice the rays changed little. The halves of an even sequence make up for each other: what
-/// the second one moves is mostly more than both together are off.
+/// Whether twice the rays changed little. The halves of an even sequence make up for each other:
+/// what the second one moves is mostly more than both together are off.
 bool is_settled(const Tally& before, const Tally& now, double share) {
     constexpr double kArea = 5;
     if (before.hits < kFewestHits)

@@ -99,8 +99,8 @@ double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec
 double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& color,
                                    double most) const {
     constexpr size_t kFirst = 16;
-    // A square and the number of what is so near: bits of floats that are not negative are in order.
-    // Nobody can guess which are, so all are written, and the next one over what is not.
+    // A square and the number of what is so near: bits of floats that are not negative are in
+    // order. Nobody can guess which are, so all are written, and the next one over what is not.
     std::vector<uint64_t> near(mixed_.size());
     const bool sided = is_sided(from.side);
     size_t count = 0;

@@ -13,8 +13,8 @@
 
 namespace lodestone::measure {
 
-/// Of samples that can be seen, which must outlive it. "From the same side": both are seen at once, not
-/// the grass from above and the road from below. Any thread.
+/// Of samples that can be seen, which must outlive it. "From the same side": both are seen at once,
+/// not the grass from above and the road from below. Any thread.
 class VisibleLooks {
 public:
     VisibleLooks(const std::vector<SurfaceSample>& visible, const Looks* palette);
@@ -23,15 +23,15 @@ public:
     /// mean.
     bool glows(uint16_t look) const { return look < glowing_.size() && glowing_[look] != 0; }
 
-    /// The distance to the nearest point of look `look` that can be seen, from the same side; `most`
-    /// where it is not less.
+    /// The distance to the nearest point of look `look` that can be seen, from the same side;
+    /// `most` where it is not less.
     double nearest(const SurfaceSample& from, uint16_t look, double most) const;
 
     /// The same for what shows a color.
     double nearest_of_color(const SurfaceSample& from, const glm::dvec3& color, double most) const;
 
-    /// The radius around a point within which the visible colors mix (as light does, in a pixel that
-    /// shows them all) to `color`; `most` where it is not less, or not even all of them do.
+    /// The radius around a point within which the visible colors mix (as light does, in a pixel
+    /// that shows them all) to `color`; `most` where it is not less, or not even all of them do.
     double mixing_radius(const SurfaceSample& from, const glm::dvec3& color, double most) const;
 
     /// Whether these are the samples that numbers are of.

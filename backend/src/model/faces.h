@@ -13,16 +13,15 @@ namespace lodestone {
 struct Faces {
     const float* positions = nullptr;  // [vertex_count][3]
     size_t vertex_count = 0;
-    std::span<const uint32_t> vertices;  // [corner]
-    std::span<const uint32_t> starts;    // [face] its first corner; empty: all have three
-    std::span<const uint32_t>
-        triangles;                    // [triangle][3] corners, in the order of the faces; empty:
-                                      // faces of three and four corners are split here
-    std::span<const uint8_t> smooth;  // [face]; empty: all flat
-    std::span<const int32_t> slots;   // [face]; empty: all 0
-    const float* normals = nullptr;   // [corner][3]; null: made from the faces
-    const float* uvs = nullptr;       // [corner][2]
-    const float* colors = nullptr;    // [corner][4]
+    std::span<const uint32_t> vertices;    // [corner]
+    std::span<const uint32_t> starts;      // [face] its first corner; empty: all have three
+    std::span<const uint32_t> triangles;   // [triangle][3] corners, in the order of the faces;
+                                           // empty: faces of three and four corners are split here
+    std::span<const uint8_t> smooth;       // [face]; empty: all flat
+    std::span<const int32_t> slots;        // [face]; empty: all 0
+    const float* normals = nullptr;        // [corner][3]; null: made from the faces
+    const float* uvs = nullptr;            // [corner][2]
+    const float* colors = nullptr;         // [corner][4]
     const float* vertex_colors = nullptr;  // [vertex][4], where there are no colors of corners
 
     size_t count() const { return starts.empty() ? vertices.size() / 3 : starts.size(); }
@@ -32,8 +31,8 @@ struct Faces {
     }
 };
 
-/// Throws Error(InvalidArgument) for lengths that do not fit, indices out of range, faces that do not
-/// follow each other, and a face of more than four corners without `triangles`.
+/// Throws Error(InvalidArgument) for lengths that do not fit, indices out of range, faces that do
+/// not follow each other, and a face of more than four corners without `triangles`.
 void check(const Faces& faces);
 
 /// The most corners of one face; 0: there are no faces or they do not follow each other.

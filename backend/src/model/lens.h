@@ -20,8 +20,9 @@ enum class LensFilter : uint8_t {
     Show = 2,    // and nothing else is drawn whose bound has its center inside
 };
 
-/// A region of the world. Inside it everything is drawn `strength` times finer (below 1: coarser), less so
-/// towards its rim: 1 + (strength - 1) cos(pi d / 2 radius)^falloff, with d measured in the lens's own frame.
+/// A region of the world. Inside it everything is drawn `strength` times finer (below 1: coarser),
+/// less so towards its rim: 1 + (strength - 1) cos(pi d / 2 radius)^falloff, with d measured in the
+/// lens's own frame.
 struct DetailLens {
     std::string name;
     LensShape shape = LensShape::Sphere;

@@ -46,7 +46,8 @@ struct Material {
     Texture bump_texture;      // height: channel's value times bump_distance
     double bump_distance = 0;  // metres from black to white; below 0 inward
 
-    /// Mixed with another one (which may be mixed, too; kMostMixtures at most): shading is (1 - mix) of this and mix of that.
+    /// Mixed with another one (which may be mixed, too; kMostMixtures at most): shading is (1 -
+    /// mix) of this and mix of that.
     std::shared_ptr<const Material> other;
     double mix = 0;
     Texture mix_texture;

@@ -17,7 +17,8 @@ namespace lodestone {
 
 using Triangle = glm::uvec3;
 
-/// A vertex is one (position, normal, uv, color); a seam or sharp edge splits it. Metres, object's frame.
+/// A vertex is one (position, normal, uv, color); a seam or sharp edge splits it. Metres, object's
+/// frame.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  // empty (flat shaded), or unit, one a vertex
@@ -40,8 +41,8 @@ Hash hash_of(const Mesh& mesh);
 void check(const Mesh& mesh);
 
 /// Mends the user's side: drops triangles that use a non-finite vertex, replaces non-finite or zero
-/// normals by the face's, non-finite uvs by 0 and colors by white, drops vertices nothing uses. Zero-area triangles stay
-/// (they draw nothing). Adds one problem per cause, naming `object`.
+/// normals by the face's, non-finite uvs by 0 and colors by white, drops vertices nothing uses.
+/// Zero-area triangles stay (they draw nothing). Adds one problem per cause, naming `object`.
 void repair(Mesh& mesh, const std::string& object, Problems& problems);
 
 /// Appends `part`, transformed, with its slots raised by `first_slot`. Mirrored parts are turned so

@@ -30,19 +30,19 @@ std::vector<uint8_t> with_environment(const Model& model);
 /// For every object 1 when it deforms or places such an object at any depth.
 std::vector<uint8_t> with_deforming(const Model& model);
 
-/// For every object 1 when something it places, at any depth, is hidden from some rays: one stand-in
-/// for all of it would be seen by rays that must not see a part. Such a group has none.
+/// For every object 1 when something it places, at any depth, is hidden from some rays: one
+/// stand-in for all of it would be seen by rays that must not see a part. Such a group has none.
 std::vector<uint8_t> with_hidden(const Model& model);
 
 /// Sets what every object's demand is from what is decided about the placements below it.
 void set_demands(Model& model, const std::vector<ObjectIndex>& order);
 
-/// Fills summaries of every assembly (bound, cost, hash), demands and source hashes from its children.
-/// `order` is bottom_up's.
+/// Fills summaries of every assembly (bound, cost, hash), demands and source hashes from its
+/// children. `order` is bottom_up's.
 void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
 
-/// Fills bound, cost and hash of a representation from its (mesh or primitive) payload; `mesh_hash`:
-/// of the mesh, where it is known already.
+/// Fills bound, cost and hash of a representation from its (mesh or primitive) payload;
+/// `mesh_hash`: of the mesh, where it is known already.
 void summarize(Representation& representation, const Model& model,
                std::optional<Hash> mesh_hash = std::nullopt);
 

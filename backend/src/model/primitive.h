@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Primitives: exact box and ellipsoid, and their tessellation for consumers that know only triangles.
+// Primitives: exact box and ellipsoid, and their tessellation for consumers that know only
+// triangles.
 #pragma once
 
 #include "model/mesh.h"

@@ -18,10 +18,10 @@ enum class Projection : uint8_t {
     Tube = 3,    // longitude around that point's z axis, and z
 };
 
-/// The texture coordinates of a triangle's corners, from points in the space that the picture is laid
-/// on and the triangle's normal (any length) in the object's. Triangles across the seam of Sphere and Tube
-/// go on beyond 1, so that a repeated picture has no seam.
-/// source: Blender's image texture node, as Cycles draws it; Box without blending
+/// The texture coordinates of a triangle's corners, from points in the space that the picture is
+/// laid on and the triangle's normal (any length) in the object's. Triangles across the seam of
+/// Sphere and Tube go on beyond 1, so that a repeated picture has no seam. source: Blender's image
+/// texture node, as Cycles draws it; Box without blending
 std::array<glm::dvec2, 3> project(Projection projection, const std::array<glm::dvec3, 3>& points,
                                   const glm::dvec3& normal);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Representation: one way to draw an object. Its summary is always known; its payload may be absent.
+// Representation: one way to draw an object. Its summary is always known; its payload may be
+// absent.
 #pragma once
 
 #include "base/hash.h"
@@ -58,7 +59,8 @@ struct Summary {
     bool sealed = false;
 };
 
-/// Bytes of a representation for each of `uses` occurrences, besides those of the occurrence itself.
+/// Bytes of a representation for each of `uses` occurrences, besides those of the occurrence
+/// itself.
 inline double bytes_each(Kind kind, uint64_t bytes, uint64_t uses) {
     const double shares = kind == Kind::Composite || uses < 1 ? 1 : static_cast<double>(uses);
     return static_cast<double>(bytes) / shares;

@@ -14,8 +14,8 @@
 namespace lodestone::quality {
 namespace {
 
-// All below a group with no more than this is one batch: a batch costs about as much to draw as some
-// thousands of triangles, and is made anew when anything in it changes.
+// All below a group with no more than this is one batch: a batch costs about as much to draw as
+// some thousands of triangles, and is made anew when anything in it changes.
 constexpr uint64_t kFewTriangles = 32'768;
 constexpr uint64_t kFewChoices = 256;
 // Children of a larger group go by their position, so that a change shifts no others.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches: what a cut draws, in portions for a viewer that keeps them. A portion that shows the same
-// in the next cut has the same key there, so that little is made and uploaded anew while the eye moves.
+// Batches: what a cut draws, in portions for a viewer that keeps them. A portion that shows the
+// same in the next cut has the same key there, so that little is made and uploaded anew while the
+// eye moves.
 #pragma once
 
 #include "quality/cut.h"
@@ -25,16 +26,16 @@ struct Batch {
 /// Most triangles of one batch; composites, which do not tell theirs before, may exceed it.
 inline constexpr uint64_t kMostInBatch = 200'000;
 
-/// Whatever cameras see of a cut, each triangle in exactly one batch. `colors`: linear, by choice, in
-/// place of the materials'; empty: none. cost: O(nodes).
+/// Whatever cameras see of a cut, each triangle in exactly one batch. `colors`: linear, by choice,
+/// in place of the materials'; empty: none. cost: O(nodes).
 std::vector<Batch> batches_of(const Model& model, const Cut& cut,
                               const std::vector<glm::dvec3>& colors = {});
 
 /// Ready for a graphics card.
 struct BatchMesh {
     std::vector<glm::vec3> positions;  // in the world
-    /// Unit normals times 32767; zero where a mesh has none (flat). The fourth: how much of the color
-    /// is emitted, 0 or 32767.
+    /// Unit normals times 32767; zero where a mesh has none (flat). The fourth: how much of the
+    /// color is emitted, 0 or 32767.
     std::vector<std::array<int16_t, 4>> normals;
     /// sRGB of the base color (means of textures) or of what is emitted; the fourth is the share of
     /// light that it stops.

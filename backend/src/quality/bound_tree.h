@@ -18,8 +18,8 @@ public:
     /// Empty ones are left out. cost: n log n.
     explicit BoundTree(std::vector<Bound> bounds);
 
-    /// The least distance to any but the one of that number, or `most` if that is less. Thread-safe.
-    /// cost: about log n where few are near.
+    /// The least distance to any but the one of that number, or `most` if that is less.
+    /// Thread-safe. cost: about log n where few are near.
     double nearest(const Bound& from, uint32_t but, double most) const {
         return nearest(from, but, most, [](const Bound&) { return true; });
     }

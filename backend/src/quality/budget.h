@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Budget: the finest threshold whose cut costs no more than asked (5.5.3 with counts instead of time).
+// Budget: the finest threshold whose cut costs no more than asked (5.5.3 with counts instead of
+// time).
 #pragma once
 
 #include "quality/cut.h"
@@ -13,10 +14,10 @@ struct Budgeted {
     uint32_t cuts = 0;       // passes over the model
 };
 
-/// The cut of the least threshold not below view.pixel_error whose cost fits. So a larger budget never
-/// gives a coarser threshold, also where memory rises with it, as a mesh is then used at two levels
-/// instead of one. Throws Error(InvalidArgument) for Criterion::Distance.
-/// cost: the view's own cut, given up when it is known not to fit, a CostSweep, and the cut found
+/// The cut of the least threshold not below view.pixel_error whose cost fits. So a larger budget
+/// never gives a coarser threshold, also where memory rises with it, as a mesh is then used at two
+/// levels instead of one. Throws Error(InvalidArgument) for Criterion::Distance. cost: the view's
+/// own cut, given up when it is known not to fit, a CostSweep, and the cut found
 Budgeted choose_within(const Model& model, const View& view, const Budget& budget,
                        const Job& job = {});
 /// The same with a whole table of the model for the view's kinds.

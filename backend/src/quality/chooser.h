@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut and
-// step.
+// Chooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut
+// and step.
 #pragma once
 
 #include "quality/criterion.h"
@@ -30,8 +30,8 @@ struct Placed {
 bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
          double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors);
 
-/// What a group, opened, places (`around`: where it is): the node, where it is and by whom it is seen, its stretch (from the
-/// group's) and its object's demand. False: nothing would show it.
+/// What a group, opened, places (`around`: where it is): the node, where it is and by whom it is
+/// seen, its stretch (from the group's) and its object's demand. False: nothing would show it.
 bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
            Placed& placed, double& enlarge, double& demand);
 
@@ -86,7 +86,8 @@ struct Visited {
 class Chooser {
 public:
     /// `growing`: the same table, where rows are made on the way. All must outlive it.
-    /// `most`: nodes; where there would be more, Error(InvalidArgument) is thrown, or it is too dear.
+    /// `most`: nodes; where there would be more, Error(InvalidArgument) is thrown, or it is too
+    /// dear.
     Chooser(const Table& table, Table* growing, const View& view, FactorField& field,
             const Job& job, size_t most = kMostNodes)
         : table_(table), growing_(growing), view_(view), field_(field), job_(job), most_(most) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cost sweep: what the cuts of a view cost at all thresholds, from the coarsest on down. Inside of budget.
+// Cost sweep: what the cuts of a view cost at all thresholds, from the coarsest on down. Inside of
+// budget.
 #pragma once
 
 #include "quality/tally.h"

@@ -17,8 +17,8 @@ double pixel_at_1m(const View& view);
 /// than the near clip; orthographic: the same everywhere).
 double pixel_size(const View& view, double z);
 
-/// Error on screen in pixels of a representation with `error` metres under a transform that enlarges
-/// by `stretch`, its bound z metres from the eye.
+/// Error on screen in pixels of a representation with `error` metres under a transform that
+/// enlarges by `stretch`, its bound z metres from the eye.
 double error_on_screen(const View& view, double error, double stretch, double z);
 
 /// All that refines and coarsens together, kept within 1/64 ... 64; infinite stays so.
@@ -58,8 +58,9 @@ inline double error_on_screen(const Sight& sight, double error) {
 /// By another criterion than resolution: see below.
 bool good_otherwise(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
 
-/// Whether LOD number `lod` of `levels` is good enough by the view's criterion (5.2.2): by resolution as
-/// above; else as Criterion says, the threshold divided by the refinement (of areas: by its square).
+/// Whether LOD number `lod` of `levels` is good enough by the view's criterion (5.2.2): by
+/// resolution as above; else as Criterion says, the threshold divided by the refinement (of areas:
+/// by its square).
 inline bool good_enough(const View& view, const Sight& sight, double error, size_t lod,
                         size_t levels) {
     if (view.modifiers.criterion != Criterion::Resolution)

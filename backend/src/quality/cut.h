@@ -15,8 +15,8 @@ namespace lodestone::quality {
 
 inline constexpr uint32_t kNoParent = ~uint32_t{0};
 
-/// An occurrence the choice visited: either opened (its assembly goes on below) or chosen. Nothing in
-/// it changes with the eye as long as it is drawn alike: see error_on_screen().
+/// An occurrence the choice visited: either opened (its assembly goes on below) or chosen. Nothing
+/// in it changes with the eye as long as it is drawn alike: see error_on_screen().
 struct Node {
     ObjectIndex object = kNoObject;
     uint32_t parent = kNoParent;  // index of the opened node above it
@@ -34,7 +34,8 @@ struct Node {
 struct Cut {
     std::vector<Node> nodes;       // depth-first, in order of placements
     std::vector<uint32_t> chosen;  // indices of the nodes that are drawn, rising
-    /// object -> world, in any order, some of none: nodes that move take 40 bytes, not 136, with them.
+    /// object -> world, in any order, some of none: nodes that move take 40 bytes, not 136, with
+    /// them.
     std::vector<Affine> transforms;
 
     uint64_t triangles = 0;  // placed
@@ -57,11 +58,11 @@ struct Budget {
     }
 };
 
-/// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. A group
-/// that is good enough is drawn by its stand-in, unless what its children would be drawn by costs
-/// less (TableLevel::opens_from); it must be good enough for the most important thing below it.
-/// Throws Error(InvalidArgument) for a view that makes no sense or a model without root.
-/// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
+/// Chooses for the camera class, from the model's root. Pure: depends on its arguments only. A
+/// group that is good enough is drawn by its stand-in, unless what its children would be drawn by
+/// costs less (TableLevel::opens_from); it must be good enough for the most important thing below
+/// it. Throws Error(InvalidArgument) for a view that makes no sense or a model without root. cost:
+/// one visit per opened group and chosen occurrence. Thread-safe on a const model.
 Cut choose(const Model& model, const View& view, const Job& job = {});
 
 /// The same with a whole table of the model for the view's kinds: without making one.
@@ -102,8 +103,8 @@ struct Reason {
     double pixel = 0;    // size of a pixel there, metres
     double stretch = 1;  // of its transform
     Factors factors;
-    /// The next coarser level of the same object, else the finest stand-in of the nearest group around
-    /// it that has one.
+    /// The next coarser level of the same object, else the finest stand-in of the nearest group
+    /// around it that has one.
     std::optional<Level> coarser;
     bool pinned = false;  // that one is not allowed, by a decision on the placement
 };

@@ -27,8 +27,8 @@ struct Factors {
 
 /// Radiance as a display shows it: 0 ... 1 and beyond.
 double displayed(double radiance);
-/// What motion over so many pixels while the shutter is open coarsens: sharpness of a pixel and of the
-/// way, squares added.
+/// What motion over so many pixels while the shutter is open coarsens: sharpness of a pixel and of
+/// the way, squares added.
 double coarser_by_motion(double pixels);
 /// What light coarsens: differences are differences of what is displayed.
 double coarser_by_darkness(double shown);
@@ -59,7 +59,8 @@ public:
         bool open = false;
         bool gone = false;
     };
-    /// Occurrences in depth-first order, or in any where that was asked for. `path` becomes that of what is below it.
+    /// Occurrences in depth-first order, or in any where that was asked for. `path` becomes that of
+    /// what is below it.
     Effect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
               const Bound& bound, double z, Path& path);
 

@@ -52,7 +52,8 @@ struct Visit {
     Affine world;
 };
 
-/// Positions of placements from the root down to the nearest occurrence; nothing when there is none.
+/// Positions of placements from the root down to the nearest occurrence; nothing when there is
+/// none.
 std::optional<std::vector<uint32_t>> path_to(const Model& model, ObjectIndex object,
                                              const Affine& world) {
     const std::vector<uint8_t> holds = holders(model, object);

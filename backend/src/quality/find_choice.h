@@ -22,14 +22,14 @@ struct FoundChoice {
     uint32_t node = kNoParent;  // the chosen or opened one
 };
 
-/// Of the occurrence of `object` whose transform is nearest to `world` (of equally near ones the first),
-/// Missing when that is off by more than 1/1000 of the distance from the origin, or 1 mm.
+/// Of the occurrence of `object` whose transform is nearest to `world` (of equally near ones the
+/// first), Missing when that is off by more than 1/1000 of the distance from the origin, or 1 mm.
 /// cost: one visit for each group that holds the object, and each of its occurrences.
 FoundChoice find_choice(const Model& model, const Cut& cut, ObjectIndex object,
                         const Affine& world);
 
-/// The path of placements below a group to what makes the group's `demand` as large as it is; "" where
-/// nothing in it is more important than the group.
+/// The path of placements below a group to what makes the group's `demand` as large as it is; ""
+/// where nothing in it is more important than the group.
 std::string most_demanding(const Model& model, ObjectIndex group);
 
 }  // namespace lodestone::quality

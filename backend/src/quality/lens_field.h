@@ -29,7 +29,8 @@ public:
 
     bool empty() const { return lenses_.empty(); }
 
-    /// What is known along a path: which lenses touch what is above, and the lists that hold any of it.
+    /// What is known along a path: which lenses touch what is above, and the lists that hold any of
+    /// it.
     struct Path {
         uint32_t begin = 0;  // in touching_
         uint32_t end = 0;

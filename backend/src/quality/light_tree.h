@@ -24,8 +24,8 @@ struct LightNode {
     bool leaf() const { return left == kNoLight; }
 };
 
-/// Node i is lamp i for the first of them; children come before parents. A root is what is joined no
-/// further: unlike the others, or parted from them.
+/// Node i is lamp i for the first of them; children come before parents. A root is what is joined
+/// no further: unlike the others, or parted from them.
 struct LightTree {
     std::vector<LightNode> nodes;
     std::vector<uint32_t> roots;  // rising
@@ -39,8 +39,8 @@ struct LightTree {
 /// Whether nothing lies between two points. Asked from one thread.
 using Clear = std::function<bool(const glm::dvec3&, const glm::dvec3&)>;
 
-/// One light of the energy of both (exactly: color times power add up): at their centroid by energy,
-/// areas as large as their second moments together say.
+/// One light of the energy of both (exactly: color times power add up): at their centroid by
+/// energy, areas as large as their second moments together say.
 Light joined(const Light& a, const Light& b);
 
 /// Joins nearest ones first, by energy times the square of the extent, only lamps of one kind that

@@ -15,8 +15,8 @@ namespace {
 // Rougher surfaces show no images (povray_export/finish fades them out before)
 constexpr double kRoughMetal = 0.35;
 constexpr double kRoughCoat = 0.25;
-// Fresnel's reflectance of a dielectric with an index of 1.45, mean over the half space, and what of
-// it a coat's is
+// Fresnel's reflectance of a dielectric with an index of 1.45, mean over the half space, and what
+// of it a coat's is
 constexpr double kDielectric = 0.085;
 constexpr double kCoat = 0.25;
 // A picture of the sky becomes at least so many suns: each has such a part of its light.

@@ -15,8 +15,8 @@ double imaged(const Material& material);
 /// The largest of a representation's materials.
 double imaged(const Model& model, const Representation& representation);
 
-/// The same weighed by the pixels something covers: what is wrong in a door knob is small whatever it
-/// shows. Below kLeastImaged it does not count.
+/// The same weighed by the pixels something covers: what is wrong in a door knob is small whatever
+/// it shows. Below kLeastImaged it does not count.
 double imaged(double share, const View& view, const Bound& bound, double away);
 inline constexpr double kLeastImaged = 1 / (kMostImportance * kMostImportance);  // its root counts
 
@@ -36,8 +36,8 @@ struct ShadowReach {
 ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* pyramid,
                          const Box3& scene, const glm::dvec3& eye);
 
-/// How much coarser than at its distance something may be that is not in the picture: by how large a
-/// pixel is, at least, where its shadow may fall (equation 5.17) and along the way to it by what
+/// How much coarser than at its distance something may be that is not in the picture: by how large
+/// a pixel is, at least, where its shadow may fall (equation 5.17) and along the way to it by what
 /// mirrors or refracts in the picture (equations 5.14 and 5.15). Bounds throughout: shadows are
 /// swept balls, mirrors are balls around them. Concave mirrors are taken for flat ones.
 class OffScreenField {
@@ -45,9 +45,9 @@ public:
     /// cost: one visit of every object, and of the larger things in the picture that mirror.
     OffScreenField(const Model& model, const View& view);
 
-    /// 1 for what may be in the picture, up to kMostImportance for what is not. `bound`: around all that
-    /// it may be drawn by (Object::reach), in the world. z: its distance from the eye. cost: that of
-    /// every light and mirror (at most kMostMirrors). Thread-safe.
+    /// 1 for what may be in the picture, up to kMostImportance for what is not. `bound`: around all
+    /// that it may be drawn by (Object::reach), in the world. z: its distance from the eye. cost:
+    /// that of every light and mirror (at most kMostMirrors). Thread-safe.
     double coarser(const Bound& bound, double z) const;
 
     static constexpr size_t kMostMirrors = 256;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ray cut: what a class of rays meets instead of what the camera sees, where the picture cannot tell.
+// Ray cut: what a class of rays meets instead of what the camera sees, where the picture cannot
+// tell.
 #pragma once
 
 #include "quality/ray_need.h"
@@ -39,15 +40,17 @@ struct RayCut {
     double largest_error_px = 0;
 };
 
-/// What the classes asked for by view.modifiers.ray_classes meet, one RayCut for each, in the order of
-/// their bits. `cut`: the camera's, of the same model and view; no class is finer than it, and radiosity
-/// meets the same. What is coarser cannot shadow or mirror its own original, for:
-/// - the picture shows the original by no ray at all. It is then replaced for all classes together, by
+/// What the classes asked for by view.modifiers.ray_classes meet, one RayCut for each, in the order
+/// of their bits. `cut`: the camera's, of the same model and view; no class is finer than it, and
+/// radiosity meets the same. What is coarser cannot shadow or mirror its own original, for:
+/// - the picture shows the original by no ray at all. It is then replaced for all classes together,
+/// by
 ///   what its shadows and its images need (which are asked for with reflections only): `alone`;
 /// - or it is a box or ellipsoid in place of a convex opaque mesh, inside it (shadows) or around it
 ///   (reflections), and nothing else touches it or is nearer than a few pixels.
-/// Pure, as `shape_of` is, which is asked only about what else is good enough. Nothing is coarser by a
-/// criterion but Resolution. cost: about a visit of each node, and n log n where something may be.
+/// Pure, as `shape_of` is, which is asked only about what else is good enough. Nothing is coarser
+/// by a criterion but Resolution. cost: about a visit of each node, and n log n where something may
+/// be.
 std::vector<RayCut> choose_rays(const Model& model, const View& view, const Cut& cut,
                                 const ShapeOf& shape_of, const Job& job = {});
 

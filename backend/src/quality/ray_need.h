@@ -37,10 +37,10 @@ public:
 
     bool mirrored() const { return !mirrors_.empty(); }
 
-    /// Metres, at the thing, that the outline it throws a shadow by may be off for each pixel of Pixel
-    /// Error: a pixel where the shadow may be nearest
-    /// to the eye (that on itself left out), by how much light enlarges it. Soft edges may be moved
-    /// so far that the mean square of what changes is that of a sharp edge moved by the Pixel Error.
+    /// Metres, at the thing, that the outline it throws a shadow by may be off for each pixel of
+    /// Pixel Error: a pixel where the shadow may be nearest to the eye (that on itself left out),
+    /// by how much light enlarges it. Soft edges may be moved so far that the mean square of what
+    /// changes is that of a sharp edge moved by the Pixel Error.
     struct Edge {
         double sharp = 0;  // whatever size lights have
         double any = 0;    // at least `sharp`
@@ -48,8 +48,8 @@ public:
     /// `clear_of`: metres to the nearest thing that a sweep touches.
     Edge shadow(const Bound& bound, const std::function<double(const Sweep&)>& clear_of) const;
 
-    /// The same for its image: the path's length (5.14) over the root of what is mirrored (5.15). In
-    /// mirrors of unknown curvature things are taken to be as large as seen directly. Infinite
+    /// The same for its image: the path's length (5.14) over the root of what is mirrored (5.15).
+    /// In mirrors of unknown curvature things are taken to be as large as seen directly. Infinite
     /// without mirrors.
     double image(const Bound& bound, const ShapeOf& shape_of);
 

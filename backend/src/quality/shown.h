@@ -9,8 +9,8 @@ namespace lodestone::quality {
 
 inline constexpr uint64_t kBoxTriangles = 12;
 
-/// How many there are: of composites a guess from above, since a summary does not count their parts; 0
-/// for assemblies.
+/// How many there are: of composites a guess from above, since a summary does not count their
+/// parts; 0 for assemblies.
 uint64_t shown_triangles(const Summary& summary);
 
 /// They themselves, but for assemblies. A mesh must be resident.

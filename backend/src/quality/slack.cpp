@@ -9,8 +9,8 @@
 namespace lodestone::quality {
 namespace {
 
-// Margins. Where a decision turns is known to some 1e-15 of a distance, a distance to as much of the
-// coordinates it is made of, and a turning camera's pixels to some 1e-15.
+// Margins. Where a decision turns is known to some 1e-15 of a distance, a distance to as much of
+// the coordinates it is made of, and a turning camera's pixels to some 1e-15.
 constexpr double kTurned = 1e-9;  // by so much pixels may differ and count as the same
 constexpr double kRounding = 1e-8;
 constexpr double kOfPlaces = 1e-11;

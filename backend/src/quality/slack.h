@@ -8,9 +8,9 @@
 
 namespace lodestone::quality {
 
-/// The eye on its way from where a cut was chosen anew. What is decided by distances changes no faster
-/// than the eye moves. source: temporal coherence of distances; Lipschitz bounds, exact by a margin
-/// for rounding
+/// The eye on its way from where a cut was chosen anew. What is decided by distances changes no
+/// faster than the eye moves. source: temporal coherence of distances; Lipschitz bounds, exact by a
+/// margin for rounding
 struct Walk {
     const Table& table;
     View view;
@@ -28,8 +28,8 @@ struct Walk {
     static bool same_pixels(double a, double b);
 };
 
-/// From how near to how far a node is drawn as it is, and what is that far: a line of a cache, all that
-/// is read of a node that the eye may have come too near to, or too far from.
+/// From how near to how far a node is drawn as it is, and what is that far: a line of a cache, all
+/// that is read of a node that the eye may have come too near to, or too far from.
 struct alignas(64) Range {
     glm::dvec3 center{0.0};  // of its bound's box, in the world
     glm::vec3 half{0.0F};    // of that box's sides
@@ -45,8 +45,8 @@ struct alignas(64) Range {
     double distance(const glm::dvec3& eye) const;
 };
 
-/// How long nodes' ranges last, however the eye goes: what a step reads of every node, 12 bytes, each
-/// number rounded to the safe side.
+/// How long nodes' ranges last, however the eye goes: what a step reads of every node, 12 bytes,
+/// each number rounded to the safe side.
 class Slack {
 public:
     size_t size() const { return expires_.size(); }
@@ -55,8 +55,8 @@ public:
     /// Of a node that is drawn otherwise than before.
     void set(size_t index, const Walk& walk, const Range& range, const Node& node,
              const Seen& seen);
-    /// The same, from where the eye is now, of a node that is drawn as before. False: it may have to
-    /// be drawn otherwise.
+    /// The same, from where the eye is now, of a node that is drawn as before. False: it may have
+    /// to be drawn otherwise.
     bool renew(size_t index, const Walk& walk, const Range& range);
     void copy(const Slack& from, size_t index, size_t to);
     /// Nodes [begin, end) move to `to`; what lies there is lost.

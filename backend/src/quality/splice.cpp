@@ -100,8 +100,8 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
             parent = now;
         }
     };
-    // What moves down overwrites only what has moved down before it, or is gone; then, from the end,
-    // what moves up overwrites only what has moved.
+    // What moves down overwrites only what has moved down before it, or is gone; then, from the
+    // end, what moves up overwrites only what has moved.
     const auto down = [](const Run& run) { return static_cast<int32_t>(run.shift) < 0; };
     for (size_t i = 0; i < runs_.size(); ++i) {
         if (down(runs_[i]))

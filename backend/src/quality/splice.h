@@ -14,7 +14,8 @@ struct Edit {
     uint32_t end = 0;
 };
 
-/// What is kept of a cut besides it. What is as large as a transform stays where it is when nodes move.
+/// What is kept of a cut besides it. What is as large as a transform stays where it is when nodes
+/// move.
 struct Kept {
     std::vector<Seen> seen;      // by Node::transform
     std::vector<Range> ranges;   // by Node::transform
@@ -36,7 +37,8 @@ public:
     void replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept);
 
 private:
-    /// Nodes [begin, end) that stay, and by how many places they move; what moves down wraps around.
+    /// Nodes [begin, end) that stay, and by how many places they move; what moves down wraps
+    /// around.
     struct Run {
         uint32_t begin = 0;
         uint32_t end = 0;

@@ -9,8 +9,8 @@
 namespace lodestone::quality {
 namespace {
 
-// Choosing anew is sooner where of so many nodes less than one is not expired, or more than one has to be
-// decided again; some are never too many.
+// Choosing anew is sooner where of so many nodes less than one is not expired, or more than one has
+// to be decided again; some are never too many.
 constexpr size_t kLeastKept = 4;
 constexpr size_t kLeastShare = 16;
 constexpr size_t kSome = 64;
@@ -46,8 +46,8 @@ void Stepper::step(const View& view, Cut& cut, const Job& job) {
     choose_anew(view, cut, job);
 }
 
-/// Whether the view differs from the last alone in where the eye is, what way it looks, and in lenses
-/// that hide nothing.
+/// Whether the view differs from the last alone in where the eye is, what way it looks, and in
+/// lenses that hide nothing.
 bool Stepper::steps(const View& view) const {
     const auto& [camera, width, height, pixel_error, kinds, border, modifiers] = view;
     const View& last = walk_->view;

@@ -22,11 +22,11 @@ public:
     const std::shared_ptr<const Table>& table() const { return table_; }
 
     /// Makes `cut`, which must be as the last call left it, what choose(table, view) gives. Sooner
-    /// where only a perspective camera has moved or turned, and detail lenses that hide nothing have
-    /// changed, by Resolution, with no other factors than importances and such lenses; else it is
-    /// chosen anew, as where much changes. When it throws, the cut is as before.
-    /// cost: a step reads 12 bytes a node, and 64 of those whose slack is eaten; it moves the nodes
-    /// behind groups that opened or closed
+    /// where only a perspective camera has moved or turned, and detail lenses that hide nothing
+    /// have changed, by Resolution, with no other factors than importances and such lenses; else it
+    /// is chosen anew, as where much changes. When it throws, the cut is as before. cost: a step
+    /// reads 12 bytes a node, and 64 of those whose slack is eaten; it moves the nodes behind
+    /// groups that opened or closed
     void step(const View& view, Cut& cut, const Job& job = {});
 
     /// Nodes that the last call decided again; all, when it chose anew.

@@ -19,13 +19,13 @@ struct Surface {
     std::vector<uint32_t> owners;    // of each triangle: its position in cut.chosen
 };
 
-/// `levels` as above; their meshes must be resident. Without what cameras do not see. The same on any
-/// number of threads. Throws Error(Internal) for a mesh that is not resident, Error(Cancelled).
+/// `levels` as above; their meshes must be resident. Without what cameras do not see. The same on
+/// any number of threads. Throws Error(Internal) for a mesh that is not resident, Error(Cancelled).
 Surface surface_of(const Model& model, const Cut& cut, const std::vector<uint32_t>& levels,
                    const Job& job = {});
 
-/// How light a triangle is shown, .55 ... 1: lit from above and a little from the side, on both sides
-/// alike, so that shapes can be told in one color.
+/// How light a triangle is shown, .55 ... 1: lit from above and a little from the side, on both
+/// sides alike, so that shapes can be told in one color.
 double shade_of(const glm::vec3* corners);
 
 }  // namespace lodestone::quality

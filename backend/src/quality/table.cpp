@@ -165,7 +165,8 @@ double Table::stretch_of(const TableChild& child) const {
     return child.linear == kUnturned ? 1 : stretches_[child.linear];
 }
 
-/// For each stand-in of a group that costs more than its children could, from which error on they do.
+/// For each stand-in of a group that costs more than its children could, from which error on they
+/// do.
 void Table::set_openings(uint32_t row) {
     const TableRow group = rows_[row];
     if (objects_[row].openings)

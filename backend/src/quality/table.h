@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table: all that choosing reads of a model, in flat arrays, siblings beside each other and subtrees
-// together, so that a visit misses few caches. Made once per change of the model.
+// Table: all that choosing reads of a model, in flat arrays, siblings beside each other and
+// subtrees together, so that a visit misses few caches. Made once per change of the model.
 #pragma once
 
 #include "model/model.h"
@@ -14,9 +14,9 @@ namespace lodestone::quality {
 struct TableLevel {
     double error = 0;  // metres, object's frame
     /// From this error on its group's children cost less (in bytes, those of shared representations
-    /// counted each time) than this stand-in; infinite: never. Children are farther than their group
-    /// and ask for no less error than it does, so what is then chosen below costs less indeed. Never
-    /// where it is sealed.
+    /// counted each time) than this stand-in; infinite: never. Children are farther than their
+    /// group and ask for no less error than it does, so what is then chosen below costs less
+    /// indeed. Never where it is sealed.
     double opens_from = 0;
     uint64_t bytes = 0;
     uint64_t triangles = 0;

@@ -18,8 +18,8 @@ constexpr size_t kStack = 256;   // three a level, and fewer levels than kMostUn
 constexpr size_t kCandidates = 32;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A distance in single precision is off by less than this share of itself and of the longest edge,
-// but for needles. Their edges are right to a few times as much; what is inside of them is not to be
-// relied on, but no farther from an edge than half of the height.
+// but for needles. Their edges are right to a few times as much; what is inside of them is not to
+// be relied on, but no farther from an edge than half of the height.
 constexpr float kOff = 4e-4f;
 constexpr float kNeedle = 1e-3f;  // square of height over length
 constexpr float kOffNeedle = 4 * kOff;
@@ -52,8 +52,8 @@ struct Around {
     }
 };
 
-/// The axes that most of the surface is square to, when boxes along them are much smaller than those
-/// along x, y, z: of what was modelled straight and placed askew. Otherwise none.
+/// The axes that most of the surface is square to, when boxes along them are much smaller than
+/// those along x, y, z: of what was modelled straight and placed askew. Otherwise none.
 std::optional<glm::dmat3> better_axes(const std::vector<glm::vec3>& positions,
                                       const std::vector<Triangle>& triangles) {
     constexpr double kWorthIt = 0.8;

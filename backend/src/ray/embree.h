@@ -9,8 +9,8 @@
 
 namespace lodestone::ray {
 
-/// Empty when Embree 3.13 was found and passed its test of known answers, else why not. It is looked
-/// for once per process.
+/// Empty when Embree 3.13 was found and passed its test of known answers, else why not. It is
+/// looked for once per process.
 const std::string& why_no_embree();
 /// Throws Error(RaysUnavailable) with the reason when there is one.
 void require_embree();

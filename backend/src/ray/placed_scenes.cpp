@@ -61,8 +61,8 @@ void PlacedScenes::finish() {
         split(0, static_cast<uint32_t>(placed_.size()), 0);
 }
 
-/// Where both sides together are hit least: by the surface area heuristic over kSplits slices of each
-/// axis. source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
+/// Where both sides together are hit least: by the surface area heuristic over kSplits slices of
+/// each axis. source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
 uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles) {
     const auto bin_of = [&](const Placed& placed, int axis) {
         const double size = middles.high[axis] - middles.low[axis];

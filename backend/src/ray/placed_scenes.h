@@ -31,8 +31,8 @@ public:
     Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
-    /// The same, sooner where `blocker` is what blocked a ray beside this one: it is tried first, and
-    /// becomes what blocks this one. It changes no answer. kNothing: none is known.
+    /// The same, sooner where `blocker` is what blocked a ray beside this one: it is tried first,
+    /// and becomes what blocks this one. It changes no answer. kNothing: none is known.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                   uint32_t& blocker) const;
     static constexpr uint32_t kNothing = ~uint32_t{0};

@@ -26,8 +26,8 @@ std::string description_text(const Model& model);
 /// The whole tileset.json. Doubles are written so that reading gives the same bits.
 std::string tileset_text(const Model& model);
 
-/// The model described in a tileset.json; meshes and pictures not resident. Throws Error(BadFile) saying what is
-/// wrong; nothing in the text is trusted.
+/// The model described in a tileset.json; meshes and pictures not resident. Throws Error(BadFile)
+/// saying what is wrong; nothing in the text is trusted.
 Model model_of_tileset(const std::string& text);
 
 }  // namespace lodestone::segment
