@@ -23,14 +23,18 @@ ray::SkinPtr dark_and_bright() {
     return std::make_shared<const ray::Skin>(materials, texels);
 }
 
-double unlike(const Mesh& finest, const Mesh& stand_in, bool matched) {
-    const ray::SkinPtr skin = dark_and_bright();
-    const ray::Scene scene(finest, skin);
+measure::Patches patches_of(const Mesh& finest, const ray::Scene& scene, const ray::Skin& skin) {
     const measure::VisibleSampler sampler(finest, scene, kSeed);
     std::vector<measure::Cast> cast(2048);
     for (uint32_t i = 0; i < cast.size(); ++i)
         cast[i].count = sampler.cast(i, cast[i].points);
-    const measure::Patches patches(finest, sampler, *skin, cast, kSeed);
+    return {finest, sampler, skin, cast, kSeed};
+}
+
+double unlike(const Mesh& finest, const Mesh& stand_in, bool matched) {
+    const ray::SkinPtr skin = dark_and_bright();
+    const ray::Scene scene(finest, skin);
+    const measure::Patches patches = patches_of(finest, scene, *skin);
     return patches.unlike_up_to(stand_in, ray::Scene(stand_in, skin), *skin, matched, kLeast);
 }
 
@@ -129,11 +133,7 @@ TEST_F(Patches, TheSidesOfABookAreNotPaintedAsDarkAsItsCover) {
     append(book, painted(shapes::box({0, 0, 0.27}, {1, 1, 0.3}), 0), {});
     const ray::SkinPtr skin = dark_and_bright();
     const ray::Scene scene(book, skin);
-    const measure::VisibleSampler sampler(book, scene, kSeed);
-    std::vector<measure::Cast> cast(2048);
-    for (uint32_t i = 0; i < cast.size(); ++i)
-        cast[i].count = sampler.cast(i, cast[i].points);
-    const measure::Patches patches(book, sampler, *skin, cast, kSeed);
+    const measure::Patches patches = patches_of(book, scene, *skin);
     Primitive box;
     box.center = {0.5, 0.5, 0.15};
     box.half_size = {0.5, 0.5, 0.15};

@@ -56,8 +56,9 @@ class LODESTONE_UL_screen_lenses(UIList):
         row.prop(item, "enabled", text="")
 
 
-class LODESTONE_CAMERA_PT_screen_lenses(Panel):
-    bl_label = "Screen Lenses"
+class CameraButtonsPanel:
+    """A panel of a camera's Data tab."""
+
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "data"
@@ -66,6 +67,10 @@ class LODESTONE_CAMERA_PT_screen_lenses(Panel):
     @classmethod
     def poll(cls, context):
         return getattr(context, "camera", None) is not None
+
+
+class LODESTONE_CAMERA_PT_screen_lenses(CameraButtonsPanel, Panel):
+    bl_label = "Screen Lenses"
 
     def draw(self, context):
         layout = self.layout
@@ -97,16 +102,8 @@ class LODESTONE_CAMERA_PT_screen_lenses(Panel):
         layout.operator("lodestone.screen_lens_drag", icon="VIEW_PAN")
 
 
-class LODESTONE_CAMERA_PT_levels(Panel):
+class LODESTONE_CAMERA_PT_levels(CameraButtonsPanel, Panel):
     bl_label = "Levels of Detail"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "data"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return getattr(context, "camera", None) is not None
 
     def draw(self, context):
         layout = self.layout
