@@ -60,8 +60,12 @@ size_t files_in(const std::filesystem::path& folder) {
 /// True once a process is gone, or a zombie that waits for init; the system takes a moment.
 bool gone(int process, int tries) {
     for (int i = 0; i < tries; ++i) {
-        std::ifstream command(text("/proc/", process, "/cmdline"));
-        if (!command || command.peek() == EOF)
+        std::ifstream file(text("/proc/", process, "/stat"));
+        std::string stat;  // number (name) state ...; of one that is loading a program, too
+        if (!std::getline(file, stat))
+            return true;
+        const size_t state = stat.rfind(')') + 2;
+        if (state < stat.size() && (stat[state] == 'Z' || stat[state] == 'X'))
             return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
