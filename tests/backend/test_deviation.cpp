@@ -55,9 +55,12 @@ TEST(Deviation, BoxesOnAWideGroundWereMissedRoughlyForEverySecondCornerIsBelow) 
     const Mesh ground = finest;
     for (int i = 0; i < 4; ++i) {
         Mesh box;
-        for (int k = 0; k < 8; ++k)  // bottom, top, bottom, top, as many programs list them
-            box.positions.emplace_back(8 + 3 * i + 0.8 * (k / 4), 8 + 0.8 * (k / 2 % 2),
-                                       0.8 * (k % 2));
+        for (const double x : {0.0, 0.8}) {
+            for (const double y : {0.0, 0.8}) {
+                for (const double z : {0.0, 0.8})  // bottom, top, as many programs list them
+                    box.positions.emplace_back(8 + 3 * i + x, 8 + y, z);
+            }
+        }
         box.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                          {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
         append(finest, box, {});
