@@ -18,6 +18,7 @@
 namespace lodestone {
 
 inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kGoldenAngle = 2.399963229728653;  // kPi (3 - sqrt 5)
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline bool finite(const glm::vec3& v) {

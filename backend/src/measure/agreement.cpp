@@ -50,7 +50,7 @@ struct View {
         const glm::dvec3 up = glm::cross(towards, right);
         frame = glm::dmat3(right, up, towards);
         // Around the views by the golden angle: each has its own.
-        const double turn = 2.399963229728653 * static_cast<double>(number);
+        const double turn = kGoldenAngle * static_cast<double>(number);
         sun = glm::normalize(towards + std::cos(turn) * right + std::sin(turn) * up);
     }
 };

@@ -300,10 +300,9 @@ struct Solid {
 
 /// Evenly spread over the sphere (a spiral of the golden angle).
 glm::dvec3 direction(int i) {
-    constexpr double kGolden = 2.399963229728653;
     const double z = 1 - (2 * i + 1) / static_cast<double>(kDirections);
     const double across = std::sqrt(std::max(0.0, 1 - z * z));
-    return {across * std::cos(kGolden * i), across * std::sin(kGolden * i), z};
+    return {across * std::cos(kGoldenAngle * i), across * std::sin(kGoldenAngle * i), z};
 }
 
 /// The largest difference of what both reach.

@@ -39,7 +39,7 @@ glm::dvec3 light_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit
 
 /// Obliquely beside the eye, around it by the golden angle, not below it.
 glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
-    const double turn = 2.399963229728653 * static_cast<double>(number);
+    const double turn = kGoldenAngle * static_cast<double>(number);
     const glm::dvec3 other = std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
     const glm::dvec3 up = glm::cross(towards, right);
