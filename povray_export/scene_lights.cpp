@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene_lights.h"
 
-#include "povray_export/light_writer.h"
 #include "povray_export/magnification.h"
 #include "povray_export/number.h"
 #include "povray_export/penumbra.h"
@@ -20,7 +19,7 @@ void SceneLights::append(std::string& out, Light light) const {
         light.edge_u *= kPoint;
         light.edge_v *= kPoint;
     }
-    LightSampling sampling{shading_.area_samples, thorough_};
+    LightSampling sampling = sampling_;
     if (shading_.shadow_error > 0)  // else everything is as it is
         sampling.steps = widest / step;
     append_light(out, magnified(light, times_), bound_, sampling, problems_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "povray_export/light_plan.h"
+#include "povray_export/light_writer.h"
 #include "povray_export/shading.h"
 
 #include <string>
@@ -14,13 +15,14 @@ namespace lodestone::povray {
 class SceneLights {
 public:
     SceneLights(const View& view, std::span<const Bound> occluders, const Bound& bound,
-                double times, const Shading& shading, bool thorough, Problems& problems)
+                double times, const Shading& shading, const LightSampling& sampling,
+                Problems& problems)
         : view_(view),
           occluders_(occluders),
           bound_(bound),
           times_(times),
           shading_(shading),
-          thorough_(thorough),
+          sampling_(sampling),
           problems_(problems) {}
 
     /// A light: without its size where no pixel can tell, or with the rays its penumbra needs.
@@ -35,7 +37,7 @@ private:
     const Bound& bound_;
     double times_;
     const Shading& shading_;
-    bool thorough_;
+    LightSampling sampling_;
     Problems& problems_;
 };
 

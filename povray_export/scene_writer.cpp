@@ -263,7 +263,16 @@ private:
     bool lit() const { return lit(options_); }
     const World& view_world() const { return model_.world; }
 
-    bool thorough() const { return options_.antialiasing == Antialiasing::Reference; }
+    /// Where depths are blurred each of 37 samples of a pixel or more casts its rays to every lamp,
+    /// so that half of them along an edge are as good.
+    LightSampling light_sampling() const {
+        constexpr int kFewest = 5;
+        const bool thorough = options_.antialiasing == Antialiasing::Reference;
+        int rays = shading_.area_samples;
+        if (!thorough && blurred(view_.camera))
+            rays = std::max(std::min(rays, kFewest), (rays - 1) / 2 + 1);
+        return {rays, thorough};
+    }
     SkySampling sky_sampling() const {
         return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
     }
@@ -369,7 +378,7 @@ private:
         bound = magnified(bound, times);
         const LightPlan plan = light_plan(occluders);
         std::string lights;
-        const SceneLights scene_lights(view_, occluders, bound, times, shading_, thorough(),
+        const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);
         const std::vector<std::string> names = scene_lights.declare(lights, plan);
         std::string objects = grouped_objects(plan, names, times);
@@ -393,7 +402,7 @@ private:
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)
-                append_light(out, light, bound, {shading_.area_samples, thorough()}, problems_);
+                append_light(out, light, bound, light_sampling(), problems_);
         }
         out += '\n';
         out += includes_.statements();

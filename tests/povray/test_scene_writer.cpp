@@ -365,6 +365,37 @@ TEST(PovrayWriter, LinesAndDotsAreSkippedWithoutAWordAndSheetsGetAThickness) {
     EXPECT_EQ(count(text, "matrix<1,0,0,0,0.001,0,0,0,1,0,0,0>} // plate"), 1u) << text;
 }
 
+TEST(PovrayWriter, ABlurredPictureCastsHalfTheRaysToALampFromEachSample) {
+    Builder builder;
+    builder.place(builder.mesh(shapes::cube()), {}, "cube");
+    Light lamp;
+    lamp.kind = LightKind::Area;
+    lamp.position = {0, 0, 5};
+    lamp.power = 100;
+    lamp.edge_u = {4, 0, 0};
+    lamp.edge_v = {0, 4, 0};
+    builder.model.lights.push_back(lamp);
+    const Model model = builder.finish();
+    View view = above();
+    view.camera.orthographic = false;
+    ExportOptions options;
+    options.folder = scratch("blurred");
+    const auto rays = [&](Antialiasing antialiasing) {
+        options.antialiasing = antialiasing;
+        Problems problems;
+        scenes::write(model, view, options, problems);
+        const std::string text = scene_text(options.folder);
+        const size_t end = text.find(" adaptive");
+        return end == std::string::npos ? "none" : text.substr(end - 3, 14);
+    };
+    EXPECT_EQ(rays(Antialiasing::Final), "9,9 adaptive 1");
+    view.camera.focus_distance = 5;
+    view.camera.aperture = 0.1;
+    EXPECT_EQ(rays(Antialiasing::Final), "5,5 adaptive 1");
+    EXPECT_EQ(rays(Antialiasing::Reference), "9,9 adaptive 2");
+    EXPECT_EQ(rays(Antialiasing::Off), "none");
+}
+
 TEST(PovrayWriter, CoveredOnlyLeavesOutEnvironmentLightsAndWorld) {
     Builder builder;
     builder.model.world.color = {1, 2, 3};
