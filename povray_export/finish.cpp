@@ -141,7 +141,7 @@ Look look_of(const Material& material) {
     return look;
 }
 
-Finish finish_of(const Look& look, double brightness) {
+Finish finish_of(const Look& look) {
     const double m = look.metallic;
     const Row row = row_of(look.roughness);
     const double dielectric = (1 - m) * look.specular / 0.5;  // of the table's
@@ -168,13 +168,16 @@ Finish finish_of(const Look& look, double brightness) {
                             look.clearcoat * coat_sharp * 0.25;
     finish.mirror_grazing = std::clamp(finish.mirror_grazing, finish.mirror, 1.0);
     finish.mirror_metallic = finish.mirror > 0 ? metal_mirror / finish.mirror : 0;
-    // The rest of a uniform sky. White parts are times the base color, so they are divided by it;
-    // below a luminance of .02 that would show nothing but its hue.
-    const double white =
-        dielectric * (1 - sharp) * row.sky + look.clearcoat * (1 - coat_sharp) * coat.sky;
-    finish.ambient = (1 - m) * (0.967 + 0.058 * look.roughness) +
-                     m * (1 - metal_sharp) * row.metal_sky + white / std::max(brightness, 0.02);
+    finish.ambient = glm::dvec3((1 - m) * (0.967 + 0.058 * look.roughness) +
+                                m * (1 - metal_sharp) * row.metal_sky);
     return finish;
+}
+
+double white_sky(const Look& look) {
+    const double dielectric = (1 - look.metallic) * look.specular / 0.5;
+    return dielectric * (1 - coat_sharpness(look.roughness)) * row_of(look.roughness).sky +
+           look.clearcoat * (1 - coat_sharpness(look.clearcoat_roughness)) *
+               coat_of(look.clearcoat_roughness).sky;
 }
 
 void append_rgb(std::string& out, const glm::dvec3& color) {
@@ -184,7 +187,8 @@ void append_rgb(std::string& out, const glm::dvec3& color) {
 
 void append_finish(std::string& out, const Finish& finish, double light,
                    const glm::dvec3& emission) {
-    append_named(out, "finish{ambient ", finish.ambient * light);
+    out += "finish{ambient ";
+    append_rgb(out, finish.ambient * light);
     out += " emission ";
     append_rgb(out, emission);
     append_named(out, " diffuse ", finish.diffuse * light);
@@ -211,7 +215,7 @@ void append_finish(std::string& out, const Finish& finish, double light,
 void append_glass_finish(std::string& out, const Look& look) {
     Look clear = look;
     clear.metallic = 0;
-    const Finish finish = finish_of(clear, 1);
+    const Finish finish = finish_of(clear);
     append_named(out, "finish{ambient 0 emission 0 diffuse 0 specular albedo ", finish.specular);
     append_named(out, " roughness ", finish.roughness);
     out += " reflection{rgb 0, rgb 1 fresnel on} conserve_energy}";

@@ -11,13 +11,13 @@
 namespace lodestone::povray {
 
 /// POV-Ray's finish, as far as it is used. Times the pigment: ambient, diffuse, emission, and what
-/// `metallic` and `reflection_metallic` tint.
+/// `metallic` and `mirror_metallic` tint.
 struct Finish {
-    double ambient = 0;     // answer to a uniform sky, which is not traced
-    double diffuse = 0;     // share of a light's radiance times pi
-    double brilliance = 1;  // exponent of the cosine
-    double specular = 0;    // albedo of the highlight
-    double roughness = 1;   // of the highlight: 1 / exponent of its half-vector's cosine
+    glm::dvec3 ambient{0.0};  // answer to a uniform sky, which is not traced
+    double diffuse = 0;       // share of a light's radiance times pi
+    double brilliance = 1;    // exponent of the cosine
+    double specular = 0;      // albedo of the highlight
+    double roughness = 1;     // of the highlight: 1 / exponent of its half-vector's cosine
     double metallic = 0;
     double coat = 0;  // albedo of the second highlight, around the mirror direction
     double coat_exponent = 1;
@@ -36,9 +36,14 @@ struct Look {
 };
 Look look_of(const Material& material);
 
-/// `brightness`: mean luminance of the base color. Found by fitting: tests/bench/fit_finish.py.
-/// What is smooth mirrors its surroundings (traced); what is rough answers the sky with `ambient`.
-Finish finish_of(const Look& look, double brightness);
+/// Found by fitting: tests/bench/fit_finish.py. What is smooth mirrors its surroundings (traced);
+/// what is rough answers the sky with `ambient`, which does not have the white part: that is
+/// white_sky().
+Finish finish_of(const Look& look);
+
+/// Radiance that a uniform sky of 1 comes back with from what is not metal, whatever the base
+/// color: what the rough surface and a rough clear coat reflect.
+double white_sky(const Look& look);
 
 /// finish{...}, every value written, because POV-Ray's defaults (ambient .1, diffuse .6) would leak
 /// in. `light` scales all of it; emission (times the pigment) comes on top.

@@ -82,7 +82,7 @@ LitScene::LitScene(const Model& model, std::span<const Lit> drawn, const Job& jo
     : model_(model), drawn_(drawn) {
     for (const Material& material : model.materials) {
         const Look look = look_of(material);
-        const Finish finish = finish_of(look, quality::luminance(material.base_color));
+        const Finish finish = finish_of(look);
         Surface surface;
         surface.albedo = glm::clamp(material.base_color, 0.0, 1.0);
         const double alpha = std::max(1e-3, look.roughness * look.roughness);

@@ -8,7 +8,7 @@ namespace lodestone::povray {
 namespace {
 
 // Raised whenever the text for the same input changes: files are found again by their name alone.
-constexpr uint32_t kWriterVersion = 2;
+constexpr uint32_t kWriterVersion = 3;
 
 /// One solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,

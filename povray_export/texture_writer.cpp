@@ -19,7 +19,9 @@ namespace {
 // Highlights change fastest where the surface is smooth.
 constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 
-const glm::dvec3 kLuma(0.2126, 0.7152, 0.0722);
+// POV-Ray multiplies what surfaces emit and answer to the sky by the pigment, so a black one needs
+// a trace of color: lit, that is never seen.
+constexpr double kLeastPigment = 1e-4;
 
 constexpr const char* kClear =
     "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
@@ -237,56 +239,60 @@ private:
         const double scale = image ? even_scale(material.base_color_texture) : 1;
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
-        Finish finish = finish_of(look, glm::dot(base * paint, kLuma));
+        Finish finish = finish_of(look);
         finish.ambient *= brightness;
         finish.diffuse *= brightness;
         finish.specular *= std::lerp(1.0, brightness, finish.metallic);
-        Body pigment_text = "pigment{";
+        // What has not the color of the pigment, and is the same all over.
+        const glm::dvec3 white(white_sky(look));
+        glm::dvec3 even = lamp ? glm::dvec3(0.0) : emission;
+        const bool plain = image && (white != glm::dvec3(0.0) || even != glm::dvec3(0.0));
+        const double parts = 1 + (lamp ? 1 : 0) + (plain ? 1 : 0);
+        Body body = "pigment{";
         if (image) {
             Texture texture = material.base_color_texture;
             if (painted > 0)
                 texture.offset *= paint / painted;
             texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
-            pigment_text += pigment(texture, Content::Color);
+            body += pigment(texture, Content::Color);
         } else {
-            append_rgb(pigment_text, base * paint);
-        }
-        pigment_text += "} ";
-        const bool dark = emission == glm::dvec3(0.0);
-        if (!lamp && (dark || !image)) {
-            if (!dark) {  // POV-Ray multiplies emission by the pigment: it needs a trace of color
-                for (int i = 0; i < 3; ++i) {
-                    const double color = std::max(base[i] * paint[i], emission[i] > 0 ? 1e-4 : 0);
-                    base[i] = color;
-                    emission[i] = color > 0 ? emission[i] / color : 0;
-                }
-                pigment_text = "pigment{";
-                append_rgb(pigment_text, base);
-                pigment_text += "} ";
+            glm::dvec3 color = base * paint;
+            for (int i = 0; i < 3; ++i) {
+                if (white[i] + even[i] <= 0)
+                    continue;
+                color[i] = std::max(color[i], kLeastPigment);
+                finish.ambient[i] += white[i] / color[i];
+                even[i] /= color[i];
             }
-            pigment_text += normal(material);
-            append_finish(pigment_text, finish, 1, emission);
-            return pigment_text;
+            append_rgb(body, color);
         }
-        pigment_text += normal(material);
-        append_finish(pigment_text, finish, 2, glm::dvec3(0.0));
-        Body glow = "pigment{";
-        if (lamp) {
-            // Brighter than 1 is not for a picture: its brightness is left to the finish.
-            Texture texture = material.emission_texture;
-            const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
-            const double brightest =
-                std::max({most.x, most.y, most.z, 1e-9}) * brightest_of(*texture.picture);
-            texture.scale /= brightest;
-            texture.offset /= brightest;
-            glow += pigment(texture, Content::Color) + "} ";
-            append_finish(glow, Finish{}, 0, glm::dvec3(2 * brightest));
-        } else {
-            append_rgb(glow, glm::dvec3(1.0));
-            glow += "} ";
-            append_finish(glow, Finish{}, 0, 2.0 * emission);
+        body += "} " + normal(material);
+        append_finish(body, finish, parts, plain ? glm::dvec3(0.0) : parts * even);
+        if (parts == 1)
+            return body;
+        Entries entries{{1, std::move(body)}};
+        if (lamp)
+            entries.emplace_back(1, glow(material.emission_texture, parts));
+        if (plain) {
+            Finish rest;
+            rest.ambient = white;
+            Body text = "pigment{rgb 1} ";
+            append_finish(text, rest, parts, parts * even);
+            entries.emplace_back(1, std::move(text));
         }
-        return "average" + map({{1, pigment_text}, {1, glow}});
+        return "average" + map(entries);
+    }
+
+    /// Brighter than 1 is not for a picture: its brightness is left to the finish.
+    Body glow(Texture texture, double light) {
+        const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
+        const double brightest =
+            std::max({most.x, most.y, most.z, 1e-9}) * brightest_of(*texture.picture);
+        texture.scale /= brightest;
+        texture.offset /= brightest;
+        Body out = "pigment{" + pigment(texture, Content::Color) + "} ";
+        append_finish(out, Finish{}, 0, glm::dvec3(light * brightest));
+        return out;
     }
 
     const Surface& surface_;

@@ -22,9 +22,9 @@ struct Surface {
 };
 
 /// texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted averages of
-/// whole textures, which is what they mean; base color and emission are averaged at twice their
-/// strength where one pigment cannot be both. Values out of range are clamped, so that any material
-/// gives text that POV-Ray reads.
+/// whole textures, which is what they mean; base color, emission and the white reflection of the
+/// sky are averaged at two or three times their strength where one pigment cannot be all of them.
+/// Values out of range are clamped, so that any material gives text that POV-Ray reads.
 std::string texture_text(const Material& material, const Surface& surface, PictureWriter& pictures);
 
 /// Whether it shows more of a flat surface.

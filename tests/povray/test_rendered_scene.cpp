@@ -116,6 +116,63 @@ TEST(PovrayRender, AUniformSkyShowsWhatAPathTracerShows) {
     }
 }
 
+TEST(PovrayRender, TheSkyWasGoneFromBlackPlasticsAndTintedBySaturatedOnes) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    const glm::dvec3 white(0.041);  // Cycles, under a sky of 1, at roughness .4, whatever the color
+    Material black;
+    black.base_color = glm::dvec3(0.0);
+    black.roughness = 0.4;
+    Material red = black;
+    red.base_color = {0.8, 0, 0};
+    Material pictured = black;  // black over all of the patch, its mean is not
+    pictured.base_color_texture.picture =
+        scenes::picture(2, {{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {.8, 0, 0, 1}});
+    pictured.base_color_texture.interpolation = Interpolation::Closest;
+    pictured.base_color = {0.2, 0, 0};
+    Material glowing = black;
+    glowing.emission = {0, 0.3, 0};
+    Material pictured_glowing = pictured;
+    pictured_glowing.emission = glowing.emission;
+    Material lamp = pictured;  // a picture of its light, too
+    lamp.emission_texture.picture = scenes::picture(1, {{0, 0.3, 0, 1}});
+    Material lamp_on_black = black;
+    lamp_on_black.emission_texture = lamp.emission_texture;
+    Material coated = black;
+    coated.specular = 0;
+    coated.clearcoat = 1;
+    coated.clearcoat_roughness = 0.4;
+    const glm::dvec3 glow(0, 0.3, 0);
+    const struct {
+        Material material;
+        glm::dvec3 shown;
+    } cases[] = {{black, white},
+                 {red, white + glm::dvec3(0.79, 0, 0)},
+                 {pictured, white},
+                 {glowing, white + glow},
+                 {pictured_glowing, white + glow},
+                 {lamp, white + glow},
+                 {lamp_on_black, white + glow},
+                 {coated, glm::dvec3(0.011)}};
+    constexpr int kCount = static_cast<int>(std::size(cases));
+    Mesh mesh = shapes::quad(0.5F, 0.5F);
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.uvs.emplace_back(0.1, 0.2);
+    Builder builder;
+    builder.model.world.color = glm::dvec3(1.0);
+    for (int i = 0; i < kCount; ++i)
+        builder.place_at(builder.mesh(mesh, {builder.material(cases[i].material)}),
+                         {0.5 * i - 0.25 * kCount, -0.25, 0});
+    ExportOptions options;
+    options.folder = scratch("plastics");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(16 * kCount, 16), options);
+    for (int i = 0; i < kCount; ++i) {
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(image.at(8 + 16 * i, 8)[c], cases[i].shown[c], 0.006) << i << ' ' << c;
+    }
+}
+
 TEST(PovrayRender, TheCameraProjectsWhereItShould) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
