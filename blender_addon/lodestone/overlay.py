@@ -214,7 +214,7 @@ def _draw_colors(context, mode):
         if batch is not None:
             _draw_batch(context, gpu, batch)
     lines = list(_shown.lines)
-    if kept.outdated or kept.frame != context.scene.frame_current:
+    if kept_view.old(kept, context.scene):
         lines.append("The scene has changed since: Read Scene")
     _draw_text(context, _shown.legend, lines)
 

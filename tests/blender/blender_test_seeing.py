@@ -246,6 +246,43 @@ class Seeing(unittest.TestCase):
         self.assertTrue(kept.closed)
         self.assertIsNone(self.kept.get("Scene"))
 
+    def test_a_moved_light_left_why_this_level_as_if_nothing_had_changed(self):
+        lamp = next(item for item in self.scene.objects if item.type == "LIGHT")
+
+        def changes():
+            yield lambda: setattr(lamp.location, "x", lamp.location.x + 1.0)
+            yield lambda: setattr(lamp.data, "energy", lamp.data.energy * 0.5)
+            yield lambda: setattr(self.scene.world, "color", (0.1, 0.2, 0.3))
+
+        self.scene.world = bpy.data.worlds.new("World")
+        for coarser in (False, True):
+            self.scene.lodestone.coarser_moving_dark = coarser
+            for change in changes():
+                bpy.ops.lodestone.read_levels()
+                bpy.context.view_layer.update()
+                self.assertFalse(self.kept.get(self.scene.name).outdated)
+                change()
+                bpy.context.view_layer.update()
+                self.assertEqual(self.kept.get(self.scene.name).outdated, coarser)
+
+    def test_motion_of_the_camera_was_missing_from_why_this_level_after_read_scene(self):
+        from lodestone.bridge import kept_view
+
+        camera = self.scene.camera
+        camera.keyframe_insert("location", frame=1)
+        camera.location.x += 1.0
+        camera.keyframe_insert("location", frame=2)
+        self.scene.frame_set(1)
+        bpy.ops.lodestone.update_levels()
+        bpy.ops.lodestone.read_levels()
+        self.scene.lodestone.coarser_moving_dark = True
+        self.assertTrue(kept_view.old(self.kept.get(self.scene.name), self.scene))
+        bpy.ops.lodestone.read_levels()
+        self.assertFalse(kept_view.old(self.kept.get(self.scene.name), self.scene))
+        self.assertIn("Motion", " ".join(self.explained(self.near).lines))
+        self.scene.lodestone.coarser_moving_dark = False
+        self.assertNotIn("Motion", " ".join(self.explained(self.near).lines))
+
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_false_colors_are_the_levels_of_the_scene_camera_from_anywhere(self):
         from lodestone.core import false_colors

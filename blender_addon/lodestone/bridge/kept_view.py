@@ -7,6 +7,7 @@ from typing import Any
 from ..core import kept_model, why
 from ..core.problems import Problems
 from . import camera, ids, lenses, live_view, preview_live, render_result
+from .settings import SceneSettings
 
 
 def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
@@ -23,6 +24,14 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
     left, bottom, *part = render_result.border(scene.render, frame.width, frame.height)
     settings = replace(settings, border=(left, frame.height - bottom - part[1], *part))
     return kept_model.Asked(settings.view(seen, (frame.width, frame.height)), settings.budget)
+
+
+def old(kept: Any, scene: Any) -> bool:
+    """Whether the scene is not any more as it was read, or was read without what moves."""
+    own, read_with = SceneSettings(scene), kept.view.modifiers
+    moving = own.use_levels and own.coarser_moving_dark
+    still = read_with is None or not read_with.when_moving
+    return kept.outdated or kept.frame != scene.frame_current or (moving and still)
 
 
 def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None":

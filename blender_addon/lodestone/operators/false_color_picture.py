@@ -177,7 +177,7 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
         try:
             request = self._asked(context)
             kept = kept_model.get(scene.name)
-            if kept is None or kept.outdated or kept.frame != scene.frame_current:
+            if kept is None or kept_view.old(kept, scene):
                 kept = read_levels.read_levels(scene)
             asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
             into_image(request.make(kept, asked, work.Work().new_job))

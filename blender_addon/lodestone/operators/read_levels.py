@@ -28,7 +28,7 @@ def request(store):
 def make_kept(extraction, asked, store, pixel_error, frame, job=None):
     """The model with the levels that there are, as a Kept, which owns it from then on."""
     camera, size = asked.frames[0]
-    view = Settings(pixel_error=pixel_error).view(camera, size)
+    view = Settings(pixel_error=pixel_error, modifiers=asked.modifiers[0]).view(camera, size)
     if is_store(store):
         options = native.BuildOptions(poses=asked.poses.models, view=view)
         options.share = 0.0
@@ -129,17 +129,26 @@ def redraw(context):
 
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
-    """Cameras and lenses may move: they are those of the moment. Everything else makes it out of
-    date."""
-    for update in depsgraph.updates:
-        if not (update.is_updated_transform or update.is_updated_geometry):
-            continue
-        item = update.id
-        if not isinstance(item, bpy.types.Object) or item.type in {"CAMERA", "LIGHT"}:
-            continue
-        if item.instance_type != "NONE" or not lenses.is_lens(item.original):
-            kept_model.outdate()
-            return
+    """Cameras and lenses may move: they are those of the moment. Lights may where what is dark is
+    as fine as the rest. Everything else makes it out of date."""
+    own = SceneSettings(scene)
+    lit = own.use_levels and own.coarser_moving_dark
+    if any(_counts(update, lit) for update in depsgraph.updates):
+        kept_model.outdate()
+
+
+def _counts(update, lit):
+    """Whether it may change what a kept scene says. `lit`: lights do."""
+    item = update.id
+    if isinstance(item, (bpy.types.Light, bpy.types.World)):
+        return lit
+    if not isinstance(item, bpy.types.Object):
+        return False
+    if not (update.is_updated_transform or update.is_updated_geometry) or item.type == "CAMERA":
+        return False
+    if item.type == "LIGHT":
+        return lit
+    return item.instance_type != "NONE" or not lenses.is_lens(item.original)
 
 
 @bpy.app.handlers.persistent

@@ -36,7 +36,7 @@ class LODESTONE_OBJECT_PT_why(Panel):
         column.label(text=found.title, icon="OUTLINER_OB_MESH")
         for line in found.lines:
             column.label(text=line)
-        if kept.outdated or kept.frame != scene.frame_current:
+        if kept_view.old(kept, scene):
             row = layout.row()
             row.label(text="The scene has changed since", icon="INFO")
             row.operator("lodestone.read_levels", text="", icon="FILE_REFRESH")
