@@ -3,6 +3,7 @@
 #include "backend/shapes.h"
 #include "base/random.h"
 #include "ray/closest_search.h"
+#include "ray/closest_tree.h"
 #include "ray/scene.h"
 
 #include <gtest/gtest.h>
@@ -142,6 +143,30 @@ TEST(ClosestTree, TrianglesInOnePlaceAndInALineDoNotRunDeep) {
         mesh.triangles.emplace_back(first, first + 1, first + 2);
     }
     expect_same(mesh, {{0.3, 0.1, 0.2}, {0, 0, 0}, {2, 2, 2}, {1e-9, 0, 0}});
+}
+
+TEST(ClosestTree, BuildingLevelsOfThousandsOfTrianglesInOnePlaceTookMinutes) {
+    // Every search looked at all of them, as none is nearer than the others.
+    const glm::vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0.25}};
+    const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    Mesh mesh;
+    mesh.positions = {{0.9, 0.1, 0}, {0.9, 0.1, 0.2}, {0.9, 0.3, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    for (const int count : {1, 6}) {
+        for (int i = 0; i < 3000; ++i) {
+            const auto first = static_cast<uint32_t>(mesh.positions.size());
+            for (const int corner : orders[i % count])
+                mesh.positions.push_back(corners[corner]);
+            mesh.triangles.emplace_back(first, first + 1, first + 2);
+        }
+        const ray::ClosestTree tree(mesh.positions, mesh.triangles, false);
+        EXPECT_LE(tree.leaves(), 4u);
+        EXPECT_GE(ray::ClosestTree(mesh.positions, mesh.triangles, true).leaves(), 700u);
+        expect_same(mesh, {{0.3, 0.1, 0.2}, {0, 0, 0}, {2, 2, 2}, {0.9, 0.2, 0.1}, {0.2, 0.1, 0}});
+    }
+    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    EXPECT_EQ(scene.closest_point({0.3, 0.1, 0.2}, kInfinity, 2000).triangle,
+              scene.closest_point({0.3, 0.1, 0.2}).triangle);
 }
 
 TEST(ClosestTree, OneCornerAtTheEdgeOfWhatFloatsHoldCrashedIt) {

@@ -91,21 +91,22 @@ std::optional<glm::dmat3> better_axes(const std::vector<glm::vec3>& positions,
 }  // namespace
 
 ClosestTree::ClosestTree(const std::vector<glm::vec3>& positions,
-                         const std::vector<Triangle>& triangles)
+                         const std::vector<Triangle>& triangles, bool unlike)
     : axes_(better_axes(positions, triangles)) {
     if (!axes_) {
-        make(positions, triangles);
+        make({positions, positions, triangles, unlike});
         return;
     }
     std::vector<glm::vec3> turned;
     turned.reserve(positions.size());
     for (const glm::vec3& position : positions)
         turned.emplace_back(*axes_ * glm::dvec3(position));
-    make(turned, triangles);
+    make({positions, turned, triangles, unlike});
 }
 
-void ClosestTree::make(const std::vector<glm::vec3>& positions,
-                       const std::vector<Triangle>& triangles) {
+void ClosestTree::make(const Given& given) {
+    const std::vector<glm::vec3>& positions = given.turned;
+    const std::vector<Triangle>& triangles = given.triangles;
     std::vector<Reference> references;
     references.reserve(triangles.size());
     for (uint32_t i = 0; i < triangles.size(); ++i) {
@@ -123,14 +124,12 @@ void ClosestTree::make(const std::vector<glm::vec3>& positions,
         return;
     leaves_.reserve(references.size() / 2 + 1);
     nodes_.reserve(references.size() / 4 + 1);
-    root_ = add(positions, triangles, references, {0, references.size(), 0});
+    root_ = add(given, references, {0, references.size(), 0});
 }
 
-int32_t ClosestTree::add(const std::vector<glm::vec3>& positions,
-                         const std::vector<Triangle>& triangles, std::vector<Reference>& references,
-                         Range range) {
+int32_t ClosestTree::add(const Given& given, std::vector<Reference>& references, Range range) {
     if (range.end - range.begin <= kWidth)
-        return add_leaf(positions, triangles, references, range);
+        return add_leaf(given, references, range);
     std::array<Range, kWidth> parts{range};
     int count = 1;
     while (count < kWidth) {
@@ -139,7 +138,13 @@ int32_t ClosestTree::add(const std::vector<glm::vec3>& positions,
             [](const Range& a, const Range& b) { return a.end - a.begin < b.end - b.begin; });
         if (largest->end - largest->begin <= kWidth)
             break;
-        const size_t middle = split(references, *largest);
+        const std::optional<size_t> found = split(references, *largest);
+        if (!found && !given.unlike) {
+            largest->end = end_of_distinct(given, references, *largest);
+            if (largest->end - largest->begin <= kWidth)
+                continue;
+        }
+        const size_t middle = found.value_or(largest->begin + (largest->end - largest->begin) / 2);
         const int depth = largest->depth + 1;
         parts[static_cast<size_t>(count)] = {middle, largest->end, depth};
         *largest = {largest->begin, middle, depth};
@@ -155,7 +160,7 @@ int32_t ClosestTree::add(const std::vector<glm::vec3>& positions,
             const Range& part = parts[static_cast<size_t>(i)];
             for (size_t k = part.begin; k < part.end; ++k)
                 box.add(references[k].low, references[k].high, 1);
-            child = add(positions, triangles, references, part);
+            child = add(given, references, part);
         }
         for (int axis = 0; axis < 3; ++axis) {
             node.low[static_cast<size_t>(axis)][i] = box.low[axis];
@@ -167,9 +172,10 @@ int32_t ClosestTree::add(const std::vector<glm::vec3>& positions,
     return index;
 }
 
-int32_t ClosestTree::add_leaf(const std::vector<glm::vec3>& positions,
-                              const std::vector<Triangle>& triangles,
-                              const std::vector<Reference>& references, Range range) {
+int32_t ClosestTree::add_leaf(const Given& given, const std::vector<Reference>& references,
+                              Range range) {
+    const std::vector<glm::vec3>& positions = given.turned;
+    const std::vector<Triangle>& triangles = given.triangles;
     Leaf leaf;
     for (int i = 0; i < kWidth; ++i) {
         // A leaf with room shows its last triangle again.
@@ -196,7 +202,31 @@ int32_t ClosestTree::add_leaf(const std::vector<glm::vec3>& positions,
     return ~static_cast<int32_t>(leaves_.size() - 1);
 }
 
-size_t ClosestTree::split(std::vector<Reference>& references, Range range) {
+/// Puts those whose corners no lower triangle has to the range's front, and returns their end.
+size_t ClosestTree::end_of_distinct(const Given& given, std::vector<Reference>& references,
+                                    Range range) {
+    const auto corners = [&](const Reference& reference) {
+        const Triangle& t = given.triangles[reference.triangle];
+        std::array<float, 9> out;
+        for (int i = 0; i < 9; ++i)
+            out[static_cast<size_t>(i)] = given.positions[t[i / 3]][i % 3];
+        return out;
+    };
+    const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
+    const auto end = references.begin() + static_cast<ptrdiff_t>(range.end);
+    std::sort(begin, end, [&](const Reference& a, const Reference& b) {
+        const std::array<float, 9> of_a = corners(a);
+        const std::array<float, 9> of_b = corners(b);
+        return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
+    });
+    const auto distinct = std::unique(begin, end, [&](const Reference& a, const Reference& b) {
+        return corners(a) == corners(b);
+    });
+    return static_cast<size_t>(distinct - references.begin());
+}
+
+/// The first reference of the second half; none: all have one middle.
+std::optional<size_t> ClosestTree::split(std::vector<Reference>& references, Range range) {
     const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
     const auto end = references.begin() + static_cast<ptrdiff_t>(range.end);
     const size_t half = range.begin + (range.end - range.begin) / 2;
@@ -208,7 +238,7 @@ size_t ClosestTree::split(std::vector<Reference>& references, Range range) {
     axis = size[2] > size[axis] ? 2 : axis;
     const float scale = kBins / size[axis];
     if (!std::isfinite(scale))  // one place but for rounding: what is far from all else makes it so
-        return half;
+        return std::nullopt;
     if (range.depth >= kMostUneven) {
         std::nth_element(begin, references.begin() + static_cast<ptrdiff_t>(half), end,
                          [axis](const Reference& a, const Reference& b) {

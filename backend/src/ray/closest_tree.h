@@ -16,13 +16,18 @@ namespace lodestone::ray {
 /// answers do not depend on the tree.
 class ClosestTree {
 public:
-    /// Positions lie in the unit sphere; triangles with a non-finite corner are left out. Keeps
-    /// nothing of either.
-    ClosestTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles);
+    /// Positions lie in the unit sphere; triangles with a non-finite corner are left out. Of many
+    /// with the same corners only the lowest counts, unless they are `unlike`. Keeps nothing of
+    /// either.
+    ClosestTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
+                bool unlike);
 
     /// Lets the search visit what may be within `radius` of its point, whose coordinates are below
     /// 1e15. The search must be over the same mesh. Ends as soon as something is within `enough`.
     void search(ClosestSearch& search, double radius, double enough = 0) const;
+
+    /// Of at most four triangles each.
+    size_t leaves() const { return leaves_.size(); }
 
 private:
     using Four = float __attribute__((vector_size(16)));
@@ -46,13 +51,19 @@ private:
         int depth;
     };
 
-    void make(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles);
-    int32_t add(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
-                std::vector<Reference>& references, Range range);
-    int32_t add_leaf(const std::vector<glm::vec3>& positions,
-                     const std::vector<Triangle>& triangles,
-                     const std::vector<Reference>& references, Range range);
-    static size_t split(std::vector<Reference>& references, Range range);
+    struct Given {
+        const std::vector<glm::vec3>& positions;
+        const std::vector<glm::vec3>& turned;  // along the tree's axes
+        const std::vector<Triangle>& triangles;
+        bool unlike;
+    };
+
+    void make(const Given& given);
+    int32_t add(const Given& given, std::vector<Reference>& references, Range range);
+    int32_t add_leaf(const Given& given, const std::vector<Reference>& references, Range range);
+    static std::optional<size_t> split(std::vector<Reference>& references, Range range);
+    static size_t end_of_distinct(const Given& given, std::vector<Reference>& references,
+                                  Range range);
     static Four square_distances(const Leaf& leaf, const glm::vec3& point);
 
     std::optional<glm::dmat3> axes_;  // rows: the tree's; none: x, y, z

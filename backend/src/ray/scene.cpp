@@ -194,7 +194,10 @@ Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t pe
     constexpr double kFarthest = 1e15;
     if (far < kFarthest) {
         // On this thread alone: one that waits for others could be given work that comes back here.
-        std::call_once(data.once, [&] { data.boxes.emplace(data.positions, data.triangles); });
+        std::call_once(data.once, [&] {
+            // What covers may show one of two triangles in one place.
+            data.boxes.emplace(data.positions, data.triangles, data.cover != nullptr);
+        });
         // What the radius alone keeps near is not found yet.
         if (search.triangle == kNoTriangle && radius <= enough)
             enough = 0;
