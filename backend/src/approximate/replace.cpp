@@ -2,6 +2,7 @@
 #include "approximate/replace.h"
 
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 
 #include <algorithm>
 #include <array>
@@ -86,11 +87,13 @@ glm::dvec3 match_box(const glm::dvec3& variances) {
 
 /// Each half axis follows its own variance; the others' influence is weak, so this contracts.
 glm::dvec3 match_ellipsoid(const glm::dvec3& variances) {
+    constexpr double kFaster = 0.55;  // 12 steps for 14 with a square root
+    constexpr double kSame = 1e-8;    // nobody measures the variances that well
     glm::dvec3 half = glm::sqrt(3.0 * variances);
     for (int step = 0; step < 200; ++step) {
         const glm::dvec3 ratio = variances / ellipsoid_shell(half).variances;
-        half *= glm::sqrt(ratio);
-        if (glm::length(ratio - 1.0) < 1e-11)
+        half *= glm::pow(ratio, glm::dvec3(kFaster));
+        if (glm::length(ratio - 1.0) < kSame)
             break;
     }
     return half;
@@ -225,12 +228,13 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     constexpr double kQuarter = 1.57079632679489661923;
     const double end_z = std::asinh(1 / bend_z);
     const double end_angle = std::asinh(kQuarter / bend_angle);
-    std::array<double, Gauss::kCount> heights;
-    std::array<double, Gauss::kCount> height_weights;
-    for (int j = 0; j < Gauss::kCount; ++j) {
+    std::array<double, Gauss::kCount> weights;  // of heights
+    std::array<double, Gauss::kCount> z_squares;
+    for (size_t j = 0; j < weights.size(); ++j) {
         const double t = end_z * kGauss.at[j];
-        heights[j] = std::min(1.0, bend_z * std::sinh(t));
-        height_weights[j] = kGauss.weight[j] * end_z * bend_z * std::cosh(t);
+        const double z = std::min(1.0, bend_z * std::sinh(t));
+        weights[j] = kGauss.weight[j] * end_z * bend_z * std::cosh(t);
+        z_squares[j] = z * z;
     }
     double area = 0;
     glm::dvec3 seconds(0.0);
@@ -241,16 +245,26 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
         const double x = std::cos(angle);
         const double y = std::sin(angle);
         const double across = (b / a * x) * (b / a * x) + y * y;  // times b^2
-        for (int j = 0; j < Gauss::kCount; ++j) {
-            const double z = heights[j];
-            const double square = 1 - z * z;
-            // hx hy hz |u / h| = a b c sqrt(z^2 / c^2 + ...) = a b sqrt(z^2 + (c / b)^2 ...)
-            const double patch = angle_weight * height_weights[j] * a * b *
-                                 std::sqrt(z * z + bend_z * bend_z * square * across);
-            area += patch;
-            seconds +=
-                patch * glm::dvec3(a * a * square * x * x, b * b * square * y * y, c * c * z * z);
+        const double bend_across = bend_z * bend_z * across;
+        // Sums in lanes, which the compiler may not make of one by itself.
+        constexpr size_t kLanes = 4;
+        std::array<double, kLanes> all{};
+        std::array<double, kLanes> level{};  // times the square of what is not height
+        for (size_t j = 0; j < weights.size(); j += kLanes) {
+            for (size_t lane = 0; lane < kLanes; ++lane) {
+                const double up = z_squares[j + lane];
+                // hx hy hz |u / h| = a b c sqrt(z^2 / c^2 + ...) = a b sqrt(z^2 + (c / b)^2 ...)
+                const double patch = weights[j + lane] * std::sqrt(up + bend_across * (1 - up));
+                all[lane] += patch;
+                level[lane] += patch * (1 - up);
+            }
         }
+        const double scale = angle_weight * a * b;
+        const double sum = scale * (all[0] + all[1] + all[2] + all[3]);
+        const double across_sum = scale * (level[0] + level[1] + level[2] + level[3]);
+        area += sum;
+        seconds += glm::dvec3(a * a * x * x * across_sum, b * b * y * y * across_sum,
+                              c * c * (sum - across_sum));
     }
     Shell out;
     out.area = 8 * area;

@@ -12,6 +12,7 @@ namespace {
 // Heights above the floor over the height of the whole: less is a rounding.
 constexpr double kSame = 1e-9;
 constexpr int kRounds = 30;
+constexpr double kLastChange = 1e-7;  // a round that changes less is the last
 
 double area_of(const Primitive& primitive, bool box) {
     return (box ? box_shell(primitive.half_size) : ellipsoid_shell(primitive.half_size)).area;
@@ -60,7 +61,7 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
         stretch(out, 1, across);
         whole_along *= along;
         whole_across *= across;
-        if (std::max(std::abs(along - 1), std::abs(across - 1)) < kSame)
+        if (std::max(std::abs(along - 1), std::abs(across - 1)) < kLastChange)
             break;
         if (!(std::max(whole_along, whole_across) <= kMost &&
               std::min(whole_along, whole_across) >= 1 / kMost)) {
