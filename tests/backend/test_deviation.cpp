@@ -360,6 +360,37 @@ TEST(DeviationLooks, OfARepaintedLevelIsTheSameWithWhatRepaintingFound) {
     EXPECT_GE(rough.max, rough.error);
 }
 
+TEST(Deviation, WhatIsHiddenIsToldByTriangleAndNotComparedAt) {
+    Mesh nested = shapes::sphere(1, 3);
+    const size_t outer = nested.triangles.size();
+    append(nested, shapes::sphere(0.5, 3), Affine{});
+    const DeviationReference reference(nested, {2048, 2048, 1, 16});
+    ASSERT_EQ(reference.seen_triangles().size(), nested.triangles.size());
+    for (size_t i = 0; i < nested.triangles.size(); ++i)
+        EXPECT_EQ(reference.seen_triangles()[i] != 0, i < outer) << i;
+    EXPECT_EQ(reference.visible_points(),
+              DeviationReference(nested, {2048, 2048, 1}).visible_points());
+    EXPECT_TRUE(DeviationReference(nested, {}).seen_triangles().empty());
+}
+
+TEST(Deviation, NoVertexOfHiddenTrianglesAloneIsVisible) {
+    const Mesh sphere = shapes::sphere(1, 2);
+    const ray::Scene scene(sphere);
+    const measure::Sides sides = measure::sides_of(sphere, scene);
+    const auto visible = [&](const std::vector<uint8_t>& seen) {
+        std::vector<measure::SurfaceSample> out;
+        measure::add_visible_vertices(sphere, scene, sides, seen,
+                                      measure::weighted_vertices(sphere, 1000, 1), 1e-6, 1, {},
+                                      out);
+        return out.size();
+    };
+    std::vector<uint8_t> seen(sphere.triangles.size(), 0);
+    EXPECT_EQ(visible(seen), 0u);
+    seen[7] = 1;
+    EXPECT_EQ(visible(seen), 3u);
+    EXPECT_EQ(visible({}), sphere.positions.size());
+}
+
 TEST(Deviation, RoughlyIsNearTheSame) {
     const Mesh finest = shapes::sphere(1, 4);
     const DeviationReference reference(finest, {2048, 2048, 1});

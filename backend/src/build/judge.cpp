@@ -75,7 +75,7 @@ double counted_error(double error, bool environment, double size) {
 
 Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
              const Settings& settings, bool environment, uint64_t seed, double child_error,
-             const Job& job)
+             const Job& job, int rays_of_triangle)
     : texels_(texels),
       size_(bound_of(finest.positions).radius),
       child_error_(child_error),
@@ -85,8 +85,10 @@ Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::Tex
       materials_(materials.begin(), materials.end()),
       skin_(std::make_shared<const ray::Skin>(materials, texels)),
       finest_looks_(looks_.of(finest, materials)),
-      reference_(finest, {samples_of(finest, environment, settings), settings.samples, seed},
-                 {finest_looks_, &looks_, skin_}, job) {}
+      reference_(
+          finest,
+          {samples_of(finest, environment, settings), settings.samples, seed, rays_of_triangle},
+          {finest_looks_, &looks_, skin_}, job) {}
 
 void Judge::measure_finest(const Mesh& finest, const Job& job) {
     opacity_ = measure::mean_opacity(finest, *skin_, seed_);

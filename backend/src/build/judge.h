@@ -27,10 +27,11 @@ bool is_flat(const Attributes& attributes);
 /// or the settings, but one to the texels.
 class Judge {
 public:
-    /// `child_error`: by how much the mesh itself is off, metres.
+    /// `child_error`: by how much the mesh itself is off, metres. `rays_of_triangle`: as
+    /// DeviationOptions.
     Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
           const Settings& settings, bool environment, uint64_t seed, double child_error,
-          const Job& job);
+          const Job& job, int rays_of_triangle = 0);
 
     /// Measures the finest by rays, which attributes(), solid(), shows_as_much() and
     /// prove() need.
@@ -53,7 +54,8 @@ public:
     const ray::SkinPtr& skin() const { return skin_; }
     /// Of the finest, in its skin.
     const ray::Scene& finest_scene() const { return reference_.scene(); }
-    const measure::Sides& finest_sides() const { return reference_.sampler().sides(); }
+    /// As DeviationReference.
+    const std::vector<uint8_t>& seen_triangles() const { return reference_.seen_triangles(); }
 
     /// As DeviationReference::repaint(), whose answer measure_mesh() may be told.
     std::vector<ray::Closest> repaint(Mesh& level, const Job& job) const {

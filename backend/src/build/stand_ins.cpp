@@ -10,7 +10,6 @@
 #include "build/measured_levels.h"
 #include "build/replacements.h"
 #include "build/surroundings.h"
-#include "measure/seen_from_outside.h"
 #include "quality/cut.h"
 
 #include <algorithm>
@@ -67,13 +66,11 @@ private:
 };
 
 /// What no ray from outside reaches is left out (of the occurrences too); everything stays when
-/// nothing would, and where there is glass, which ends rays but hides nothing.
-Mesh without_hidden(const Mesh& mesh, std::vector<uint32_t>& occurrence, const Judge& judge,
-                    uint64_t seed, const Job& job) {
-    if (judge.refracts())
+/// nothing would, and where there is glass, which ends rays but hides nothing (`seen` is empty).
+Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
+                    std::vector<uint32_t>& occurrence) {
+    if (seen.empty())
         return mesh;
-    const std::vector<uint8_t> seen = measure::seen_from_outside(
-        mesh, judge.finest_scene(), judge.finest_sides(), kRaysPerTriangle, seed, job);
     Mesh shell = subset(mesh, seen);
     if (shell.empty())
         return mesh;
@@ -205,7 +202,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         return out;
     const uint64_t seed = seed_of(object, settings);
     Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
-                reference.child_error, job);
+                reference.child_error, job, kRaysPerTriangle);
     judge.measure_roughly();
     judge.measure_finest(reference.mesh, job);
     if (std::set<ObjectIndex> asked; lies_on_a_layer(model, group, surroundings.layers, asked))
@@ -215,7 +212,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         return out;
 
     std::vector<uint32_t> occurrence = reference.occurrence;
-    Mesh shell = without_hidden(reference.mesh, occurrence, judge, seed, job);
+    Mesh shell = without_hidden(reference.mesh, judge.seen_triangles(), occurrence);
     const double floor = bound_of(shell.positions).box.low.z;
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.

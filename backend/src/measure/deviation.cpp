@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "measure/sample_errors.h"
+#include "measure/seen_from_outside.h"
 #include "measure/visible_looks.h"
 
 #include <algorithm>
@@ -219,11 +220,15 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
         cast_ = add_visible_points(finest, sampler_, surface, options.samples, job, points);
         const std::vector<WeightedVertex> vertices =
             weighted_vertices(finest, options.most_vertices, options.seed);
-        if (surface.skin && surface.skin->transmits())
+        if (surface.skin && surface.skin->transmits()) {
             add_vertex_samples(finest, scenes_.whole(), vertices, points);
-        else
-            add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), vertices,
-                                 ray_lift(diameter_ / 2), options.seed, job, points);
+        } else {
+            if (options.rays_of_triangle > 0)
+                seen_triangles_ = seen_from_outside(finest, scenes_.whole(), sampler_.sides(),
+                                                    options.rays_of_triangle, options.seed, job);
+            add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), seen_triangles_,
+                                 vertices, ray_lift(diameter_ / 2), options.seed, job, points);
+        }
     }
     for (size_t i = 0; i < points.size(); ++i) {
         if (is_of_few(i))

@@ -28,6 +28,10 @@ struct DeviationOptions {
     uint32_t samples = 8192;        // points uniform in area, each direction
     uint32_t most_vertices = 8192;  // of the finest; a larger one is represented by so many
     uint64_t seed = 1;
+    /// Not 0: it is told which triangles of the finest can be seen, by so many rays of each
+    /// (seen_from_outside()), and vertices of hidden ones alone are hidden without rays of their
+    /// own. Of what refracts nothing is hidden.
+    int rays_of_triangle = 0;
 };
 
 /// The finest surface made ready to be compared with. The quantile of each direction is over two
@@ -75,6 +79,9 @@ public:
     const ray::Scene& scene() const { return scenes_.whole(); }
     /// Likewise; of the mesh it was made from, which must still be there.
     const VisibleSampler& sampler() const { return sampler_; }
+    /// By triangle of the finest, 1 where it can be seen; empty where that was not asked for, or
+    /// where the finest refracts.
+    const std::vector<uint8_t>& seen_triangles() const { return seen_triangles_; }
     /// What the first rays of sampler() found, once.
     std::vector<Cast> take_cast() { return std::move(cast_); }
 
@@ -98,6 +105,7 @@ private:
     LookScenes scenes_;
     VisibleSampler sampler_;
     std::vector<Cast> cast_;
+    std::vector<uint8_t> seen_triangles_;
     const Looks* palette_;
     Seen seen_;
     Seen few_;  // half of them

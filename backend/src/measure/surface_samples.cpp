@@ -225,11 +225,15 @@ std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sam
 }
 
 void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
+                          std::span<const uint8_t> seen,
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
                           const Job& job, std::vector<SurfaceSample>& out) {
     const TrianglesOf triangles_of(mesh);
     const auto sees = [&](uint32_t vertex) {
         const std::span<const uint32_t> around = triangles_of[vertex];
+        if (!seen.empty() && std::none_of(around.begin(), around.end(),
+                                          [&](uint32_t triangle) { return seen[triangle] != 0; }))
+            return false;
         const glm::dvec3 point(mesh.positions[vertex]);
         Random random(scramble(seed) + vertex, 3);
         for (int ray = 0; ray < kVertexRays; ++ray) {
@@ -256,14 +260,14 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
         }
         return false;
     };
-    std::vector<uint8_t> seen(vertices.size(), 0);
+    std::vector<uint8_t> visible(vertices.size(), 0);
     parallel_for((vertices.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         for (size_t i = block * kBlock; i < std::min(vertices.size(), (block + 1) * kBlock); ++i)
-            seen[i] = sees(vertices[i].vertex) ? 1 : 0;
+            visible[i] = sees(vertices[i].vertex) ? 1 : 0;
     });
     for (size_t i = 0; i < vertices.size(); ++i) {
-        if (seen[i] != 0)
+        if (visible[i] != 0)
             out.push_back({glm::dvec3(mesh.positions[vertices[i].vertex]), vertices[i].weight});
     }
 }

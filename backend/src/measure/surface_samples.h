@@ -62,8 +62,10 @@ std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sam
                                      const Surface& surface, uint32_t count, const Job& job,
                                      std::vector<SurfaceSample>& out);
 
-/// Vertices from beside which some ray sees infinity.
+/// Vertices from beside which some ray sees infinity. `seen`: the triangles that can be seen, if
+/// that is known (else empty); a vertex of none of them is not asked for.
 void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
+                          std::span<const uint8_t> seen,
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
                           const Job& job, std::vector<SurfaceSample>& out);
 
