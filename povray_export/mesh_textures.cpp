@@ -115,6 +115,18 @@ size_t MeshTextures::of(size_t triangle, int corner) const {
                              : slots_[slot_at_[mesh_.slot(triangle)]].text;
 }
 
+bool MeshTextures::is_glass(size_t triangle) const {
+    return refraction_of(slots_[slot_at_[mesh_.slot(triangle)]].material) > 0;
+}
+
+bool MeshTextures::is_clear_beside_glass() const {
+    return refraction_ > 0 && std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+               const Material& material = slot.material;
+               return material.alpha_mode == AlphaMode::Blend && !(refraction_of(material) > 0) &&
+                      (material.alpha < 1 || material.alpha_texture);
+           });
+}
+
 void MeshTextures::breathe(size_t i) const {
     if ((i & 0xffffu) == 0xffffu)
         job_.check();

@@ -30,6 +30,10 @@ public:
     /// Of what light goes through (the largest of the slots'); 0: nothing.
     double refraction() const { return refraction_; }
 
+    bool is_glass(size_t triangle) const;
+    /// Whether some of it is transparent, but bends no light, though other triangles do.
+    bool is_clear_beside_glass() const;
+
     /// Some bumps are not shown: their surface has more than kMostPlanes planes.
     bool bumps_left_out() const { return bumps_left_out_; }
 

@@ -63,24 +63,24 @@ bool flat_on_lattice(const Point& a, const Point& b, const Point& c) {
     return u(1) * v(2) == u(2) * v(1) && u(2) * v(0) == u(0) * v(2) && u(0) * v(1) == u(1) * v(0);
 }
 
+/// Which triangles are written.
+enum class Written { All, Glass, Rest };
+
 class MeshText {
 public:
-    MeshText(const Mesh& mesh, const MeshTextures* textures, const Job& job)
-        : mesh_(mesh), textures_(textures), job_(job) {
+    MeshText(const Mesh& mesh, const MeshTextures* textures, Written written, const Job& job)
+        : mesh_(mesh), textures_(textures), written_(written), job_(job) {
         round_positions();
         keep_triangles();
         if (!kept_.empty())
             share_values();
     }
 
-    std::string text(const std::string& identifier, std::string_view before) {
-        if (kept_.empty())
-            return "";
-        std::string out;
-        out.reserve(200 + before.size() + positions_.size() * (smooth_ ? 48 : 24) +
-                    kept_.size() * 28);
-        out += before;
-        out += "#declare " + identifier + " = mesh2{\n";
+    bool empty() const { return kept_.empty(); }
+
+    void append_to(std::string& out) {
+        out.reserve(out.size() + 200 + positions_.size() * (smooth_ ? 48 : 24) + kept_.size() * 28);
+        out += "mesh2{\n";
         append_list(out, "vertex_vectors", positions_.size(), [&](char* at, size_t i) {
             return write_point(at, lattice_, points_[positions_.vertices[i]]);
         });
@@ -110,7 +110,8 @@ public:
         if (has_uvs_ && explicit_uvs_)
             append_list(out, "uv_indices", kept_.size(),
                         [&](char* at, size_t i) { return write_face(at, uvs_, kept_[i]); });
-        const bool refracts = textures_ != nullptr && textures_->refraction() > 0;
+        const bool refracts =
+            textures_ != nullptr && textures_->refraction() > 0 && written_ != Written::Rest;
         if (refracts)
             out += "inside_vector <0,0,1>\n";
         if (textures_ != nullptr && !list)
@@ -123,7 +124,6 @@ public:
         if (kept_.size() <= kFew)
             out += "hierarchy off\n";
         out += "}\n";
-        return out;
     }
 
 private:
@@ -164,6 +164,8 @@ private:
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
             breathe(i);
             const Triangle& t = mesh_.triangles[i];
+            if (written_ != Written::All && textures_->is_glass(i) != (written_ == Written::Glass))
+                continue;
             if (narrow_ ? flat_on_lattice<int64_t>(points_[t.x], points_[t.y], points_[t.z])
                         : flat_on_lattice<__int128>(points_[t.x], points_[t.y], points_[t.z]))
                 continue;
@@ -342,6 +344,7 @@ private:
 
     const Mesh& mesh_;
     const MeshTextures* textures_;
+    Written written_;
     const Job& job_;
     Lattice lattice_{1, 1};
     Lattice normal_lattice_{kNormalPrecision, 1};
@@ -365,7 +368,29 @@ private:
 
 std::string mesh_text(const Mesh& mesh, const MeshTextures* textures, const std::string& identifier,
                       const Job& job, std::string_view before) {
-    return MeshText(mesh, textures, job).text(identifier, before);
+    std::string out(before);
+    out += "#declare " + identifier + " = ";
+    if (textures == nullptr || !textures->is_clear_beside_glass()) {
+        MeshText all(mesh, textures, Written::All, job);
+        if (all.empty())
+            return "";
+        all.append_to(out);
+        return out;
+    }
+    MeshText glass(mesh, textures, Written::Glass, job);
+    MeshText rest(mesh, textures, Written::Rest, job);
+    if (glass.empty() && rest.empty())
+        return "";
+    const bool both = !glass.empty() && !rest.empty();  // a union of one is an error to POV-Ray
+    if (both)
+        out += "union{\n";
+    for (MeshText* part : {&glass, &rest}) {
+        if (!part->empty())
+            part->append_to(out);
+    }
+    if (both)
+        out += "}\n";
+    return out;
 }
 
 }  // namespace lodestone::povray

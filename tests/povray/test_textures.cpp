@@ -399,6 +399,35 @@ TEST(PovrayTextures, GlassBendsWhatIsBehindItAndTintsItTwice) {
     EXPECT_NEAR(image.at(2, 32).x, 0.5, 0.002);
 }
 
+TEST(PovrayTextures, WhatIsClearBesideGlassInOneMeshBendsNothing) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    Builder builder;
+    Material glass;
+    glass.transmission = 1;
+    glass.roughness = 0;
+    Material clear = scenes::textured({});
+    clear.base_color = glm::dvec3(0.0);
+    clear.alpha_mode = AlphaMode::Blend;
+    clear.alpha = 0.5;
+    Material lamp = clear;
+    lamp.alpha = 1;
+    lamp.emission = glm::dvec3(0.5);
+    Mesh balls = shapes::sphere(0.8, 5);
+    balls.slots.assign(balls.triangles.size(), 0);
+    Mesh other = balls;
+    other.slots.assign(other.triangles.size(), 1);
+    append(balls, other, {glm::dmat3(1.0), {9, 0, 0}});  // outside of the picture
+    builder.place(builder.mesh(balls, {builder.material(clear), builder.material(glass)}));
+    builder.place_at(builder.mesh(shapes::quad(2, 4), {builder.material(lamp)}), {-2, -2, -2});
+    ExportOptions options;
+    options.folder = scratch("clear_beside_glass");
+    options.antialiasing = Antialiasing::Off;
+    const scenes::Image image = render(builder.finish(), above(64, 64), options);
+    EXPECT_NEAR(image.at(24, 32).x, 0.5 * 0.25, 0.002);
+    EXPECT_NEAR(image.at(40, 32).x, 0, 0.002);
+}
+
 TEST(PovrayTextures, VertexColorsRunBetweenVerticesAndMultiplyThePicture) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
