@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
-#include <unordered_map>
 
 namespace lodestone::approximate {
 namespace {
@@ -36,18 +36,31 @@ std::vector<uint32_t> connected(const Mesh& mesh) {
     const std::vector<uint32_t> welded = weld(mesh);
     std::vector<uint32_t> parents(mesh.triangles.size());
     std::iota(parents.begin(), parents.end(), 0u);
-    std::unordered_map<uint64_t, uint32_t> edges;
-    edges.reserve(2 * mesh.triangles.size());
-    for (uint32_t i = 0; i < parents.size(); ++i) {
-        for (int corner = 0; corner < 3; ++corner) {
-            uint64_t a = welded[mesh.triangles[i][corner]];
-            uint64_t b = welded[mesh.triangles[i][(corner + 1) % 3]];
-            if (a > b)
-                std::swap(a, b);
-            const auto [at, fresh] = edges.try_emplace(a << 32u | b, i);
-            if (fresh)
-                continue;
-            join(parents, at->second, i);
+    struct Edge {
+        uint32_t end;  // the higher one
+        uint32_t triangle;
+    };
+    std::vector<size_t> first(mesh.positions.size() + 2, 0);  // by the lower end
+    std::vector<Edge> edges(3 * mesh.triangles.size());
+    const auto each = [&](const auto& visit) {
+        for (uint32_t i = 0; i < parents.size(); ++i) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const uint32_t a = welded[mesh.triangles[i][corner]];
+                const uint32_t b = welded[mesh.triangles[i][(corner + 1) % 3]];
+                visit(std::min(a, b), Edge{std::max(a, b), i});
+            }
+        }
+    };
+    each([&](uint32_t low, const Edge&) { ++first[low + 2]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    each([&](uint32_t low, const Edge& edge) { edges[first[low + 1]++] = edge; });
+    for (size_t low = 0; low < mesh.positions.size(); ++low) {
+        const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(first[low]);
+        const auto end = edges.begin() + static_cast<std::ptrdiff_t>(first[low + 1]);
+        std::sort(begin, end, [](const Edge& a, const Edge& b) { return a.end < b.end; });
+        for (auto at = begin; at != end; ++at) {
+            if (at != begin && at->end == std::prev(at)->end)
+                join(parents, at->triangle, std::prev(at)->triangle);
         }
     }
     for (uint32_t i = 0; i < parents.size(); ++i)
@@ -55,12 +68,29 @@ std::vector<uint32_t> connected(const Mesh& mesh) {
     return parents;
 }
 
+/// The numbers 0, 1, ... instead of others, in their order; returns how many there are.
+size_t renumber(std::vector<uint32_t>& numbers) {
+    std::vector<uint32_t> known = numbers;
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    uint32_t last = 0;  // mostly the next one is the same
+    for (uint32_t& number : numbers) {
+        if (known[last] != number)
+            last = static_cast<uint32_t>(std::lower_bound(known.begin(), known.end(), number) -
+                                         known.begin());
+        number = last;
+    }
+    return known.size();
+}
+
 /// What is known of a part while its triangles are gone through.
 struct Found {
     double area = 0;
     glm::dvec3 first{0.0};  // about the origin: the middle of the mesh's bound
     glm::dmat3 second{0.0};
-    uint16_t slot = 0;
+    bool known = false;
+    uint16_t slot = 0;  // of its first triangle
     Hasher hash;
 };
 
@@ -165,14 +195,14 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
     std::vector<uint32_t> numbers =
         given.empty() ? connected(mesh) : std::vector<uint32_t>(given.begin(), given.end());
     const glm::dvec3 origin = bound_of(mesh.positions).center;
-    std::map<uint32_t, Found> found;
+    std::vector<Found> found(renumber(numbers));
     double all = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
-        const bool fresh = found.find(numbers[i]) == found.end();
         Found& part = found[numbers[i]];
-        if (fresh)
+        if (!part.known)
             part.slot = mesh.slot(i);
+        part.known = true;
         if (!finite_triangle(mesh, t))
             continue;
         const double area = 0.5 * glm::length(area_vector(mesh, i));
@@ -196,14 +226,14 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
         size_t parts = 0;
     };
     std::map<uint16_t, Kind> kinds;
-    for (const auto& [number, part] : found)
+    for (const Found& part : found)
         kinds[part.slot].areas.push_back(part.area);
     for (auto& [slot, kind] : kinds)
         kind.largest = kLargestPart * median_of(kind.areas);
     const auto belongs = [&](const Found& part) {
         return part.area > 0 && part.area <= kinds.at(part.slot).largest;
     };
-    for (const auto& [number, part] : found) {
+    for (const Found& part : found) {
         if (!belongs(part))
             continue;
         kinds[part.slot].area += part.area;
@@ -217,12 +247,13 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
         kind_of_slot.emplace(slot, static_cast<uint32_t>(out.slots.size()));
         out.slots.push_back(slot);
     }
-    std::map<uint32_t, uint32_t> new_numbers;
-    for (const auto& [number, part] : found) {
+    std::vector<uint32_t> new_numbers(found.size(), kNoPart);
+    for (size_t i = 0; i < found.size(); ++i) {
+        const Found& part = found[i];
         const auto kind = kind_of_slot.find(part.slot);
         if (kind == kind_of_slot.end() || !belongs(part))
             continue;
-        new_numbers.emplace(number, static_cast<uint32_t>(out.parts.size()));
+        new_numbers[i] = static_cast<uint32_t>(out.parts.size());
         out.parts.push_back(part_of(part, origin));
         out.parts.back().kind = kind->second;
     }
@@ -230,10 +261,10 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
         return {};
     out.part_of.assign(numbers.size(), kNoPart);
     for (size_t i = 0; i < numbers.size(); ++i) {
-        const auto at = new_numbers.find(numbers[i]);
-        if (at == new_numbers.end() || !finite_triangle(mesh, mesh.triangles[i]))
+        const uint32_t part = new_numbers[numbers[i]];
+        if (part == kNoPart || !finite_triangle(mesh, mesh.triangles[i]))
             continue;
-        out.part_of[i] = at->second;
+        out.part_of[i] = part;
         ++out.triangles;
     }
     return out;
