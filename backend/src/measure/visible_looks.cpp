@@ -2,9 +2,11 @@
 #include "measure/visible_looks.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 namespace lodestone::measure {
@@ -98,34 +100,47 @@ double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec
 
 double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& color,
                                    double most) const {
-    constexpr size_t kFirst = 16;
     // A square and the number of what is so near: bits of floats that are not negative are in
     // order. Nobody can guess which are, so all are written, and the next one over what is not.
     std::vector<uint64_t> near(mixed_.size());
     const bool sided = is_sided(from.side);
     size_t count = 0;
+    float farthest = 0;
     for (uint32_t i = 0; i < mixed_.size(); ++i) {
         const Mixed& next = mixed_[i];
         const glm::dvec3 arm = next.point - from.point;
         const double square = glm::dot(arm, arm);
-        near[count] = uint64_t{std::bit_cast<uint32_t>(static_cast<float>(square))} << 32u | i;
+        const auto rounded = static_cast<float>(square);
+        near[count] = uint64_t{std::bit_cast<uint32_t>(rounded)} << 32u | i;
         const bool turned = !(glm::dot(next.side, from.side) > 0);
         const bool reached = square < most * most;
-        count += static_cast<size_t>(reached & !(sided & next.sided & turned));
+        const bool counts = reached & !(sided & next.sided & turned);
+        farthest = std::max(farthest, counts ? rounded : 0);
+        count += static_cast<size_t>(counts);
     }
     near.resize(count);
+    // Points of a surface are spread about evenly over squares of distances: a few to a bin.
+    constexpr size_t kBins = 64;
+    const float scale = static_cast<float>(kBins) / farthest;
+    const auto bin_of = [&](uint64_t key) {
+        const float square = std::bit_cast<float>(static_cast<uint32_t>(key >> 32u));
+        return std::isnormal(scale) ? std::min(static_cast<size_t>(square * scale), kBins - 1) : 0;
+    };
+    std::array<size_t, kBins + 1> ends{};  // of the bins before, from the second on
+    for (const uint64_t key : near)
+        ++ends[bin_of(key) + 1];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    std::vector<uint64_t> binned(count);
+    for (const uint64_t key : near)
+        binned[ends[bin_of(key)]++] = key;
     const Looks::Lights wanted = Looks::lights_alike(color);
     glm::dvec3 sum(0.0);
-    // Mostly the nearest few are enough: the rest is not sorted.
-    size_t end = 0;
-    for (size_t begin = 0; begin < near.size(); begin = end) {
-        end = std::min(near.size(), std::max(kFirst, 2 * begin));
-        const auto at = [&](size_t i) { return near.begin() + static_cast<ptrdiff_t>(i); };
-        if (end < near.size())
-            std::nth_element(at(begin), at(end), near.end());
-        std::sort(at(begin), at(end));
-        for (size_t i = begin; i < end; ++i) {
-            const Mixed& next = mixed_[static_cast<uint32_t>(near[i])];
+    size_t begin = 0;
+    for (size_t bin = 0; begin < count; begin = ends[bin++]) {
+        const auto at = [&](size_t i) { return binned.begin() + static_cast<ptrdiff_t>(i); };
+        std::sort(at(begin), at(ends[bin]));
+        for (size_t i = begin; i < ends[bin]; ++i) {
+            const Mixed& next = mixed_[static_cast<uint32_t>(binned[i])];
             sum += next.light;
             if (wanted.hold(sum / static_cast<double>(i + 1)))
                 return glm::length(next.point - from.point);
