@@ -391,7 +391,9 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
             const Leaf& leaf = leaves_[static_cast<size_t>(index)];
             const Four distances = square_distances(leaf, point);
             for (int i = 0; i < kWidth; ++i) {
-                if (!may_be_near(distances[i], leaf.slack[i]))
+                // The nearest so far, as the one that was tried first, is known exactly.
+                if (leaf.triangles[static_cast<size_t>(i)] == search.triangle ||
+                    !may_be_near(distances[i], leaf.slack[i]))
                     continue;
                 if (waiting == kCandidates)
                     decide();
