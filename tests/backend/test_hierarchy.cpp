@@ -99,18 +99,17 @@ void expect_valid(const Model& model) {
         const Object& object = model.objects[index];
         double last_error = -1;
         uint64_t last_bytes = ~uint64_t{0};
-        bool drawable = false;
+        const Representation& finest = object.representations[0];
+        bool drawable = object.group() && finest.assembly().placements.size() == 1;
         for (const Representation& representation : object.representations) {
             EXPECT_GT(representation.summary.error, last_error) << object.name;
             EXPECT_GE(representation.summary.max_error, representation.summary.error);
-            if (&representation != &object.representations[0] && !object.group()) {
-                EXPECT_LT(representation.summary.cost.bytes, last_bytes) << object.name;
-            }
+            EXPECT_LT(representation.summary.cost.bytes, last_bytes) << object.name;
             last_error = representation.summary.error;
-            last_bytes = representation.summary.cost.bytes;
+            last_bytes = object.group() ? last_bytes : representation.summary.cost.bytes;
             drawable = drawable || representation.summary.kind != Kind::Assembly;
         }
-        EXPECT_EQ(object.representations[0].summary.error, 0);
+        EXPECT_EQ(finest.summary.error, 0);
         EXPECT_TRUE(drawable) << object.name;
     }
 }

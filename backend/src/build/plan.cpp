@@ -12,6 +12,13 @@ bool shows(const Object& object) {
     return !object.representations.empty() && !object.bound().empty();
 }
 
+/// A group that is never asked for as one, or that places a single thing, which has its own
+/// stand-ins: another one, of one of those, costs as much and is farther off.
+bool is_always_opened(const Object& object) {
+    return object.group() && (std::isinf(object.demand) ||
+                              object.representations[0].assembly().placements.size() == 1);
+}
+
 /// `layers`: what layers_of tells of it; `ground`: what grounds_of does.
 Hash build_hash_of(const Object& object, Hash settings, Hash layers, uint8_t ground) {
     const Hash hash = Hasher().value(object.source_hash).value(settings).result();
@@ -55,8 +62,8 @@ Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
         if (!shows(object))
             continue;
         ++plan.objects;
-        if (object.group() && std::isinf(object.demand))
-            continue;  // always opened
+        if (is_always_opened(object))
+            continue;
         Hash wanted = build_hash_of(object, of_settings, surroundings.layers[index],
                                     surroundings.ground[index]);
         std::optional<Bind> bind;
