@@ -6,6 +6,7 @@
 #include "build/demand.h"
 #include "build/effort.h"
 #include "build/followed.h"
+#include "build/moved.h"
 #include "build/palette.h"
 #include "build/plan.h"
 #include "build/shelf.h"
@@ -136,7 +137,10 @@ public:
         for (auto& [height, objects] : stale) {
             // Copies of lower objects must be complete before a group above them is flattened.
             copy_lists(copies, heights, height);
+            const std::vector<Moved> moved = take_moved(objects, model_, surroundings_);
             build(objects);
+            for (const Moved& one : moved)
+                finish(one);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
         report.bytes_written += kept_bytes_ + store_.write(model_, job_.part(kBuildShare, 1));
@@ -296,6 +300,15 @@ private:
             seconds -= seconds_to_build(model_.objects[objects[count++]], settings_);
         } while (count < objects.size() && seconds > 0);
         return count;
+    }
+
+    /// What is another one moved, once that is built.
+    void finish(const Moved& moved) {
+        if (model_.objects[moved.original].build_hash != 0) {
+            add_moved(model_, moved);
+            model_.objects[moved.index].build_hash = wanted_[moved.index];
+        }
+        advance(weight(model_.objects[moved.index]));
     }
 
     void build_all(std::span<const ObjectIndex> objects) {
