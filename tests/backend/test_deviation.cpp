@@ -347,17 +347,29 @@ TEST(DeviationLooks, OfARepaintedLevelIsTheSameWithWhatRepaintingFound) {
     const DeviationReference reference(finest, {2048, 2048, 1}, {looks, &palette, nullptr});
     Mesh level = shapes::quad(20, 20);
     append(level, shapes::quad(3, 20), Affine{}, 1);  // another road, at the edge
-    const std::vector<ray::Closest> nearest = reference.repaint(level);
-    ASSERT_EQ(nearest.size(), reference.visible_points());
+    Mesh second = level;
+    const DeviationReference::Repainted known = reference.repaint(level);
+    ASSERT_EQ(known.nearest.size(), reference.visible_points());
     const std::vector<uint16_t> theirs = palette.of(level, materials);
     const measure::Surface surface{theirs, &palette, nullptr};
     const double never = std::numeric_limits<double>::infinity();
-    const Deviation told = reference.of(level, surface, nearest, never, {});
+    const Deviation told = reference.of(level, surface, known, never, {});
     EXPECT_NEAR(told.error, reference.of(level, surface).error, 1e-9);
     EXPECT_GT(told.error, 0.5);
-    const Deviation rough = reference.roughly(level, surface, nearest, never, {});
+    const Deviation rough = reference.roughly(level, surface, known, never, {});
     EXPECT_NEAR(rough.error, told.error, 0.2 * told.error);
     EXPECT_GE(rough.max, rough.error);
+    // What is no use is left as it is, and nothing else.
+    for (const double useless : {0.001, 1000.0}) {
+        for (const bool half : {false, true}) {
+            Mesh again = second;
+            again.positions[0].z += 5;
+            const std::vector<uint16_t> before = again.slots;
+            const bool none = reference.repaint(again, nullptr, {}, half, useless).useless;
+            EXPECT_EQ(none, useless < 1);
+            EXPECT_EQ(none, again.slots == before);
+        }
+    }
 }
 
 TEST(Deviation, WhatIsHiddenIsToldByTriangleAndNotComparedAt) {

@@ -168,13 +168,17 @@ bool Judge::is_matched(double used_to) const {
 }
 
 void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
-                         std::span<const ray::Closest> nearest) {
+                         const measure::DeviationReference::Repainted& known) {
+    if (known.useless) {
+        candidate.error = candidate.max_error = std::numeric_limits<double>::infinity();
+        return;
+    }
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
     const measure::Surface surface{looks, &looks_, skin_of(candidate)};
     const double most = distance_for(useless);
-    set_error(candidate, rough_ ? reference_.roughly(mesh, surface, nearest, most, job)
-                                : reference_.of(mesh, surface, nearest, most, job));
+    set_error(candidate, rough_ ? reference_.roughly(mesh, surface, known, most, job)
+                                : reference_.of(mesh, surface, known, most, job));
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {

@@ -57,9 +57,12 @@ public:
     /// As DeviationReference.
     const std::vector<uint8_t>& seen_triangles() const { return reference_.seen_triangles(); }
 
-    /// As DeviationReference::repaint(), whose answer measure_mesh() may be told.
-    std::vector<ray::Closest> repaint(Mesh& level, const Job& job) const {
-        return reference_.repaint(level, skin_.get(), job);
+    /// As DeviationReference::repaint(), whose answer measure_mesh() may be told, with the
+    /// `useless` error of that.
+    measure::DeviationReference::Repainted repaint(
+        Mesh& level, const Job& job,
+        double useless = std::numeric_limits<double>::infinity()) const {
+        return reference_.repaint(level, skin_.get(), job, rough_, distance_for(useless));
     }
 
     /// False for a level of the finest's materials that shows another amount of surface.
@@ -72,7 +75,7 @@ public:
     /// Where the error is much larger than `useless` it may be infinite, which takes less time.
     void measure_mesh(Candidate& candidate, const Job& job,
                       double useless = std::numeric_limits<double>::infinity(),
-                      std::span<const ray::Closest> nearest = {});
+                      const measure::DeviationReference::Repainted& known = {});
     /// Infinite where another primitive measured here before is nearer: they cost the same.
     void measure_primitive(Candidate& candidate, const Job& job);
 

@@ -36,12 +36,12 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
             coarser /= kMostNearer;
             continue;
         }
-        const std::vector<ray::Closest> nearest = judge.repaint(level, job);
+        const measure::DeviationReference::Repainted known = judge.repaint(level, job, most);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
         candidate.unproven = true;
-        judge.measure_mesh(candidate, job, most, nearest);
+        judge.measure_mesh(candidate, job, most, known);
         coarser = std::min(candidate.error, std::max(most, useless));
         if (!std::isfinite(coarser))
             coarser = most;  // it is farther than that

@@ -29,12 +29,6 @@ constexpr size_t kAskedOfMixed = 256;
 // One point of so many is asked for a rough answer.
 constexpr uint32_t kFew = 2;
 
-/// One of kFew points, by no regular step: the corners of boxes are listed bottom, top, bottom,
-/// top.
-bool is_of_few(size_t i) {
-    return static_cast<uint32_t>(i) * 0x9E3779B9u >= 0x80000000u;
-}
-
 /// A stand-in of few triangles is not asked at more points than some of each, or than a quarter of
 /// `all`: what it hides, or has lost, the points of the finest tell.
 uint32_t samples_for(const Mesh& stand_in, uint32_t most, uint32_t all) {
@@ -230,42 +224,48 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
                                  vertices, ray_lift(diameter_ / 2), options.seed, job, points);
         }
     }
-    for (size_t i = 0; i < points.size(); ++i) {
-        if (is_of_few(i))
-            few_.points.push_back(points[i]);
-    }
-    for (Seen* seen : {&seen_, &few_})
-        seen->looks = std::make_unique<const VisibleLooks>(seen->points, palette_);
+    seen_.looks = std::make_unique<const VisibleLooks>(points, palette_);
 }
 
 DeviationReference::~DeviationReference() = default;
 
+const DeviationReference::Seen& DeviationReference::few() const {
+    std::call_once(once_, [&] {
+        for (size_t i = 0; i < seen_.points.size(); ++i) {
+            if (is_of_few(i))
+                few_.points.push_back(seen_.points[i]);
+        }
+        few_.looks = std::make_unique<const VisibleLooks>(few_.points, palette_);
+    });
+    return few_;
+}
+
 Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
-                                 std::span<const ray::Closest> nearest, double useless,
-                                 const Job& job) const {
+                                 const Repainted& known, double useless, const Job& job) const {
     return compare(seen_, stand_in, surface,
                    samples_for(stand_in, options_.samples, options_.samples),
-                   std::max(options_.most_vertices, kLevelVertices), nearest, useless, job);
+                   std::max(options_.most_vertices, kLevelVertices), known, useless, job);
 }
 
 Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surface,
-                                      std::span<const ray::Closest> nearest, double useless,
+                                      const Repainted& known, double useless,
                                       const Job& job) const {
-    std::vector<ray::Closest> few;
-    for (size_t i = 0; i < nearest.size(); ++i) {
+    Repainted half{known.scene, {}, known.useless};
+    for (size_t i = 0; i < known.nearest.size(); ++i) {
         if (is_of_few(i))
-            few.push_back(nearest[i]);
+            half.nearest.push_back(known.nearest[i]);
     }
-    return compare(few_, stand_in, surface,
+    return compare(few(), stand_in, surface,
                    samples_for(stand_in, options_.samples / kFew, options_.samples),
-                   std::max(options_.most_vertices, kLevelVertices) / kFew, few, useless, job);
+                   std::max(options_.most_vertices, kLevelVertices) / kFew, half, useless, job);
 }
 
 Deviation DeviationReference::compare(const Seen& seen, const Mesh& stand_in,
                                       const Surface& surface, uint32_t count,
-                                      uint32_t most_vertices, std::span<const ray::Closest> nearest,
+                                      uint32_t most_vertices, const Repainted& known,
                                       double useless, const Job& job) const {
-    const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints);
+    const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints,
+                            known.scene);
     const double none = std::max(diameter_, 2 * radius_of(stand_in));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
@@ -273,7 +273,7 @@ Deviation DeviationReference::compare(const Seen& seen, const Mesh& stand_in,
     const auto against = [&](const LookScenes& other) {
         return Against{other, *seen.looks, scenes_, palette_, none, stand_in, skin};
     };
-    const Deviation there = measure(seen.points, against(scenes), nearest, useless, job);
+    const Deviation there = measure(seen.points, against(scenes), known.nearest, useless, job);
     if (there.error > useless)
         return there;
     // What the stand-in shows where, the visible points have asked already.

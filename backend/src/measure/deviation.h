@@ -4,6 +4,8 @@
 
 #include "measure/surface_samples.h"
 
+#include <mutex>
+
 namespace lodestone::measure {
 
 class VisibleLooks;
@@ -46,6 +48,12 @@ public:
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
                        const Surface& surface = {}, const Job& job = {});
     ~DeviationReference();
+    /// What repaint() found on its way; empty where there was nothing to vote on.
+    struct Repainted {
+        std::shared_ptr<const ray::Scene> scene;  // of the level, opaque, for closest points
+        std::vector<ray::Closest> nearest;  // to each visible point; infinitely far: not searched
+        bool useless = false;
+    };
     DeviationReference(const DeviationReference&) = delete;
     DeviationReference& operator=(const DeviationReference&) = delete;
 
@@ -58,22 +66,23 @@ public:
                  double useless = std::numeric_limits<double>::infinity()) const {
         return of(stand_in, surface, {}, useless, job);
     }
-    /// The same for a level after repaint(), whose result is `nearest`, or without it (empty). No
+    /// The same for a level after repaint(), whose result is `known`, or without it (empty). No
     /// triangle of the level may have moved since.
-    Deviation of(const Mesh& stand_in, const Surface& surface,
-                 std::span<const ray::Closest> nearest, double useless, const Job& job) const;
+    Deviation of(const Mesh& stand_in, const Surface& surface, const Repainted& known,
+                 double useless, const Job& job) const;
 
     /// The same with half of all points: less exact, in half of the time.
-    Deviation roughly(const Mesh& stand_in, const Surface& surface,
-                      std::span<const ray::Closest> nearest, double useless, const Job& job) const;
+    Deviation roughly(const Mesh& stand_in, const Surface& surface, const Repainted& known,
+                      double useless, const Job& job) const;
 
     /// Gives each triangle of a level (with the finest's slots and skin) the slot that most of the
     /// visible points nearest to it show, if enough of them agree: boards look like the tiles that
     /// lay on them. A textured slot is given only with texture coordinates that show what those
-    /// points show. Returns the nearest point of the level for each visible point (infinitely far
-    /// where it was not searched), or nothing if no point was.
-    std::vector<ray::Closest> repaint(Mesh& level, const ray::Skin* skin = nullptr,
-                                      const Job& job = {}) const;
+    /// points show. A level whose error is surely above `useless` is left as it is; `rough`: that
+    /// of roughly().
+    Repainted repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {},
+                      bool rough = false,
+                      double useless = std::numeric_limits<double>::infinity()) const;
 
     /// Of the finest, as it was made for this.
     const ray::Scene& scene() const { return scenes_.whole(); }
@@ -97,9 +106,10 @@ private:
     struct Against;
     static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
                              std::span<const ray::Closest> nearest, double useless, const Job& job);
+    const Seen& few() const;
     Deviation compare(const Seen& seen, const Mesh& stand_in, const Surface& surface,
-                      uint32_t samples, uint32_t most_vertices,
-                      std::span<const ray::Closest> nearest, double useless, const Job& job) const;
+                      uint32_t samples, uint32_t most_vertices, const Repainted& known,
+                      double useless, const Job& job) const;
 
     DeviationOptions options_;
     LookScenes scenes_;
@@ -108,7 +118,8 @@ private:
     std::vector<uint8_t> seen_triangles_;
     const Looks* palette_;
     Seen seen_;
-    Seen few_;  // half of them
+    mutable std::once_flag once_;  // of half of them: nobody may ask
+    mutable Seen few_;
     double diameter_ = 0;
 };
 

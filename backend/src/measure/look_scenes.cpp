@@ -4,8 +4,13 @@
 namespace lodestone::measure {
 
 LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
-                       ray::Uses uses)
-    : mesh_(&mesh), skin_(skin), whole_(mesh, skin, uses), looks_(looks.begin(), looks.end()) {
+                       ray::Uses uses, std::shared_ptr<const ray::Scene> opaque)
+    : mesh_(&mesh),
+      skin_(skin),
+      whole_(opaque && !(skin && skin->see_through(mesh))
+                 ? std::move(opaque)
+                 : std::make_shared<const ray::Scene>(mesh, skin, uses)),
+      looks_(looks.begin(), looks.end()) {
     if (!looks_.empty() && looks_.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, looks_.size(), " looks for ", mesh.triangles.size(),
              " triangles");
@@ -21,7 +26,7 @@ ray::Closest LookScenes::nearest(uint16_t look, const glm::dvec3& point, double 
     if (!has(look))
         return {};
     if (!several())
-        return whole_.closest_point(point, radius);
+        return whole_->closest_point(point, radius);
     OfLook& own = *by_look_.at(look);
     std::call_once(own.once, [&] {
         std::vector<uint8_t> keep(looks_.size(), 0);

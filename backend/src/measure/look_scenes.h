@@ -16,12 +16,12 @@ namespace lodestone::measure {
 class LookScenes {
 public:
     /// `looks` is empty (all alike) or one a triangle; the skin may be null; `uses` is what the
-    /// whole is asked for. The mesh must last as long as nearest() is called. Throws as ray::Scene
-    /// does.
+    /// whole is asked for. `opaque`: a scene of the same triangles, in no skin, if there is one.
+    /// The mesh must last as long as nearest() is called. Throws as ray::Scene does.
     LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
-               ray::Uses uses);
+               ray::Uses uses, std::shared_ptr<const ray::Scene> opaque = nullptr);
 
-    const ray::Scene& whole() const { return whole_; }
+    const ray::Scene& whole() const { return *whole_; }
     /// Of a triangle of the whole.
     uint16_t look_of(uint32_t triangle) const {
         return looks_.empty() ? uint16_t{0} : looks_[triangle];
@@ -42,7 +42,7 @@ private:
 
     const Mesh* mesh_;
     ray::SkinPtr skin_;
-    ray::Scene whole_;
+    std::shared_ptr<const ray::Scene> whole_;
     std::vector<uint16_t> looks_;
     std::map<uint16_t, std::unique_ptr<OfLook>> by_look_;
 };

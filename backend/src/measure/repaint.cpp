@@ -2,6 +2,7 @@
 // Repainting: levels whose triangles show the material of what lay on them.
 #include "base/parallel.h"
 #include "measure/deviation.h"
+#include "measure/sample_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,30 +128,56 @@ size_t step_for(size_t triangles, size_t points) {
 
 }  // namespace
 
-std::vector<ray::Closest> DeviationReference::repaint(Mesh& level, const ray::Skin* skin,
-                                                      const Job& job) const {
+DeviationReference::Repainted DeviationReference::repaint(Mesh& level, const ray::Skin* skin,
+                                                          const Job& job, bool rough,
+                                                          double useless) const {
     const std::vector<SurfaceSample>& points = seen_.points;
-    std::vector<ray::Closest> nearest;
+    Repainted out;
     if (level.slots.empty() || shows_one_slot(level, points))
-        return nearest;
+        return out;
+    std::vector<ray::Closest>& nearest = out.nearest;
     nearest.resize(points.size());
-    const size_t step = step_for(level.triangles.size(), points.size());
-    const ray::Scene scene(level, nullptr, ray::Uses::ClosestPoints);
-    parallel_for((points.size() + kBlock - 1) / kBlock, [&](size_t block) {
-        job.check();
-        uint32_t last = ray::kNoTriangle;
-        for (size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i) {
-            if (points[i].look == kAnyLook || i % step != 0)
+    out.scene = std::make_shared<const ray::Scene>(level, nullptr, ray::Uses::ClosestPoints);
+    const auto search = [&](const auto& wanted) {
+        parallel_for((points.size() + kBlock - 1) / kBlock, [&](size_t block) {
+            job.check();
+            uint32_t last = ray::kNoTriangle;
+            const size_t end = std::min(points.size(), (block + 1) * kBlock);
+            for (size_t i = block * kBlock; i < end; ++i) {
+                if (!wanted(i))
+                    continue;
+                nearest[i] = out.scene->closest_point(
+                    points[i].point, std::numeric_limits<double>::infinity(), last);
+                last = nearest[i].triangle;
+            }
+        });
+    };
+    if (std::isfinite(useless) && !(skin != nullptr && skin->see_through(level))) {
+        std::vector<size_t> some;
+        std::vector<uint8_t> asked(points.size(), 0);
+        size_t count = 0;
+        for (size_t i = 0; i < points.size(); ++i) {
+            if ((rough && !is_of_few(i)) || count++ % kEvery != 0)
                 continue;
-            nearest[i] =
-                scene.closest_point(points[i].point, std::numeric_limits<double>::infinity(), last);
-            last = nearest[i].triangle;
+            some.push_back(i);
+            asked[i] = 1;
         }
-    });
+        search([&](size_t i) { return asked[i] != 0; });
+        std::vector<double> places(points.size(), 0);
+        for (const size_t i : some)
+            places[i] = nearest[i].distance;
+        const std::vector<double> moves(points.size(), 0);
+        out.useless = surely_above(useless, points, some, places, moves);
+        if (out.useless)
+            return out;
+    }
+    const size_t step = step_for(level.triangles.size(), points.size());
+    const auto votes_at = [&](size_t i) { return points[i].look != kAnyLook && i % step == 0; };
+    search([&](size_t i) { return votes_at(i) && !std::isfinite(nearest[i].distance); });
     std::vector<Vote> votes;
     votes.reserve(nearest.size());
     for (size_t i = 0; i < nearest.size(); ++i) {
-        if (nearest[i].triangle != ray::kNoTriangle)
+        if (votes_at(i) && nearest[i].triangle != ray::kNoTriangle)
             votes.push_back({nearest[i].triangle, points[i].slot, &points[i]});
     }
     std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
@@ -188,7 +215,7 @@ std::vector<ray::Closest> DeviationReference::repaint(Mesh& level, const ray::Sk
         }
         level.slots[triangle] = slot;
     }
-    return nearest;
+    return out;
 }
 
 }  // namespace lodestone::measure
