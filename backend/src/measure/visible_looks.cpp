@@ -23,6 +23,22 @@ bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
     return !is_sided(a) || !is_sided(b) || glm::dot(a, b) > 0;
 }
 
+/// Looks::light_of() of colors that are mostly those before.
+class LightOf {
+public:
+    const glm::dvec3& operator()(const glm::dvec3& color) {
+        if (color != color_) {
+            color_ = color;
+            light_ = Looks::light_of(color);
+        }
+        return light_;
+    }
+
+private:
+    glm::dvec3 color_{0.0};
+    glm::dvec3 light_ = Looks::light_of(glm::dvec3(0.0));
+};
+
 std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Looks* palette) {
     constexpr double kMuch = 2;
     std::vector<uint8_t> out;
@@ -31,6 +47,7 @@ std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Lo
     const auto brightest = [](const glm::dvec3& light) {
         return std::max({light.x, light.y, light.z});
     };
+    LightOf light_of;
     double light = 0;
     double weight = 0;
     std::set<uint16_t> looks;
@@ -38,7 +55,7 @@ std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Lo
         if (sample.look == kAnyLook)
             continue;
         const double covered = sample.weight * palette->opacity(sample.look);
-        light += covered * brightest(Looks::light_of(sample.color));
+        light += covered * brightest(light_of(sample.color));
         weight += covered;
         looks.insert(sample.look);
     }
@@ -56,30 +73,37 @@ VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const Look
     : visible_(visible), glowing_(glowing(visible, palette)) {
     // Every so many of the visible points are enough for a mean.
     constexpr size_t kMostPoints = 512;
-    std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
-    for (uint32_t i = 0; i < visible.size(); ++i) {
-        if (visible[i].look == kAnyLook)
-            continue;
-        auto& [points, numbers] = looks[visible[i].look];
-        points.push_back(visible[i].point);
-        numbers.push_back(i);
-    }
-    for (auto& [look, list] : looks)
-        by_look_.try_emplace(look, std::move(list.first), std::move(list.second));
+    LightOf light_of;
     const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
     for (size_t run = 0; run < visible.size(); run += step) {
         // Any one of each run: they were drawn evenly, and every so many of such are in one
         // place.
         const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
         if (visible[i].look != kAnyLook)
-            mixed_.push_back({visible[i].point, visible[i].side, Looks::light_of(visible[i].color),
+            mixed_.push_back({visible[i].point, visible[i].side, light_of(visible[i].color),
                               is_sided(visible[i].side)});
     }
 }
 
+const std::map<uint16_t, PointTree>& VisibleLooks::by_look() const {
+    std::call_once(once_, [&] {
+        std::map<uint16_t, std::pair<std::vector<glm::dvec3>, std::vector<uint32_t>>> looks;
+        for (uint32_t i = 0; i < visible_.size(); ++i) {
+            if (visible_[i].look == kAnyLook)
+                continue;
+            auto& [points, numbers] = looks[visible_[i].look];
+            points.push_back(visible_[i].point);
+            numbers.push_back(i);
+        }
+        for (auto& [look, list] : looks)
+            by_look_.try_emplace(look, std::move(list.first), std::move(list.second));
+    });
+    return by_look_;
+}
+
 double VisibleLooks::nearest(const SurfaceSample& from, uint16_t look, double most) const {
-    const auto tree = by_look_.find(look);
-    if (tree == by_look_.end())
+    const auto tree = by_look().find(look);
+    if (tree == by_look().end())
         return most;
     return std::sqrt(tree->second.nearest(from.point, most * most, [&](uint32_t i) {
         return face_alike(visible_[i].side, from.side);
@@ -89,7 +113,7 @@ double VisibleLooks::nearest(const SurfaceSample& from, uint16_t look, double mo
 double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec3& color,
                                       double most) const {
     double square = most * most;
-    for (const auto& [look, tree] : by_look_) {
+    for (const auto& [look, tree] : by_look()) {
         square = tree.nearest(from.point, square, [&](uint32_t i) {
             return Looks::alike(visible_[i].color, color) &&
                    face_alike(visible_[i].side, from.side);

@@ -54,12 +54,14 @@ private:
         bool sided;
     };
 
+    const std::map<uint16_t, PointTree>& by_look() const;
     std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const;
 
     const std::vector<SurfaceSample>& visible_;
     std::vector<uint8_t> glowing_;  // by look
-    std::map<uint16_t, PointTree> by_look_;
     std::vector<Mixed> mixed_;
+    mutable std::once_flag once_;  // of the trees: most are never asked for
+    mutable std::map<uint16_t, PointTree> by_look_;
     mutable std::mutex mutex_;
     mutable std::shared_ptr<const Radii> radii_;
 };
