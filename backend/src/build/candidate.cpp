@@ -37,6 +37,8 @@ double tracing_of(const Candidate& candidate) {
             area += clear_area(solid.primitive, solid.box, solid.slot);
     } else if (candidate.kind != Kind::Mesh) {
         area = clear_area(candidate.primitive, candidate.kind == Kind::Box, 0);
+    } else {
+        area = candidate.error > 0 ? candidate.clear_area : 0;
     }
     if (!(area > 0))
         return 0;

@@ -18,6 +18,7 @@ struct Candidate {
     Primitive primitive;               // of a box or ellipsoid
     std::shared_ptr<const Composite> composite;
     std::vector<Material> materials;  // by slot
+    double clear_area = 0;            // of a mesh: of clear boxes that stand for what is thin
     bool pictured = false;            // compared by pictures, and as bright as they are
     bool matched = false;             // likewise, but its error is a distance, if that is larger
     bool sealed = false;              // as Summary's

@@ -10,6 +10,7 @@
 #include "build/measured_levels.h"
 #include "build/replacements.h"
 #include "build/surroundings.h"
+#include "build/widen.h"
 #include "quality/cut.h"
 
 #include <algorithm>
@@ -181,6 +182,8 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     for (Candidate& candidate : out.candidates)
         judge.settle(candidate, *mesh, whole.bound.box.low.z, job);
     paint(out.candidates, keep, judge);
+    if (object.role != Role::Environment)
+        widen(out.candidates, *mesh, materials, texels, seed_of(object, settings), judge, job);
     return out;
 }
 
