@@ -201,7 +201,9 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
     const build::MeshSource source = [](const Representation& representation) {
         return std::get<std::shared_ptr<const Mesh>>(representation.payload);
     };
-    const build::Flat flat = build::flatten(model, model.root, 0, source, {});
+    const std::vector<uint64_t> uses(model.objects.size(), 1);
+    build::OpenedGroup opened(model, model.root, uses);
+    const build::Flat flat = build::flatten(opened, 0, source, {});
     ASSERT_EQ(flat.materials.size(), 2u);
     EXPECT_EQ(flat.mesh.slots, (std::vector<uint16_t>{0, 0, 1, 1}));
     EXPECT_TRUE(textured(flat.materials[0]));

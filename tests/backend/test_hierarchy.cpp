@@ -423,16 +423,13 @@ TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
     model.root = models::add_group(model, "all", all);
     build_in(model, scratch("shared"));
     const std::vector<uint64_t> uses = build::uses_of(model);
-    const auto flattened = [&](ObjectIndex group) {
-        const double error = build::error_to_flatten(model, group, 1000000, 1000000, uses, {});
-        return build::drawn_within(model, group, error, uses, {}).triangles;
+    const auto flattened = [&](ObjectIndex group, uint64_t most) {
+        build::OpenedGroup opened(model, group, uses);
+        const double error = build::error_to_flatten(opened, most, most, {});
+        return opened.drawn_within(error, {}).triangles;
     };
-    EXPECT_LT(5 * flattened(groups[0]), flattened(groups[9]));
-    EXPECT_LE(
-        build::drawn_within(model, groups[9],
-                            build::error_to_flatten(model, groups[9], 500, 500, uses, {}), uses, {})
-            .triangles,
-        500u);
+    EXPECT_LT(5 * flattened(groups[0], 1000000), flattened(groups[9], 1000000));
+    EXPECT_LE(flattened(groups[9], 500), 500u);
 }
 
 TEST_F(Hierarchy, WhatNobodySeesCostsAGroupNothing) {

@@ -71,9 +71,11 @@ TEST_F(Layers, StartLineOnATrackDoesNotVanishAtOnePixel) {
     model.root =
         models::add_group(model, "race", {{track, Affine{}, "track"}, {start, Affine{}, "start"}});
     build_in(model, "race");
+    const std::vector<uint64_t> uses = build::uses_of(model);
+    build::OpenedGroup opened(model, model.root, uses);
     for (const double pixel : {0.05, 0.1, 0.2}) {
         const build::Flat shown =
-            build::flatten(model, model.root, pixel,
+            build::flatten(opened, pixel,
                            [](const Representation& r) {
                                return std::get<std::shared_ptr<const Mesh>>(r.payload);
                            },
@@ -209,8 +211,9 @@ TEST_F(Layers, HouseUnderARoofOfBoxesIsNotAsWrongAsItIsLarge) {
     build_in(model, "house");
     const Object& house = model.objects[model.root];
     const double radius = house.bound().radius;
-    EXPECT_LE(build::error_to_flatten(model, model.root, 1000, 40000, build::uses_of(model), {}),
-              radius / 32);
+    const std::vector<uint64_t> uses = build::uses_of(model);
+    build::OpenedGroup opened(model, model.root, uses);
+    EXPECT_LE(build::error_to_flatten(opened, 1000, 40000, {}), radius / 32);
     ASSERT_GE(house.representations.size(), 2u);
     double least = radius;
     for (size_t lod = 1; lod < house.representations.size(); ++lod)

@@ -1,46 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/flatten.h"
 
-#include "quality/cut.h"
-
 #include <cmath>
 #include <limits>
 #include <map>
 
 namespace lodestone::build {
 namespace {
-
-constexpr uint64_t kTrianglesOfBox = 12;
-constexpr int kDrawnSubdivisions = 1;  // an ellipsoid drawn with 80 triangles
-constexpr uint64_t kTrianglesOfEllipsoid = 80;
-
-/// A view in which a representation is good enough when its error is at most `error`.
-View view_within(double error) {
-    View view;
-    view.camera.orthographic = true;
-    view.camera.right = {1, 0, 0};
-    view.camera.up = {0, 1, 0};
-    view.width = view.height = 1;
-    view.pixel_error = error;
-    return view;
-}
-
-uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
-    uint64_t triangles = cut.triangles;
-    for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
-        const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
-        if (kind == Kind::Box)
-            triangles += kTrianglesOfBox;
-        else if (kind == Kind::Ellipsoid)
-            triangles += kTrianglesOfEllipsoid;
-        else if (kind == Kind::Composite)  // mostly ellipsoids
-            triangles +=
-                model.objects[node.object].representations[node.lod].composite().solids.size() *
-                kTrianglesOfEllipsoid;
-    }
-    return triangles;
-}
 
 /// What a material shows on a mesh without texture coordinates: joined with one that has them, the
 /// mesh gets some too, but they mean nothing.
@@ -53,10 +19,10 @@ Material without_textures(Material material) {
 
 }  // namespace
 
-Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSource& source,
-             const Job& job) {
+Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const Job& job) {
     Flat flat;
-    const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
+    const Model& model = group.model();
+    const quality::Cut cut = group.cut(error, job);
     std::map<std::pair<uint32_t, bool>, uint16_t> slots;  // by material, and whether it is plain
     const auto slot_of = [&](uint32_t index, bool has_uvs) {
         const Material& material = model.materials.at(index);
@@ -81,7 +47,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
         std::vector<uint16_t> moved;
         for (const uint32_t material : representation.materials) {
             if (slots.size() >= std::numeric_limits<uint16_t>::max())
-                fail(Status::InvalidArgument, "group '", model.objects[group].name,
+                fail(Status::InvalidArgument, "group '", model.objects[group.index()].name,
                      "' uses more than 65535 materials");
             moved.push_back(slot_of(material, !part.uvs.empty()));
         }
@@ -104,8 +70,7 @@ Flat flatten(const Model& model, ObjectIndex group, double error, const MeshSour
     return flat;
 }
 
-double error_to_flatten(const Model& model, ObjectIndex group, uint64_t wanted, uint64_t most,
-                        const std::vector<uint64_t>& uses, const Job& job) {
+double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, const Job& job) {
     constexpr int kFinest = -12;  // powers of two, over the radius
     constexpr int kCoarsest = 3;
     // One mesh for a group has fewer triangles than its children at the same error, by this or
@@ -117,51 +82,31 @@ double error_to_flatten(const Model& model, ObjectIndex group, uint64_t wanted, 
     // What is larger than this part of the size is not fine: what is measured against it would look
     // as far off. And what saves little is not worth an error: a roof of boxes stays one.
     constexpr int kLastFine = -5;
-    const double size = model.objects[group].bound().radius;
-    const double sharing = static_cast<double>(std::max<uint64_t>(1, uses[group]));
+    const double size = group.model().objects[group.index()].bound().radius;
+    const double sharing = static_cast<double>(std::max<uint64_t>(1, group.uses()));
     const auto error_of = [&](int power) { return power < kFinest ? 0 : std::ldexp(size, power); };
-    const auto triangles_at = [&](int power) {
-        return drawn_within(model, group, error_of(power), uses, job).triangles;
-    };
-    uint64_t enough = std::max(wanted, triangles_at(kLastFine) * 5 / 4);
+    const auto drawn_at = [&](int power) { return group.drawn_within(error_of(power), job); };
+    uint64_t enough = std::max(wanted, drawn_at(kLastFine).triangles * 5 / 4);
     if (enough > most)
-        enough = std::max(most, triangles_at(kCoarsest - 1));
-    std::vector<Drawn> drawn;  // from `kFinest` - 1 on
+        enough = std::max(most, drawn_at(kCoarsest - 1).triangles);
     double reference = kLeast * size;
     for (int power = kFinest - 1; power < kCoarsest; ++power) {
-        drawn.push_back(drawn_within(model, group, error_of(power), uses, job));
+        const Drawn drawn = drawn_at(power);
         const double stand_in =
-            static_cast<double>(drawn.back().triangles * kBytesPerTriangle) / (kJoined * sharing) +
+            static_cast<double>(drawn.triangles * kBytesPerTriangle) / (kJoined * sharing) +
             static_cast<double>(kBytesPerOccurrence);
-        if (stand_in < drawn.back().bytes) {
+        if (stand_in < drawn.bytes) {
             reference = std::min(reference, kFiner * error_of(power));
             break;
         }
     }
     int power = kFinest - 1;
-    for (size_t i = 0; power + 1 < kCoarsest; ++power, ++i) {
-        if (i == drawn.size())
-            drawn.push_back(drawn_within(model, group, error_of(power), uses, job));
-        const uint64_t triangles = drawn[i].triangles;
+    for (; power + 1 < kCoarsest; ++power) {
+        const uint64_t triangles = drawn_at(power).triangles;
         if (triangles <= enough && (triangles <= kFewTriangles || error_of(power) >= reference))
             break;
     }
     return error_of(power);
-}
-
-Drawn drawn_within(const Model& model, ObjectIndex group, double error,
-                   const std::vector<uint64_t>& uses, const Job& job) {
-    const quality::Cut cut = quality::choose_below(model, group, view_within(error), job);
-    Drawn drawn;
-    drawn.triangles = triangles_of(model, cut);
-    for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
-        const Summary& summary = model.objects[node.object].representations[node.lod].summary;
-        drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
-                       bytes_each(summary.kind, summary.cost.bytes, uses[node.object]);
-        drawn.alone += static_cast<double>(kBytesPerOccurrence + summary.cost.bytes);
-    }
-    return drawn;
 }
 
 }  // namespace lodestone::build

@@ -11,7 +11,6 @@
 #include "build/replacements.h"
 #include "build/surroundings.h"
 #include "build/widen.h"
-#include "quality/cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,16 +31,16 @@ constexpr int kRaysPerTriangle = 16;
 class Children {
 public:
     /// From `error` on.
-    Children(const Model& model, ObjectIndex group, double error, const std::vector<uint64_t>& uses,
-             const Job& job) {
+    Children(OpenedGroup& group, double error, const Job& job) {
         constexpr int kFinest = -10;  // powers of two, over the radius
         constexpr int kCoarsest = 3;
         const auto add = [&](double at) {
-            steps_.push_back({at, drawn_within(model, group, at, uses, job).bytes});
+            steps_.push_back({at, group.drawn_within(at, job).bytes});
         };
         add(error);
         for (int power = kFinest; power < kCoarsest; ++power) {
-            const double at = std::ldexp(model.objects[group].bound().radius, power);
+            const double at =
+                std::ldexp(group.model().objects[group.index()].bound().radius, power);
             if (at > error)
                 add(at);
         }
@@ -118,18 +117,17 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
 /// less, but do not look like the group where the next level takes over. The same children serve
 /// from less error on, where they look no worse.
-void seal(std::vector<Candidate>& levels, const Model& model, ObjectIndex group, const Mesh& finest,
-          const std::vector<uint64_t>& uses, const MeshSource& source, Judge& judge,
-          const Job& job) {
+void seal(std::vector<Candidate>& levels, OpenedGroup& group, const Mesh& finest,
+          const MeshSource& source, Judge& judge, const Job& job) {
     constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
-    double next = kFarthest * model.objects[group].bound().radius;
+    double next = kFarthest * group.model().objects[group.index()].bound().radius;
     for (size_t i = levels.size(); i-- > 0;) {
         const double error = std::nextafter(std::max(next, levels[i].error), 0.0);
         next = levels[i].error;
         const auto own = static_cast<double>(bytes_of(levels[i]) + kBytesPerOccurrence);
-        if (drawn_within(model, group, error, uses, job).alone >= own)
+        if (group.drawn_within(error, job).alone >= own)
             continue;
-        const Flat children = flatten(model, group, error, source, job);
+        const Flat children = flatten(group, error, source, job);
         levels[i].sealed =
             !judge.looks_alike(children.mesh, children.materials, finest, error, job);
     }
@@ -199,8 +197,9 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const bool environment = surroundings.environment[group] != 0;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
-    const double fine = error_to_flatten(model, group, budget, settings.group_triangles, uses, job);
-    const Flat reference = flatten(model, group, fine, source, job);
+    OpenedGroup opened(model, group, uses);
+    const double fine = error_to_flatten(opened, budget, settings.group_triangles, job);
+    const Flat reference = flatten(opened, fine, source, job);
     if (reference.mesh.empty())
         return out;
     const uint64_t seed = seed_of(object, settings);
@@ -219,7 +218,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const double floor = bound_of(shell.positions).box.low.z;
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.
-    const Children children(model, group, reference.child_error, uses, job);
+    const Children children(opened, reference.child_error, job);
     Whole whole{finest.bound, uses[group]};
     whole.bytes = static_cast<double>(shell.triangles.size() * kBytesPerTriangle);
     whole.most = children.bytes() - static_cast<double>(kBytesPerOccurrence);
@@ -245,7 +244,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         const double nearest = replacements->nearest_solid();
         const double own = bytes_each(Kind::Box, kBytesPerPrimitive, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
-        if (std::isfinite(nearest) && own < drawn_within(model, group, nearest, uses, job).bytes)
+        if (std::isfinite(nearest) && own < opened.drawn_within(nearest, job).bytes)
             wanted.solid = nearest;
     }
     wanted.useless = [&](size_t triangles) {
@@ -279,7 +278,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
                 tracing_of(candidates[i]) + static_cast<double>(kBytesPerOccurrence);
             const double error = candidates[i].error;
             const double used = next > 0 ? std::sqrt(error * next) : error;
-            if (own < drawn_within(model, group, used, uses, job).bytes)
+            if (own < opened.drawn_within(used, job).bytes)
                 next = error;
             else
                 candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(i));
@@ -312,7 +311,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     }
     if (saves) {  // else children are the cheaper choice, however they look
         paint(useful, keep, judge);
-        seal(useful, model, group, reference.mesh, uses, source, judge, job);
+        seal(useful, opened, reference.mesh, source, judge, job);
     }
     out.candidates = std::move(useful);
     return out;

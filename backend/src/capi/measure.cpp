@@ -75,8 +75,9 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
         };
         const Job progress = job_of(job);
         progress.stage(Stage::Measure);
-        const build::Flat flat =
-            build::flatten(model->model, model->index_of(object), 0, source, progress);
+        const std::vector<uint64_t> uses(model->model.objects.size(), 1);
+        build::OpenedGroup opened(model->model, model->index_of(object), uses);
+        const build::Flat flat = build::flatten(opened, 0, source, progress);
         measure::VisibleOptions wanted;
         wanted.rays = given.rays;
         wanted.relative_error = given.relative_error;

@@ -26,10 +26,16 @@ Cut choose(const Model& model, const View& view, const Job& job) {
 }
 
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
-    refuse_nonsense(view);
     Table table(model, view.kinds);
+    return choose_below(table, root, view, job);
+}
+
+Cut choose_below(Table& table, ObjectIndex root, const View& view, const Job& job) {
+    refuse_nonsense(view);
+    if (table.kinds() != view.kinds)
+        fail(Status::Internal, "the table was made for other kinds");
     const uint32_t top = table.row_of(root);
-    FactorField field(model, view);
+    FactorField field(table.model(), view);
     Cut cut;
     Chooser(table, &table, view, field, job).run(top, {}, cut);
     return cut;

@@ -75,6 +75,9 @@ std::optional<Cut> choose_within_budget(const Table& table, const View& view, co
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
 
+/// The same for several views: the table, for the views' kinds, gets what rows it needs.
+Cut choose_below(Table& table, ObjectIndex root, const View& view, const Job& job = {});
+
 /// How many occurrences a level of an object is drawn by.
 struct LevelUse {
     ObjectIndex object = kNoObject;
