@@ -384,9 +384,12 @@ std::string bound_file_of(Hash bind_hash) {
 }
 
 std::string tileset_text(const Model& model) {
-    const std::string ours = description_text(model);
-    return text("{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":", ours, "}},",
-                tiles_text(model), "}\n");
+    std::string text = "{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":";
+    text += description_text(model);
+    text += "}},";
+    text += tiles_text(model);
+    text += "}\n";
+    return text;
 }
 
 Model model_of_tileset(const std::string& text) {

@@ -60,18 +60,18 @@ std::set<std::string> stems_in(const std::string& text) {
     return stems;
 }
 
-/// Of r/, b/ and i/; `wanted` are relative names, `kept` stems.
-void remove_unused(const fs::path& folder, const std::set<std::string>& wanted,
-                   const std::set<std::string>& kept) {
+/// Of r/, b/ and i/; `wanted` are relative names.
+std::vector<fs::path> unused_files(const fs::path& folder, const std::set<std::string>& wanted) {
+    std::vector<fs::path> out;
     for (const char* part : {"r", "b", "i"}) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / part, error)) {
-            const fs::path name = entry.path().filename();
-            if (ours(name) && !kept.contains(name.stem().string()) &&
-                !wanted.contains(text(part, "/", name.string())))
-                fs::remove(entry.path(), error);
+            const std::string name = entry.path().filename().string();
+            if (ours(name) && !wanted.contains(std::string(part) + '/' + name))
+                out.push_back(entry.path());
         }
     }
+    return out;
 }
 
 /// A power failure soon after a write leaves a name without content.
@@ -224,16 +224,21 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     bytes += write_pictures(model, job);
     job.check();
 
-    std::set<std::string> before;  // of the previous one, which somebody may be reading
     const fs::path tileset = folder_ / "tileset.json";
-    if (exists())
+    const std::vector<fs::path> unused = unused_files(folder_, files_of(model));
+    std::set<std::string> before;  // of the previous one, which somebody may be reading
+    if (!unused.empty() && exists())
         before = stems_in(read_file(tileset, kMostTilesetBytes));
     const std::string text = tileset_text(model);
     if (text.size() > kMostTilesetBytes)
         fail(Status::Io, "'", tileset.string(), "' would have ", text.size(), " bytes; at most ",
              kMostTilesetBytes, " are read");
     write_file(tileset, text);
-    remove_unused(folder_, files_of(model), before);
+    for (const fs::path& path : unused) {
+        std::error_code error;
+        if (!before.contains(path.stem().string()))
+            fs::remove(path, error);
+    }
     job.progress(1);
     return bytes + text.size();
 }

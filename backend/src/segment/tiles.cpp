@@ -49,6 +49,9 @@ struct Chain {
     std::vector<double> geometric_errors;  // by LOD number
     Bound bound;                           // of every level and of all below
     uint64_t tiles = 0;  // of every level and of all below, kMostTiles + 1 at most
+    // In the text, of one placement, without its transform; none of it: not written yet.
+    size_t text_begin = 0;
+    size_t text_end = 0;
 };
 
 class TileWriter {
@@ -110,8 +113,25 @@ private:
         }
     }
 
-    /// The chain of one object, coarse to fine, opened once for each level and closed at the end.
+    /// A placed object: its chain is written once and copied from there.
     void put_object(std::string& text, ObjectIndex index, const Placement* placement) {
+        text += '{';
+        if (placement != nullptr) {
+            put_transform(text, placement->transform);
+            text += ',';
+        }
+        Chain& chain = chains_[index];
+        if (chain.text_end > 0) {
+            text.append(text, chain.text_begin, chain.text_end - chain.text_begin);
+            return;
+        }
+        chain.text_begin = text.size();
+        put_chain(text, index);
+        chain.text_end = text.size();
+    }
+
+    /// Coarse to fine, behind the first brace, opened once for each level and closed at the end.
+    void put_chain(std::string& text, ObjectIndex index) {
         const Object& object = model_.objects[index];
         const Chain& chain = chains_[index];
         size_t open = 0;
@@ -121,11 +141,8 @@ private:
                 put_children(text, representation.assembly(), open > 0);
                 continue;
             }
-            text += open > 0 ? ",\"children\":[{" : "{";
-            if (open == 0 && placement != nullptr) {
-                put_transform(text, placement->transform);
-                text += ',';
-            }
+            if (open > 0)
+                text += ",\"children\":[{";
             put_box(text, chain.bound);
             text += ",\"geometricError\":";
             put(text, chain.geometric_errors[lod]);
@@ -134,11 +151,6 @@ private:
             ++open;
         }
         if (open == 0) {  // a group that nothing can stand in for: a plain tile around its children
-            text += '{';
-            if (placement != nullptr) {
-                put_transform(text, placement->transform);
-                text += ',';
-            }
             put_box(text, chain.bound);
             text += ",\"geometricError\":";
             put(text, 2 * chain.bound.radius);
