@@ -208,6 +208,7 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     // 32,768 to .07 %; of solids that hide each other to .3 and .1 %, 262,144 to .04 %.
     constexpr uint64_t kMoreRays = 8;
     constexpr uint32_t kRaysOfMany = 262144;
+    constexpr uint64_t kSeedOfMany = 1;
     constexpr double kStands = 1e-9;  // over the size
     if (!candidate.unsettled)
         return;
@@ -216,10 +217,12 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     if (candidate.error >= size_)
         return;
     if (candidate.kind == Kind::Composite) {
+        // The same rays for all (7 MB): making them takes as long as asking them once.
+        static const approximate::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
         Composite composite = *candidate.composite;
         approximate::settle_whole(composite,
                                   sure(finest, kRaysOfMany, approximate::kSettledWhole, job), floor,
-                                  approximate::VisibleSolids(kRaysOfMany, seed_), job);
+                                  kVisible, job);
         candidate.composite = std::make_shared<const Composite>(std::move(composite));
         return;
     }
