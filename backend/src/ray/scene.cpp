@@ -15,6 +15,8 @@ namespace {
 
 /// Everything is scaled into the unit sphere; rays start at most on a sphere a little larger.
 constexpr double kRimRadius = 1.0625;
+/// Squares of lengths this near to 1 are 1 but for rounding.
+constexpr double kUnitLength = 1e-12;
 
 }  // namespace
 
@@ -52,12 +54,19 @@ struct Scene::Data {
     bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far, Part& part) const {
         if (uses == Uses::ClosestPoints)
             fail(Status::Internal, "a scene for closest points was asked for a hit");
-        const double length = glm::length(direction);
-        if (!tree || !(length > 0) || !std::isfinite(length) || !(far >= 0))
+        part.direction = direction;
+        part.unit = scale;
+        const double square_length = glm::dot(direction, direction);
+        if (!(std::abs(square_length - 1) <= kUnitLength)) {
+            const double length = glm::length(direction);
+            if (!(length > 0) || !std::isfinite(length))
+                return false;
+            part.direction = direction / length;
+            part.unit = length * scale;
+        }
+        if (!tree || !(far >= 0))
             return false;
         part.origin = (origin - center) * scale;
-        part.direction = direction / length;
-        part.unit = length * scale;
         part.far = far * part.unit;
         const double square = glm::dot(part.origin, part.origin);
         if (square <= kRimRadius * kRimRadius)
