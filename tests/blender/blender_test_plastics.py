@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards black and saturated plastics: what they reflect of a uniform sky is white, not their color.
+"""Guards black and saturated plastics: what they reflect of a uniform sky is white.
 
 Balls of four colors and three kinds of gloss, under a bright sky alone and under a dim one with a
 sun; metals, coats, paint and glow of the same kind. Bounds are what was measured, as
