@@ -172,17 +172,6 @@ TEST(Ray, AnswersAreTheSameBitsFromOneAndManyThreads) {
     EXPECT_EQ(all(1), all(0));
 }
 
-TEST(Ray, NextToNoRaySlipsOutBetweenTriangles) {
-    for (const int subdivisions : {2, 6}) {
-        const ray::Scene scene(shapes::sphere(1, subdivisions));
-        Random random(7, 1);
-        int slipped = 0;
-        for (int i = 0; i < 200000; ++i)
-            slipped += scene.occluded(0.1 * random_point(random), random_point(random)) ? 0 : 1;
-        EXPECT_LE(slipped, 2) << subdivisions;
-    }
-}
-
 TEST(Ray, CastingLeavesTheCallersFloatingPointModeAlone) {
 #if defined(__SSE2__)
     const ray::Scene scene(shapes::cube());

@@ -30,6 +30,7 @@ struct Embree {
     decltype(&rtcGetDeviceError) get_device_error = nullptr;
     decltype(&rtcNewScene) new_scene = nullptr;
     decltype(&rtcReleaseScene) release_scene = nullptr;
+    decltype(&rtcSetSceneFlags) set_scene_flags = nullptr;
     decltype(&rtcCommitScene) commit_scene = nullptr;
     decltype(&rtcAttachGeometry) attach_geometry = nullptr;
     decltype(&rtcNewGeometry) new_geometry = nullptr;
@@ -109,8 +110,8 @@ RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
     RTCScene scene = embree.new_scene(embree.device);
     RTCGeometry geometry = embree.new_geometry(embree.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (scene != nullptr && geometry != nullptr) {
-        // Not robust, which would take a third more time: of ten million rays within a closed mesh
-        // 3 or fewer slip out between up to 12,000 triangles, 49 between three million.
+        // Robust: boxes are tested conservatively and edges are watertight.
+        embree.set_scene_flags(scene, RTC_SCENE_FLAG_ROBUST);
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                  padded.data(), 0, sizeof(glm::vec3), padded.size() - 1);
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -196,6 +197,7 @@ Embree open(const std::string& path) {
     look_up(library, "rtcGetDeviceError", embree.get_device_error, missing);
     look_up(library, "rtcNewScene", embree.new_scene, missing);
     look_up(library, "rtcReleaseScene", embree.release_scene, missing);
+    look_up(library, "rtcSetSceneFlags", embree.set_scene_flags, missing);
     look_up(library, "rtcCommitScene", embree.commit_scene, missing);
     look_up(library, "rtcAttachGeometry", embree.attach_geometry, missing);
     look_up(library, "rtcNewGeometry", embree.new_geometry, missing);

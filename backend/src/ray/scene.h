@@ -56,8 +56,7 @@ enum class Uses : uint8_t { Everything, ClosestPoints };
 /// A mesh made ready for rays. It keeps its own copy, moved to its bound's center and scaled by a
 /// power of two, so that Embree's single precision is spent on the mesh and not on where it is.
 /// Const methods may be called from any thread. Every method throws Error(RaysUnavailable) where
-/// available() is false. Answers do not depend on the number of threads that built the scene. Where
-/// triangles share an edge one ray in a million may slip between them.
+/// available() is false. Answers do not depend on the number of threads that built the scene.
 class Scene {
 public:
     /// Triangles with a non-finite vertex are never hit. An empty mesh is never hit either. Throws
