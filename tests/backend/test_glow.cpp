@@ -2,6 +2,7 @@
 // Guards lamps: what glows in the midst of something else stays there, and stays as bright.
 #include "approximate/simplify.h"
 #include "backend/built.h"
+#include "backend/lamps.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "build/glow.h"
@@ -12,39 +13,14 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
+using namespace lodestone::lamps;
 
 namespace {
 
 class Glow : public WithRays {};
 
-enum Slot : uint16_t { kPost, kGlass, kBulb };
-
-std::vector<Material> materials() {
-    std::vector<Material> out{models::colored("post", {0.03, 0.03, 0.04}),
-                              models::colored("glass", {0.9, 0.95, 0.95}),
-                              models::colored("bulb", {0.8, 0.7, 0.5})};
-    out[kGlass].transmission = 1;
-    out[kBulb].emission = {0.8, 0.7, 0.4};
-    return out;
-}
-
-Mesh ball_at(double z, double radius, uint16_t slot) {
-    Mesh ball = shapes::sphere(radius, 2);
-    for (glm::vec3& position : ball.positions)
-        position.z += static_cast<float>(z);
-    ball.slots.assign(ball.triangles.size(), slot);
-    return ball;
-}
-
-/// A post of 3 m, on it a globe of glass around a bulb.
 Mesh lamp() {
-    Mesh mesh = shapes::ellipsoid({0.08, 0.08, 1.4}, 3);
-    for (glm::vec3& position : mesh.positions)
-        position.z += 1.4f;
-    mesh.slots.assign(mesh.triangles.size(), kPost);
-    append(mesh, ball_at(3.1, 0.2, kGlass), {});
-    append(mesh, ball_at(3.1, 0.09, kBulb), {});
-    return mesh;
+    return lamps::lamp(0.08);
 }
 
 size_t triangles_of(const Mesh& mesh, uint16_t slot) {
@@ -137,8 +113,8 @@ TEST_F(Glow, GlassShowsWhatIsInItLargerByItsIndex) {
     std::vector<Material> bare = truth;
     bare[kGlass].ior = 1;
     image::TexelCache texels;
-    Mesh globe = ball_at(0, 0.2, kGlass);
-    append(globe, ball_at(0, 0.09, kBulb), {});
+    Mesh globe = moved_up(shapes::sphere(0.2, 2), 0, kGlass);
+    append(globe, moved_up(shapes::sphere(0.09, 2), 0, kBulb), {});
     globe.normals.clear();
     for (const glm::vec3& position : globe.positions)
         globe.normals.push_back(glm::normalize(position));

@@ -4,6 +4,7 @@
 #include "approximate/stand_in_material.h"
 #include "approximate/widened.h"
 #include "backend/built.h"
+#include "backend/lamps.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "build/widen.h"
@@ -14,35 +15,14 @@
 #include <limits>
 
 using namespace lodestone;
+using namespace lodestone::lamps;
 
 namespace {
 
 class Widen : public WithRays {};
 
-enum Slot : uint16_t { kPost, kGlass, kBulb };
-
-std::vector<Material> materials() {
-    std::vector<Material> out{models::colored("post", {0.03, 0.03, 0.04}),
-                              models::colored("glass", {0.9, 0.95, 0.95}),
-                              models::colored("bulb", {0.8, 0.7, 0.5})};
-    out[kGlass].transmission = 1;
-    out[kBulb].emission = {0.8, 0.7, 0.4};
-    return out;
-}
-
-Mesh moved_up(Mesh mesh, double z, uint16_t slot) {
-    for (glm::vec3& position : mesh.positions)
-        position.z += static_cast<float>(z);
-    mesh.slots.assign(mesh.triangles.size(), slot);
-    return mesh;
-}
-
-/// A post of 2.8 m, on it a globe of glass around a bulb.
 Mesh lamp() {
-    Mesh mesh = moved_up(shapes::ellipsoid({0.06, 0.06, 1.4}, 3), 1.4, kPost);
-    append(mesh, moved_up(shapes::sphere(0.2, 2), 3.1, kGlass), {});
-    append(mesh, moved_up(shapes::sphere(0.09, 2), 3.1, kBulb), {});
-    return mesh;
+    return lamps::lamp(0.06);
 }
 
 Mesh in_slot(const Mesh& mesh, uint16_t slot) {
