@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -52,17 +53,12 @@ Model rooms(const std::vector<Affine>& places, double last_ball = 1.5) {
     return model;
 }
 
-std::vector<build::Moved> moved_in(const Model& model, std::vector<ObjectIndex>& groups) {
+std::vector<build::Moved> moved_in(const Model& model) {
     const std::vector<ObjectIndex> order = bottom_up(model);
-    groups.clear();
-    for (const ObjectIndex index : order) {
-        if (model.objects[index].group())
-            groups.push_back(index);
-    }
     const build::MeshSource resident = [](const Representation& level) {
         return std::get<std::shared_ptr<const Mesh>>(level.payload);
     };
-    return build::take_moved(groups, model, build::surroundings_of(model, order, resident, {}));
+    return build::moved_groups(model, order, build::surroundings_of(model, order, resident, {}));
 }
 
 class MovedGroups : public WithRays {};
@@ -71,11 +67,9 @@ class MovedGroups : public WithRays {};
 
 TEST(Moved, AreThoseThatPlaceTheSameThingsInTheSameWay) {
     const Affine far = turned(0.5, {200, -300, 20});
-    std::vector<ObjectIndex> left;
     const Model same = rooms({Affine{}, far, turned(-2, {0, 50, 0})});
-    const std::vector<build::Moved> found = moved_in(same, left);
+    const std::vector<build::Moved> found = moved_in(same);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(left.size(), 2u);  // the first, and the scene
     for (const build::Moved& one : found) {
         EXPECT_EQ(same.objects[one.original].name, "room 0");
         EXPECT_LT(one.off, 1e-9);
@@ -90,16 +84,15 @@ TEST(Moved, AreNotThoseThatDifferALittleTiltedOrLargerOnes) {
     mirrored.linear[1].y = -1;
     Affine flat;
     flat.linear *= 0;
-    std::vector<ObjectIndex> left;
     for (const Affine& place : {tilted(0.01), larger, mirrored, flat})
-        EXPECT_TRUE(moved_in(rooms({Affine{}, place}), left).empty());
-    EXPECT_TRUE(moved_in(rooms({Affine{}, models::moved(9, 0, 0)}, 1.51), left).empty());
+        EXPECT_TRUE(moved_in(rooms({Affine{}, place})).empty());
+    EXPECT_TRUE(moved_in(rooms({Affine{}, models::moved(9, 0, 0)}, 1.51)).empty());
     Model important = rooms({Affine{}, models::moved(9, 0, 0)});
-    EXPECT_EQ(moved_in(important, left).size(), 1u);
+    EXPECT_EQ(moved_in(important).size(), 1u);
     auto own = std::make_shared<Assembly>(important.objects[2].representations[0].assembly());
     own->placements[1].importance = 4;
     important.objects[2].representations[0].payload = std::shared_ptr<const Assembly>(own);
-    EXPECT_TRUE(moved_in(important, left).empty());
+    EXPECT_TRUE(moved_in(important).empty());
 }
 
 TEST_F(MovedGroups, HaveTheStandInsOfTheOneThatIsMeasured) {
@@ -126,4 +119,37 @@ TEST_F(MovedGroups, HaveTheStandInsOfTheOneThatIsMeasured) {
     ASSERT_TRUE(first.attributes && second.attributes);
     EXPECT_NEAR(first.attributes->visible_area, second.attributes->visible_area, 1e-6);
     EXPECT_LT(glm::length(far(first.attributes->centroid) - second.attributes->centroid), 1e-6);
+}
+
+TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
+    const std::vector<Affine> places{Affine{}, turned(0.5, {20, -30, 2}), turned(2, {9, 40, 0})};
+    const auto built = [&](Model& model, const fs::path& store,
+                           const std::vector<ObjectIndex>& scope) {
+        Problems problems;
+        build::Settings settings;
+        settings.scope = scope;
+        return build::build_hierarchy(model, segment::Store(store), settings, problems, {});
+    };
+    Model whole = rooms(places);
+    built(whole, scratch("whole"), {});
+    const fs::path parts = scratch("parts");
+    const ObjectIndex third = 4;
+    ASSERT_EQ(whole.objects[third].name, "room 2");
+    Model part = rooms(places);
+    EXPECT_EQ(built(part, parts, {third}).built, 4u);  // what it places, the first, and itself
+    EXPECT_EQ(part.objects[3].build_hash, 0u);
+    Model rest = rooms(places);
+    EXPECT_EQ(built(rest, parts, {}).built, 2u);  // the second, of which the first is stored
+    for (const Model* model : {&part, &rest}) {
+        for (const ObjectIndex index : {ObjectIndex{2}, third}) {
+            const Object& one = model->objects[index];
+            ASSERT_EQ(one.representations.size(), whole.objects[index].representations.size());
+            for (size_t i = 1; i < one.representations.size(); ++i)
+                EXPECT_EQ(one.representations[i].summary.hash,
+                          whole.objects[index].representations[i].summary.hash);
+        }
+    }
+    for (size_t i = 1; i < whole.objects[3].representations.size(); ++i)
+        EXPECT_EQ(rest.objects[3].representations.at(i).summary.hash,
+                  whole.objects[3].representations[i].summary.hash);
 }

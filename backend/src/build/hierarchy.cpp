@@ -108,6 +108,7 @@ public:
                 {model_.objects[index].name, Severity::Info, "not_followed", kNotFollowed});
         for (const auto& [index, stored] : plan.stored)
             shelf.adopt(model_.objects[index], *stored, palette_);
+        wanted_ = std::move(plan.wanted);
 
         std::vector<Task>& tasks = plan.tasks;
         const size_t all = tasks.size();
@@ -115,31 +116,40 @@ public:
             keep_called_for(tasks);
         report.left = all - tasks.size();
 
-        wanted_.resize(model_.objects.size());
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
+        std::map<size_t, std::vector<Moved>> moved;        // likewise
         std::vector<std::pair<ObjectIndex, ObjectIndex>> copies;
+        const auto count = [&](ObjectIndex index) {
+            ++report.built;
+            total_ += weight(model_.objects[index]);
+        };
+        for (const Moved& one : plan.moved)
+            count(one.index);
         for (Task& task : tasks) {
             for (const ObjectIndex copy : task.copies)
                 copies.emplace_back(copy, task.index);
-            wanted_[task.index] = task.wanted;
+            for (const Moved& one : task.moved) {
+                moved[heights[task.index]].push_back(one);
+                count(one.index);
+            }
             if (task.bind) {
                 following_.push_back({task.index, *task.bind});
                 continue;
             }
             const Object& object = model_.objects[task.index];
             stale[heights[task.index]].push_back(task.index);
-            ++report.built;
-            total_ += weight(object);
+            count(task.index);
             if (!object.group())
                 report.triangles += object.representations[0].summary.cost.triangles;
         }
         follow(report);
+        for (const Moved& one : plan.moved)
+            finish(one);
         for (auto& [height, objects] : stale) {
             // Copies of lower objects must be complete before a group above them is flattened.
             copy_lists(copies, heights, height);
-            const std::vector<Moved> moved = take_moved(objects, model_, surroundings_);
             build(objects);
-            for (const Moved& one : moved)
+            for (const Moved& one : moved[height])
                 finish(one);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
@@ -162,7 +172,11 @@ private:
 
     /// Leaves what a demand does not call for as it is.
     void keep_called_for(std::vector<Task>& tasks) const {
-        const std::vector<Stale> stale(tasks.begin(), tasks.end());
+        std::vector<Stale> stale(tasks.begin(), tasks.end());
+        for (size_t i = 0; i < tasks.size(); ++i) {
+            for (const Moved& one : tasks[i].moved)
+                stale[i].copies.push_back(one.index);
+        }
         const std::vector<uint8_t> called = called_for(model_, stale, settings_, job_);
         size_t kept = 0;
         for (size_t i = 0; i < tasks.size(); ++i) {
@@ -305,7 +319,7 @@ private:
     /// What is another one moved, once that is built.
     void finish(const Moved& moved) {
         if (model_.objects[moved.original].build_hash != 0) {
-            add_moved(model_, moved);
+            add_moved(model_, moved, mesh_source());
             model_.objects[moved.index].build_hash = wanted_[moved.index];
         }
         advance(weight(model_.objects[moved.index]));
@@ -376,8 +390,10 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
         ++report.built;
         if (!object.group())
             report.triangles += object.representations[0].summary.cost.triangles;
+        report.built += task.moved.size();
         seconds += seconds_to_build(object, settings);
     }
+    report.built += plan.moved.size();
     report.wall_s = seconds / static_cast<double>(hardware_threads());
     return report;
 }

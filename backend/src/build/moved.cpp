@@ -75,7 +75,7 @@ Moved moved_from(const Model& model, ObjectIndex group, ObjectIndex original) {
     return out;
 }
 
-Payload moved_payload(const Representation& from, const Affine& place) {
+Payload moved_payload(const Representation& from, const Affine& place, const MeshSource& source) {
     const auto moved = [&](Primitive primitive) {
         primitive.center = place(primitive.center);
         primitive.axes = place.linear * primitive.axes;
@@ -83,7 +83,7 @@ Payload moved_payload(const Representation& from, const Affine& place) {
     };
     if (from.summary.kind == Kind::Mesh) {
         Mesh mesh;
-        append(mesh, from.mesh(), place);
+        append(mesh, *source(from), place);
         return std::make_shared<const Mesh>(std::move(mesh));
     }
     if (from.summary.kind != Kind::Composite)
@@ -96,18 +96,15 @@ Payload moved_payload(const Representation& from, const Affine& place) {
 
 }  // namespace
 
-std::vector<Moved> take_moved(std::vector<ObjectIndex>& groups, const Model& model,
-                              const Surroundings& surroundings) {
+std::vector<Moved> moved_groups(const Model& model, const std::vector<ObjectIndex>& order,
+                                const Surroundings& surroundings) {
     constexpr size_t kMostKinds = 64;  // that place the same things each in its own way
     std::vector<Moved> out;
-    std::vector<ObjectIndex> left;
     std::map<Hash, std::vector<ObjectIndex>> originals;
-    for (const ObjectIndex group : groups) {
+    for (const ObjectIndex group : order) {
         const Object& object = model.objects[group];
-        if (!object.group() || placed_in(model, group).empty()) {
-            left.push_back(group);
+        if (!object.group() || placed_in(model, group).empty())
             continue;
-        }
         std::vector<ObjectIndex>& alike = originals[kind_of(model, group, surroundings)];
         const size_t before = out.size();
         for (size_t i = 0; i < alike.size() && out.size() == before; ++i) {
@@ -115,24 +112,20 @@ std::vector<Moved> take_moved(std::vector<ObjectIndex>& groups, const Model& mod
             if (moved.off <= kSamePlace * object.bound().radius)
                 out.push_back(moved);
         }
-        if (out.size() > before)
-            continue;
-        left.push_back(group);
-        if (alike.size() < kMostKinds)
+        if (out.size() == before && alike.size() < kMostKinds)
             alike.push_back(group);
     }
-    groups = std::move(left);
     return out;
 }
 
-void add_moved(Model& model, const Moved& moved) {
+void add_moved(Model& model, const Moved& moved, const MeshSource& source) {
     const Object& from = model.objects[moved.original];
     Object& to = model.objects[moved.index];
     if (from.attributes)
         to.attributes = measure::transformed(*from.attributes, moved.place);
     for (size_t i = 1; i < from.representations.size(); ++i) {
         Representation level = from.representations[i];
-        level.payload = moved_payload(level, moved.place);
+        level.payload = moved_payload(level, moved.place, source);
         level.summary.error += moved.off;
         level.summary.max_error += moved.off;
         summarize(level, model);

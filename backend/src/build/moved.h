@@ -17,12 +17,13 @@ struct Moved {
     double off = 0;  // what is placed is nowhere farther from where the original is put, metres
 };
 
-/// Takes those out of `groups` that are one that comes before them, to a ten thousandth of the
-/// radius. Both are drawn equally often, and nothing around them makes a difference.
-std::vector<Moved> take_moved(std::vector<ObjectIndex>& groups, const Model& model,
-                              const Surroundings& surroundings);
+/// The groups of `order` that are one that comes before them, to a ten thousandth of the radius.
+/// Both are drawn equally often, and nothing around them makes a difference. No original is itself
+/// another one moved.
+std::vector<Moved> moved_groups(const Model& model, const std::vector<ObjectIndex>& order,
+                                const Surroundings& surroundings);
 
-/// Gives a group the attributes and the stand-ins of its original, which is built.
-void add_moved(Model& model, const Moved& moved);
+/// Gives a group the attributes and the stand-ins of its original, which has them.
+void add_moved(Model& model, const Moved& moved, const MeshSource& source);
 
 }  // namespace lodestone::build

@@ -52,11 +52,32 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
 Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
              const Surroundings& surroundings, const Shelf& shelf, const Settings& settings) {
     const Hash of_settings = hash_of(settings);
-    const std::vector<bool> inside = within(settings.scope, model, order);
+    std::vector<bool> inside = within(settings.scope, model, order);
+    // What is another group moved has the levels of that one, whichever of them is stale: so an
+    // early partial build comes to the same as a whole one.
+    std::map<ObjectIndex, Moved> moved;
+    for (const Moved& one : moved_groups(model, order, surroundings)) {
+        moved.emplace(one.index, one);
+        if (inside[one.index])
+            inside[one.original] = true;
+    }
     const std::vector<uint8_t> deforming = with_deforming(model);
     const Poses poses(settings.poses);
     Plan plan;
-    std::map<Hash, size_t> task_of;  // content-equal objects are built once
+    plan.wanted.resize(model.objects.size());
+    std::map<Hash, size_t> task_of;      // content-equal objects are built once
+    std::map<Hash, Moved> moved_one_of;  // likewise where they are others moved
+    std::map<ObjectIndex, size_t> task_for;
+    const auto move = [&](const Moved& one) {
+        const auto at = task_for.find(one.original);
+        if (at == task_for.end()) {
+            plan.moved.push_back(one);
+            return;
+        }
+        Task& task = plan.tasks[at->second];
+        task.moved.push_back(one);
+        task.moved.back().original = task.index;  // of which it may be a copy
+    };
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (!shows(object))
@@ -77,14 +98,27 @@ Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
             }
             wanted = Hasher().value(wanted).value(bind->hash).result();
         }
+        plan.wanted[index] = wanted;
         const auto same = task_of.find(wanted);
+        const auto same_moved = moved_one_of.find(wanted);
         if (same != task_of.end()) {
             plan.tasks[same->second].copies.push_back(index);
+            task_for.emplace(index, same->second);
+        } else if (same_moved != moved_one_of.end()) {
+            Moved one = same_moved->second;
+            one.index = index;
+            move(one);
         } else if (const Object* stored = shelf.find(wanted)) {
             plan.stored.emplace_back(index, stored);
-        } else if (inside[index]) {
+        } else if (!inside[index]) {
+            continue;
+        } else if (const auto at = moved.find(index); at != moved.end()) {
+            moved_one_of.emplace(wanted, at->second);
+            move(at->second);
+        } else {
             task_of.emplace(wanted, plan.tasks.size());
-            plan.tasks.push_back({{index, {}}, wanted, std::move(bind)});
+            task_for.emplace(index, plan.tasks.size());
+            plan.tasks.push_back({{index, {}}, std::move(bind), {}});
         }
     }
     return plan;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "build/demand.h"
+#include "build/moved.h"
 #include "build/poses.h"
 #include "build/settings.h"
 #include "build/shelf.h"
@@ -14,15 +15,18 @@
 
 namespace lodestone::build {
 
-/// Something stale that is to be built, for itself and for its copies: objects of the same content.
+/// Something stale that is to be built, for itself, for its copies (objects of the same content)
+/// and for what is the same group moved.
 struct Task : Stale {
-    Hash wanted = 0;           // its build hash
     std::optional<Bind> bind;  // of what deforms
+    std::vector<Moved> moved;
 };
 
 struct Plan {
     uint64_t objects = 0;                                       // that show anything
+    std::vector<Hash> wanted;                                   // build hashes, by object
     std::vector<std::pair<ObjectIndex, const Object*>> stored;  // what the shelf has for which
+    std::vector<Moved> moved;                                   // whose originals the shelf has
     std::vector<Task> tasks;                                    // children before parents
     std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
 };
