@@ -28,6 +28,13 @@ class FirstPicture(unittest.TestCase):
         first = next(line for line in lines if "first F12" in line)
         self.assertIn("1.10 / 1.10 / 1.10 | <= 1.2 | 900 |", first)
 
+    def test_building_all_levels_draws_nothing(self):
+        found = round_of(10, 11)
+        found["whole"]["triangles"] = None
+        lines = bench.table(bench.summary([found]))
+        whole = next(line for line in lines if "Update Levels" in line)
+        self.assertTrue(whole.endswith("| <= 3 |  |"), whole)
+
     def test_a_picture_that_took_no_time_divides_by_nothing(self):
         self.assertGreater(bench.summary([round_of(0.0, 1.0)])["first"]["ratio"]["max"], 1)
 
