@@ -129,6 +129,32 @@ TEST_F(Brightness, TexturedLeavesStayAsBrightWhenTheyArePruned) {
     expect_as_bright(model, "textured tree", 2, 0.25);
 }
 
+TEST_F(Brightness, WallsThatPrunedTilesUncoverMakeAHouseNoDarker) {
+    // Whatever color the tiles got, it was .95 as bright: the rest of it shows more.
+    Mesh house = shapes::box({-3, -2.5, 0}, {3, 2.5, 3});
+    house.slots.assign(house.triangles.size(), 0);
+    const double slope = std::hypot(2.5, 2.2);
+    for (const int side : {1, -1}) {
+        for (int row = 0; row < 12; ++row) {
+            for (int column = 0; column < 20; ++column) {
+                Affine place;
+                place.linear[1] = glm::dvec3(0, -side * 2.5, 2.2) / slope;
+                place.linear[2] = glm::cross(place.linear[0], place.linear[1]);
+                place.offset = {0.31 * column - 3, side * 2.5 * (1 - row / 12.0),
+                                3 + 2.2 * row / 12.0};
+                append(house, shapes::box({0, 0, 0}, {0.3, 0.42, 0.03}), place, 1);
+            }
+        }
+    }
+    Model model;
+    model.root = models::add_leaf(model, "house", house, models::colored("a", {0.5, 0.2, 0.1}));
+    Representation& finest = model.objects[model.root].representations[0];
+    finest.materials.push_back(static_cast<uint32_t>(model.materials.size()));
+    model.materials.push_back(models::colored("tile", {0.15, 0.15, 0.2}));
+    summarize(finest, model);
+    expect_as_bright(model, "house", 1, 0.1);
+}
+
 TEST_F(Brightness, PagesShowAtTheSidesOfABookThatIsABox) {
     // A pile shows little else of them: it was .63 as bright where each was as dark as its cover.
     constexpr int kSheets = 24;

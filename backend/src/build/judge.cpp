@@ -290,32 +290,27 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
     constexpr double kAlikeBright = 0.02;
     // Of a mesh some of the light is that of other slots.
     constexpr int kRounds = 2;
-    const bool mesh = candidate.kind == Kind::Mesh;
-    std::vector<uint16_t> slots(tinted.begin(), tinted.end());
-    if (!mesh) {
-        slots.resize(candidate.materials.size());
-        std::iota(slots.begin(), slots.end(), uint16_t{0});
-    }
+    std::vector<uint16_t> all(candidate.materials.size());
+    std::iota(all.begin(), all.end(), uint16_t{0});
     ray::SkinPtr current = skin_of(candidate.materials);
     Mesh solid;
     const auto traced = pictures_->trace(traced_mesh(candidate, solid), current, job);
-    for (int round = 0; round < (mesh ? kRounds : 1); ++round) {
-        const glm::dvec3 light = pictures_->brightness_of(traced, current).light;
-        const glm::dvec3 off = glm::abs(light - 1.0);
-        bool changed = false;
-        if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
-            break;
-        for (const uint16_t slot : slots) {
-            if (slot >= candidate.materials.size())
-                continue;
+    const auto match = [&](std::span<const uint16_t> slots, int rounds) {
+        for (int round = 0; round < rounds && !slots.empty(); ++round) {
+            const glm::dvec3 light = pictures_->brightness_of(traced, current).light;
+            const glm::dvec3 off = glm::abs(light - 1.0);
+            if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
+                break;
             // Light that is scattered once is in proportion to the color.
-            approximate::brighten(candidate.materials[slot], light);
-            changed = true;
+            for (const uint16_t slot : slots) {
+                if (slot < all.size())
+                    approximate::brighten(candidate.materials[slot], light);
+            }
+            current = skin_of(candidate.materials);
         }
-        if (!changed)
-            break;
-        current = skin_of(candidate.materials);
-    }
+    };
+    match(tinted, kRounds);
+    match(all, 1);  // what these cannot make up for, as of a house of many boards
     const double error = pictures_->of(traced, current).error;
     set_error(candidate, {error, error});
     candidate.pictured = true;

@@ -88,7 +88,7 @@ public:
     /// candidates that will be far from the finest. `finest`: all of it, or what of it can be seen.
     void take_pictures(const Mesh& finest, bool coarse, const Job& job);
     /// Fills the errors of a candidate of what is not solid, with its own materials, by pictures.
-    /// It is made as bright as the finest by its colors, of a mesh by those of the slots `tinted`.
+    /// It is made as bright as the finest by its colors, first by those of the slots `tinted`.
     void compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted, const Job& job);
     /// Makes any other candidate that is used from far enough (up to an error of `used_to`, where
     /// the next one takes over) as bright as the finest, by the colors of all its slots, and lets
