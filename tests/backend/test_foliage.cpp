@@ -168,8 +168,10 @@ TEST_F(Foliage, ObjectsOfOneAtlasGetTheColorsOfTheirParts) {
     Model model;
     for (const bool left : {true, false}) {
         Mesh ball = shapes::sphere(1, 4);
-        for (const glm::vec3& p : ball.positions)
+        for (glm::vec3& p : ball.positions) {
             ball.uvs.emplace_back((left ? 0.05f : 0.55f) + 0.2f * (p.x + 1), 0.5f * (p.z + 1));
+            p *= 1 + 0.04f * std::sin(6 * p.z);  // a ball itself would be an ellipsoid at once
+        }
         models::add_leaf(model, left ? "red" : "blue", ball, material);
     }
     model.root = models::add_group(model, "both",

@@ -2,6 +2,7 @@
 """Guards Use and Importance: what the designer decides about an object or collection reaches the
 placements of the model, through collections, instances and emitters."""
 
+import math
 import os
 import tempfile
 import unittest
@@ -183,6 +184,8 @@ class Pictures(unittest.TestCase):
             data = bpy.data.meshes.new(f"Ball {number}")
             made = bmesh.new()
             bmesh.ops.create_icosphere(made, subdivisions=3, radius=1.0 + number)
+            for vertex in made.verts:  # a ball itself would be an ellipsoid at once
+                vertex.co *= 1 + 0.2 * math.sin(5 * vertex.co.z)
             made.to_mesh(data)
             made.free()
             self.balls.append(scenes.cube(f"Ball {number}", (4 * number, 0, 0), data=data))

@@ -182,10 +182,9 @@ void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
 }
 
 void Judge::measure_primitive(Candidate& candidate, const Job& job) {
-    const Mesh mesh = tessellated(candidate);
-    const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    set_error(candidate,
-              reference_.of(mesh, {looks, &looks_, nullptr}, job, distance_for(least_primitive_)));
+    set_error(candidate, reference_.of(Solid{candidate.kind == Kind::Box, candidate.primitive},
+                                       looks_.of(candidate.materials[0]),
+                                       distance_for(least_primitive_), job));
     least_primitive_ = std::min(least_primitive_, candidate.error);
 }
 

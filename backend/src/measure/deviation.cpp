@@ -5,6 +5,7 @@
 #include "measure/sample_errors.h"
 #include "measure/seen_from_outside.h"
 #include "measure/visible_looks.h"
+#include "model/primitive_distance.h"
 
 #include <algorithm>
 #include <atomic>
@@ -37,6 +38,23 @@ uint32_t samples_for(const Mesh& stand_in, uint32_t most, uint32_t all) {
     return static_cast<uint32_t>(std::min<uint64_t>(most, enough));
 }
 
+/// About the surface of a solid, for points of it: of an ellipsoid 162 vertices.
+Mesh tessellated(const lodestone::Solid& solid) {
+    constexpr int kSubdivisions = 2;
+    return solid.box ? tessellate_box(solid.primitive)
+                     : tessellate_ellipsoid(solid.primitive, kSubdivisions);
+}
+
+/// From the center out onto the surface.
+void move_onto(const Primitive& ellipsoid, std::vector<Sample>& samples) {
+    for (Sample& sample : samples) {
+        const glm::dvec3 arm = sample.point - ellipsoid.center;
+        const double length = glm::length((arm * ellipsoid.axes) / ellipsoid.half_size);
+        if (length > 0 && std::isfinite(length))
+            sample.point = ellipsoid.center + arm / length;
+    }
+}
+
 }  // namespace
 
 /// What the samples of one mesh are compared with.
@@ -45,10 +63,22 @@ struct DeviationReference::Against {
     const VisibleLooks& seen;  // of the finest
     const LookScenes& finest;
     const Looks* palette;
-    double none;            // the answer where there is nothing to find
-    const Mesh& mesh;       // the other's
-    const ray::Skin* skin;  // likewise
+    double none;                    // the answer where there is nothing to find
+    const Mesh& mesh;               // the other's
+    const ray::Skin* skin;          // likewise
+    const lodestone::Solid* exact;  // the solid that the mesh is about; null: none
 
+    /// As ray::Scene::closest_point(), of the other.
+    ray::Closest closest_point(const glm::dvec3& point, uint32_t perhaps, double enough) const {
+        if (exact == nullptr)
+            return other.whole().closest_point(point, std::numeric_limits<double>::infinity(),
+                                               perhaps, enough);
+        ray::Closest out;
+        out.distance = exact->box ? distance_to_box(exact->primitive, point)
+                                  : distance_to_ellipsoid(exact->primitive, point);
+        out.triangle = 0;  // all are alike
+        return out;
+    }
     /// What the other shows at a point of its own; `varies`: elsewhere on the triangle other
     /// things.
     glm::dvec3 color_at(const ray::Closest& at, bool& varies) const {
@@ -132,9 +162,9 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
     constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
     std::vector<double> moves(samples.size(), 0);
-    const ray::Scene& scene = against.other.whole();
     // What hides in part was not asked for as such.
-    const bool known_before = nearest.size() == samples.size() && !scene.see_through();
+    const bool known_before =
+        nearest.size() == samples.size() && !against.other.whole().see_through();
     const bool one_thing = against.shows_one_thing();
     const std::vector<uint8_t> asked =
         asked_for_looks(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
@@ -167,10 +197,9 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
                 // Neighbors in the list are mostly neighbors in space. Where only the distance
                 // counts, any point that is near enough will do.
                 const ray::Closest closest =
-                    given
-                        ? nearest[i]
-                        : scene.closest_point(sample.point, std::numeric_limits<double>::infinity(),
-                                              last, looks && !one_thing ? 0 : enough);
+                    given ? nearest[i]
+                          : against.closest_point(sample.point, last,
+                                                  looks && !one_thing ? 0 : enough);
                 // Nothing in reach at all: a scene of triangles that have no finite corners.
                 const bool found = std::isfinite(closest.distance);
                 places[i] = found ? closest.distance : against.none;
@@ -242,9 +271,19 @@ const DeviationReference::Seen& DeviationReference::few() const {
 
 Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
                                  const Repainted& known, double useless, const Job& job) const {
-    return compare(seen_, stand_in, surface,
-                   samples_for(stand_in, options_.samples, options_.samples),
-                   std::max(options_.most_vertices, kLevelVertices), known, useless, job);
+    return compare(seen_,
+                   {stand_in, surface, samples_for(stand_in, options_.samples, options_.samples),
+                    std::max(options_.most_vertices, kLevelVertices)},
+                   known, useless, job);
+}
+
+Deviation DeviationReference::of(const lodestone::Solid& stand_in, uint16_t look, double useless,
+                                 const Job& job) const {
+    const Mesh mesh = tessellated(stand_in);
+    const std::vector<uint16_t> looks(mesh.triangles.size(), look);
+    return compare(
+        seen_, {mesh, {looks, palette_, nullptr}, options_.samples / 4, kLevelVertices, &stand_in},
+        {}, useless, job);
 }
 
 Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surface,
@@ -255,33 +294,38 @@ Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surfa
         if (is_of_few(i))
             half.nearest.push_back(known.nearest[i]);
     }
-    return compare(few(), stand_in, surface,
-                   samples_for(stand_in, options_.samples / kFew, options_.samples),
-                   std::max(options_.most_vertices, kLevelVertices) / kFew, half, useless, job);
+    return compare(
+        few(),
+        {stand_in, surface, samples_for(stand_in, options_.samples / kFew, options_.samples),
+         std::max(options_.most_vertices, kLevelVertices) / kFew},
+        half, useless, job);
 }
 
-Deviation DeviationReference::compare(const Seen& seen, const Mesh& stand_in,
-                                      const Surface& surface, uint32_t count,
-                                      uint32_t most_vertices, const Repainted& known,
-                                      double useless, const Job& job) const {
-    const LookScenes scenes(stand_in, surface.looks, surface.skin, ray::Uses::ClosestPoints,
+Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
+                                      const Repainted& known, double useless,
+                                      const Job& job) const {
+    const Mesh& mesh = stand_in.mesh;
+    const ray::SkinPtr& skin = stand_in.surface.skin;
+    const LookScenes scenes(mesh, stand_in.surface.looks, skin, ray::Uses::ClosestPoints,
                             known.scene);
-    const double none = std::max(diameter_, 2 * radius_of(stand_in));
+    const double none = std::max(diameter_, 2 * radius_of(mesh));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
-    const ray::Skin* const skin = surface.skin.get();
-    const auto against = [&](const LookScenes& other) {
-        return Against{other, *seen.looks, scenes_, palette_, none, stand_in, skin};
-    };
-    const Deviation there = measure(seen.points, against(scenes), known.nearest, useless, job);
+    const Against to_stand_in{scenes, *seen.looks, scenes_,    palette_,
+                              none,   mesh,        skin.get(), stand_in.exact};
+    const Deviation there = measure(seen.points, to_stand_in, known.nearest, useless, job);
     if (there.error > useless)
         return there;
-    // What the stand-in shows where, the visible points have asked already.
     std::vector<Sample> samples;
-    add_area_samples(stand_in, scenes.whole(), count, options_.seed, samples);
-    add_vertex_samples(stand_in, scenes.whole(),
-                       weighted_vertices(stand_in, most_vertices, options_.seed), samples);
-    const Deviation back = measure(samples, against(scenes_), {}, useless, job);
+    add_area_samples(mesh, scenes.whole(), stand_in.samples, options_.seed, samples);
+    add_vertex_samples(mesh, scenes.whole(),
+                       weighted_vertices(mesh, stand_in.vertices, options_.seed), samples);
+    if (stand_in.exact != nullptr && !stand_in.exact->box)
+        move_onto(stand_in.exact->primitive, samples);
+    // What the stand-in shows where, the visible points have asked already.
+    const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,
+                            none,    mesh,        skin.get(), nullptr};
+    const Deviation back = measure(samples, to_finest, {}, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

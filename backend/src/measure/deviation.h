@@ -3,6 +3,7 @@
 #pragma once
 
 #include "measure/surface_samples.h"
+#include "model/composite.h"
 
 #include <mutex>
 
@@ -71,6 +72,11 @@ public:
     Deviation of(const Mesh& stand_in, const Surface& surface, const Repainted& known,
                  double useless, const Job& job) const;
 
+    /// The same of a box or an ellipsoid that shows one look everywhere. Distances to it are exact;
+    /// it is asked at a quarter of the points, and at its corners or as many as tell an ellipsoid.
+    Deviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
+                 const Job& job) const;
+
     /// The same with half of all points: less exact, in half of the time.
     Deviation roughly(const Mesh& stand_in, const Surface& surface, const Repainted& known,
                       double useless, const Job& job) const;
@@ -104,11 +110,17 @@ private:
         std::unique_ptr<const VisibleLooks> looks;  // the same, to be searched
     };
     struct Against;
+    /// Asked at so many points and vertices; `exact`: the solid that the mesh is about.
+    struct StandIn {
+        const Mesh& mesh;
+        const Surface& surface;
+        uint32_t samples, vertices;
+        const lodestone::Solid* exact = nullptr;
+    };
     static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
                              std::span<const ray::Closest> nearest, double useless, const Job& job);
     const Seen& few() const;
-    Deviation compare(const Seen& seen, const Mesh& stand_in, const Surface& surface,
-                      uint32_t samples, uint32_t most_vertices, const Repainted& known,
+    Deviation compare(const Seen& seen, const StandIn& stand_in, const Repainted& known,
                       double useless, const Job& job) const;
 
     DeviationOptions options_;
