@@ -154,10 +154,11 @@ struct DeviationReference::Against {
 };
 
 /// From the samples to the nearest points of the other mesh. What is not near the quantile is found
-/// out no further than that it is below, and looks are asked for at some samples for all.
+/// out no further than that it is below, and looks are asked for at some samples for all. Numbers
+/// up to `least` may be too large, but not above it: the other way they are no less.
 Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
-                                      std::span<const ray::Closest> nearest, double useless,
-                                      const Job& job) {
+                                      std::span<const ray::Closest> nearest, double least,
+                                      double useless, const Job& job) {
     constexpr size_t kFewSamples = 512;
     constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
@@ -211,7 +212,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         });
     };
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    visit(kEvery, 0, kNever);
+    visit(kEvery, least, kNever);
     std::vector<size_t> some;
     for (size_t i = 0; i < samples.size(); i += kEvery)
         some.push_back(i);
@@ -219,12 +220,13 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     const bool many = samples.size() >= kFewSamples;
     double enough = many ? quantile(samples, places, std::move(some), kBelow) : 0;
+    enough = std::max(enough, least);
     visit(1, enough, kNever);
     for (const double less : {0.8, 0.5, 0.0}) {
-        if (!(enough > 0) || is_above(samples, places, enough))
+        if (!(enough > least) || is_above(samples, places, enough))
             break;
         const double before = enough;
-        enough *= less;
+        enough = std::max(less * enough, least);
         visit(1, enough, before);
     }
     spread(samples, asked, moves);
@@ -313,7 +315,7 @@ Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
         return {none, none};
     const Against to_stand_in{scenes, *seen.looks, scenes_,    palette_,
                               none,   mesh,        skin.get(), stand_in.exact};
-    const Deviation there = measure(seen.points, to_stand_in, known.nearest, useless, job);
+    const Deviation there = measure(seen.points, to_stand_in, known.nearest, 0, useless, job);
     if (there.error > useless)
         return there;
     std::vector<Sample> samples;
@@ -325,7 +327,7 @@ Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
     // What the stand-in shows where, the visible points have asked already.
     const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,
                             none,    mesh,        skin.get(), nullptr};
-    const Deviation back = measure(samples, to_finest, {}, useless, job);
+    const Deviation back = measure(samples, to_finest, {}, there.error, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

@@ -118,7 +118,8 @@ private:
         const lodestone::Solid* exact = nullptr;
     };
     static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
-                             std::span<const ray::Closest> nearest, double useless, const Job& job);
+                             std::span<const ray::Closest> nearest, double least, double useless,
+                             const Job& job);
     const Seen& few() const;
     Deviation compare(const Seen& seen, const StandIn& stand_in, const Repainted& known,
                       double useless, const Job& job) const;
