@@ -219,8 +219,11 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
     if (surely_above(useless, samples, some, places, moves))
         return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     const bool many = samples.size() >= kFewSamples;
-    double enough = many ? quantile(samples, places, std::move(some), kBelow) : 0;
-    enough = std::max(enough, least);
+    double enough = least;
+    if (many) {
+        const double most = (1 - kBelow) * weight_of(samples, some);
+        enough = std::max(enough, quantile(samples, places, std::move(some), most));
+    }
     visit(1, enough, kNever);
     for (const double less : {0.8, 0.5, 0.0}) {
         if (!(enough > least) || is_above(samples, places, enough))
@@ -230,7 +233,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         visit(1, enough, before);
     }
     spread(samples, asked, moves);
-    return deviation_of(samples, places, moves);
+    return deviation_of(samples, places, moves, enough);
 }
 
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,

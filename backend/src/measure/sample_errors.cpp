@@ -29,6 +29,8 @@ private:
     std::vector<Value> values_;
 };
 
+}  // namespace
+
 double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<size_t>& indices) {
     double sum = 0;
     for (const size_t i : indices)
@@ -36,13 +38,10 @@ double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<si
     return sum;
 }
 
-}  // namespace
-
 double quantile(const std::vector<SurfaceSample>& samples, const std::vector<double>& distances,
-                std::vector<size_t> order, double share) {
+                std::vector<size_t> order, double most) {
     // Mostly the farthest few decide: the rest is not sorted.
     constexpr size_t kFirst = 32;
-    const double all = weight_of(samples, order);
     const auto farther = [&](size_t a, size_t b) {
         return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
     };
@@ -58,7 +57,7 @@ double quantile(const std::vector<SurfaceSample>& samples, const std::vector<dou
         for (size_t i = begin; i < end; ++i) {
             out = distances[order[i]];
             above += samples[order[i]].weight;
-            if (above > (1 - share) * all)
+            if (above > most)
                 return out;
         }
     }
@@ -66,26 +65,32 @@ double quantile(const std::vector<SurfaceSample>& samples, const std::vector<dou
 }
 
 Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
-                       const std::vector<double>& moves) {
+                       const std::vector<double>& moves, double enough) {
     Deviation out;
-    std::vector<size_t> all(samples.size());
+    double all = 0;
+    std::vector<size_t> far;
     ByLook<uint8_t> any_moved;
-    for (size_t i = 0; i < all.size(); ++i) {
-        all[i] = i;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        all += samples[i].weight;
+        if (places[i] > enough)
+            far.push_back(i);
         out.max = std::max({out.max, places[i], moves[i]});
         if (moves[i] > 0)
             any_moved[samples[i].look] = 1;
     }
+    const double most = (1 - kQuantile) * all;
+    out.error =
+        weight_of(samples, far) > most ? quantile(samples, places, std::move(far), most) : enough;
     ByLook<std::vector<size_t>> moved;
     for (size_t i = 0; i < samples.size(); ++i) {
         if (samples[i].look != kAnyLook && any_moved[samples[i].look] != 0)
             moved[samples[i].look].push_back(i);
     }
-    const double least = kLeastLookShare * weight_of(samples, all);
-    out.error = quantile(samples, places, std::move(all), kQuantile);
     for (const std::vector<size_t>& indices : moved) {
-        if (!indices.empty() && weight_of(samples, indices) >= least)
-            out.error = std::max(out.error, quantile(samples, moves, indices, kLookQuantile));
+        const double weight = weight_of(samples, indices);
+        if (!indices.empty() && weight >= kLeastLookShare * all)
+            out.error = std::max(out.error,
+                                 quantile(samples, moves, indices, (1 - kLookQuantile) * weight));
     }
     return out;
 }

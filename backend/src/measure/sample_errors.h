@@ -8,13 +8,17 @@
 
 namespace lodestone::measure {
 
-/// The smallest distance that `share` of the weight of the samples in `order` does not exceed.
-double quantile(const std::vector<SurfaceSample>& samples, const std::vector<double>& distances,
-                std::vector<size_t> order, double share);
+double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<size_t>& indices);
 
-/// `places`: how far every sample is from the other surface; `moves`: how far its look was moved.
+/// The smallest distance of the samples in `order` that no more than `most` of the weight is above.
+double quantile(const std::vector<SurfaceSample>& samples, const std::vector<double>& distances,
+                std::vector<size_t> order, double most);
+
+/// `places`: how far every sample is from the other surface, exactly where that is above `enough`;
+/// `moves`: how far its look was moved. A quantile of places that is not above `enough` counts as
+/// that.
 Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
-                       const std::vector<double>& moves);
+                       const std::vector<double>& moves, double enough);
 
 /// Whether the quantile of all samples is above that.
 bool is_above(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
