@@ -4,25 +4,44 @@
 #include <glm/common.hpp>
 
 #include <array>
+#include <utility>
 
 namespace lodestone::measure {
 namespace {
 
 /// A pixel: means over every other sample, and over those between.
 struct Pixel {
-    std::array<glm::dvec4, 2> halves{glm::dvec4(0.0), glm::dvec4(0.0)};
+    std::array<glm::dvec4, 2> halves;
 
     Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
-        std::array<double, 2> counts{};
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
-                const size_t half = ((x + y) % 2 != 0) != odd ? 1 : 0;
-                halves[half] += glm::dvec4(corner[static_cast<ptrdiff_t>(y) * stride + x]);
-                ++counts[half];
+        using Two = double __attribute__((vector_size(16)));
+        struct Sum {
+            Two low{};
+            Two high{};
+
+            void add(const glm::vec4& sample) {
+                low += Two{static_cast<double>(sample.x), static_cast<double>(sample.y)};
+                high += Two{static_cast<double>(sample.z), static_cast<double>(sample.w)};
             }
+            glm::dvec4 mean(int count) const {
+                return glm::dvec4(low[0], low[1], high[0], high[1]) / static_cast<double>(count);
+            }
+        };
+        Sum first;  // of the half that the row begins with
+        Sum second;
+        for (int y = 0; y < side; ++y) {
+            const glm::vec4* const row = corner + static_cast<ptrdiff_t>(y) * stride;
+            for (int x = 0; x < side; x += 2)
+                first.add(row[x]);
+            for (int x = 1; x < side; x += 2)
+                second.add(row[x]);
+            std::swap(first, second);
         }
-        for (size_t half = 0; half < 2; ++half)
-            halves[half] /= counts[half];
+        if (side % 2 != 0)
+            std::swap(first, second);
+        const int count = side * side / 2;
+        halves[odd ? 1 : 0] = first.mean(side * side - count);
+        halves[odd ? 0 : 1] = second.mean(count);
     }
 };
 
