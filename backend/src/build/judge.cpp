@@ -390,8 +390,13 @@ std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint
     measure::VisibleOptions options;
     options.rays = rays_;
     options.seed = seed_;
+    // Of the finest they are cast already.
     const measure::Visible visible =
-        measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, by_triangle, job);
+        mesh.triangles.size() == finest_scene().triangles()
+            ? measure::measure_visible(mesh, reference_.sampler(), skin_, options, by_triangle,
+                                       cast_, job)
+            : measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, by_triangle,
+                                       job);
     uint64_t all = 0;
     for (const uint64_t hits : visible.hits_by_tag)
         all += hits;
