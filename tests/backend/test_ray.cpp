@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "ray/scene.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <gtest/gtest.h>
 
@@ -170,6 +171,65 @@ TEST(Ray, AnswersAreTheSameBitsFromOneAndManyThreads) {
         return out;
     };
     EXPECT_EQ(all(1), all(0));
+}
+
+// Triangles that blocked rays lately are tried first: they may say nothing that Embree does not.
+TEST(Ray, WhatBlockedRaysLatelyChangesNoAnswer) {
+    Random random(5);
+    Mesh slivers;
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 a = random_point(random);
+        const glm::dvec3 along = random_point(random);
+        const double width = std::pow(0.1, 6 * random.uniform());
+        for (const glm::dvec3& corner : {a, a + along, a + width * random_point(random)})
+            slivers.positions.emplace_back(corner);
+        slivers.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    slivers.triangles.emplace_back(0, 0, 1);
+    Mesh nested = shapes::box(glm::dvec3(-2), glm::dvec3(4));
+    append(nested, shapes::sphere(1.5, 3), {});
+    for (const Mesh& mesh : {slivers, nested, moved(slivers, 1e-4, glm::dvec3(1000))}) {
+        const ray::Scene scene(mesh);
+        ray::Blockers blockers;
+        size_t blocked = 0;
+        for (int i = 0; i < 100000; ++i) {
+            // From a surface, as rays go that ask whether it can be seen; some along an edge.
+            const auto index =
+                static_cast<size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()));
+            const Triangle& t = mesh.triangles[index];
+            const glm::dvec3 from(mesh.positions[t.x]);
+            const glm::dvec3 edge = glm::dvec3(mesh.positions[t.y]) - from;
+            const glm::dvec3 way = i % 16 == 0 ? edge : random_point(random);
+            const glm::dvec3 origin = from + random.uniform() * edge + 1e-5 * way;
+            const bool expected = scene.occluded(origin, way);
+            ASSERT_EQ(scene.occluded(origin, way, blockers), expected) << i;
+            blocked += expected ? 1 : 0;
+        }
+        EXPECT_GT(blocked, 10000u);
+    }
+}
+
+TEST(Ray, WhatBlocksIsAheadAndWellWithinItsEdges) {
+    ray::Blockers blockers;
+    const glm::vec3 up(0, 0, 1);
+    EXPECT_FALSE(blockers.block({0, 0, -0.5}, up));
+    for (const bool turned : {false, true}) {
+        const float sign = turned ? -1.0f : 1.0f;
+        blockers.add({glm::vec3{-0.5f, -0.5f, 0}, {0.5f * sign, -0.5f * sign, 0}, {0, 0.5f, 0}});
+    }
+    EXPECT_TRUE(blockers.block({0, 0, -0.5f}, up));
+    EXPECT_TRUE(blockers.block({0, 0, 0.5f}, -up));
+    EXPECT_FALSE(blockers.block({0, 0, 0.5f}, up));
+    EXPECT_FALSE(blockers.block({0, 0, 0}, up));
+    EXPECT_FALSE(blockers.block({0.4f, 0.4f, -0.5f}, up));
+    EXPECT_TRUE(blockers.block({0, -0.499f, -0.5f}, up));
+    EXPECT_FALSE(blockers.block({0, -0.5f, -0.5f}, up));
+    EXPECT_FALSE(blockers.block({0.5f, -0.5f, -0.5f}, up));
+    // The latest eight.
+    for (int i = 0; i < 8; ++i)
+        blockers.add({glm::vec3{0.8f, 0, 0}, {0.9f, 0, 0}, {0.8f, 0.1f, 0}});
+    EXPECT_FALSE(blockers.block({0, 0, -0.5f}, up));
+    EXPECT_TRUE(blockers.block({0.82f, 0.02f, -0.5f}, up));
 }
 
 TEST(Ray, CastingLeavesTheCallersFloatingPointModeAlone) {

@@ -165,6 +165,7 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
     parallel_for(kViews * row, [&](size_t line) {
         job.check();
         const ray::Burst burst;
+        ray::Blockers blockers;
         const View view(views[line / row], line / row);
         const Frame& frame = *frames[line / row];
         for (size_t column = 0; column < row; ++column) {
@@ -186,7 +187,7 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
             const glm::dvec3 from = hit.point + lift * (glm::dot(flat, viewer) < 0 ? -flat : flat);
             double light = kSky;
             const double facing = glm::dot(normal, view.sun);
-            if (facing > 0 && !glass.opaque().occluded(from, view.sun))
+            if (facing > 0 && !glass.opaque().occluded(from, view.sun, blockers))
                 light += (1 - kSky) * facing;
             out.samples_[number] = {hit.triangle, static_cast<float>(hit.u),
                                     static_cast<float>(hit.v), static_cast<float>(light)};

@@ -41,7 +41,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const double share = area > mean ? std::min(area / mean, kMostRaysTimes) : 1;
         return static_cast<int>(std::ceil(share * rays_per_triangle));
     };
-    const auto see = [&](size_t index, int first, int end) {
+    const auto see = [&](size_t index, int first, int end, ray::Blockers& blockers) {
         const glm::dvec3 area = area_vector(mesh, index);
         const double length = glm::length(area);
         if (!(length > 0))
@@ -59,7 +59,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
                                  random.uniform()};
             const glm::dvec2 weights = uniform_in_triangle(u[0], u[1]);
             const glm::dvec3 origin = a + weights.x * ab + weights.y * ac + lift * outward;
-            if (!scene.occluded(origin, cosine_direction(outward, u[2], u[3])))
+            if (!scene.occluded(origin, cosine_direction(outward, u[2], u[3]), blockers))
                 return true;
         }
         return false;
@@ -80,14 +80,16 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
     const auto visit = [&](bool again) {
         parallel_for((seen.size() + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
+            const ray::Burst burst;
+            ray::Blockers blockers;
             const size_t end = std::min<size_t>(seen.size(), (block + 1) * kBlock);
             for (size_t i = block * kBlock; i < end; ++i) {
                 const int rays = rays_of(glm::length(area_vector(mesh, i)));
                 const int half = rays > rays_per_triangle ? rays : (rays + 1) / 2;
                 if (!again)
-                    seen[i] = see(i, 0, half) ? 1 : 0;
+                    seen[i] = see(i, 0, half, blockers) ? 1 : 0;
                 else if (seen[i] == 0 && half < rays && may_be_bright(i))
-                    seen[i] = see(i, half, rays) ? 1 : 0;
+                    seen[i] = see(i, half, rays, blockers) ? 1 : 0;
             }
         });
     };

@@ -229,7 +229,7 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
                           const Job& job, std::vector<SurfaceSample>& out) {
     const TrianglesOf triangles_of(mesh);
-    const auto sees = [&](uint32_t vertex) {
+    const auto sees = [&](uint32_t vertex, ray::Blockers& blockers) {
         const std::span<const uint32_t> around = triangles_of[vertex];
         if (!seen.empty() && std::none_of(around.begin(), around.end(),
                                           [&](uint32_t triangle) { return seen[triangle] != 0; }))
@@ -255,7 +255,7 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
                  glm::dvec3(mesh.positions[t.z])) /
                 3.0;
             const glm::dvec3 origin = point + 0.01 * (middle - point) + lift * outward;
-            if (!scene.occluded(origin, cosine_direction(outward, u, v)))
+            if (!scene.occluded(origin, cosine_direction(outward, u, v), blockers))
                 return true;
         }
         return false;
@@ -263,8 +263,10 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
     std::vector<uint8_t> visible(vertices.size(), 0);
     parallel_for((vertices.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
+        const ray::Burst burst;
+        ray::Blockers blockers;
         for (size_t i = block * kBlock; i < std::min(vertices.size(), (block + 1) * kBlock); ++i)
-            visible[i] = sees(vertices[i].vertex) ? 1 : 0;
+            visible[i] = sees(vertices[i].vertex, blockers) ? 1 : 0;
     });
     for (size_t i = 0; i < vertices.size(); ++i) {
         if (visible[i] != 0)

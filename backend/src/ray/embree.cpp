@@ -105,13 +105,27 @@ void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
         arguments->valid[0] = 0;
 }
 
+/// A ray context that is told what blocks the ray.
+struct BlockerContext {
+    RTCIntersectContext embree;
+    unsigned triangle;
+};
+
+void tell_blocker(const RTCFilterFunctionNArguments* arguments) {
+    auto* context =
+        reinterpret_cast<BlockerContext*>(const_cast<RTCIntersectContext*>(arguments->context));
+    context->triangle = reinterpret_cast<const RTCHit*>(arguments->hit)->primID;
+}
+
 RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
                    const std::vector<Triangle>& triangles, const Cover* cover) {
     RTCScene scene = embree.new_scene(embree.device);
     RTCGeometry geometry = embree.new_geometry(embree.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (scene != nullptr && geometry != nullptr) {
         // Robust: boxes are tested conservatively and edges are watertight.
-        embree.set_scene_flags(scene, RTC_SCENE_FLAG_ROBUST);
+        embree.set_scene_flags(scene,
+                               static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                          RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                  padded.data(), 0, sizeof(glm::vec3), padded.size() - 1);
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -341,10 +355,12 @@ size_t EmbreeTree::crossed(const glm::dvec3& origin, const glm::dvec3& direction
     return context.listed;
 }
 
-bool EmbreeTree::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+namespace {
+
+/// Whether anything blocks a ray.
+bool blocks(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction, double far,
+            RTCIntersectContext& context) {
     const Burst flush;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay ray{};
     ray.org_x = static_cast<float>(origin.x);
     ray.org_y = static_cast<float>(origin.y);
@@ -354,8 +370,25 @@ bool EmbreeTree::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
     ray.dir_z = static_cast<float>(direction.z);
     ray.tfar = static_cast<float>(far);
     ray.mask = ~0u;
-    found().occluded(static_cast<RTCScene>(scene_), &context, &ray);
+    found().occluded(scene, &context, &ray);
     return ray.tfar < 0;
+}
+
+}  // namespace
+
+bool EmbreeTree::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    return blocks(static_cast<RTCScene>(scene_), origin, direction, far, context);
+}
+
+uint32_t EmbreeTree::blocker(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    BlockerContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = tell_blocker;
+    const bool blocked = blocks(static_cast<RTCScene>(scene_), origin, direction,
+                                std::numeric_limits<double>::infinity(), context.embree);
+    return blocked ? context.triangle : kNoTriangle;
 }
 
 }  // namespace lodestone::ray

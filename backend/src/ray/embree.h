@@ -35,6 +35,8 @@ public:
     /// Directions have unit length.
     Found first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+    /// Some triangle that blocks a ray without end.
+    uint32_t blocker(const glm::dvec3& origin, const glm::dvec3& direction) const;
     /// As Scene::crossed.
     size_t crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                    std::span<uint32_t> list) const;

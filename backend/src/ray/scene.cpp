@@ -173,6 +173,24 @@ bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction, doub
            data.tree->occluded(part.origin, part.direction, part.far);
 }
 
+bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
+                     Blockers& blockers) const {
+    const Data& data = *data_;
+    Data::Part part;
+    if (!data.clip(origin, direction, std::numeric_limits<double>::infinity(), part))
+        return false;
+    if (data.cover)
+        return data.tree->occluded(part.origin, part.direction, part.far);
+    if (blockers.block(glm::vec3(part.origin), glm::vec3(part.direction)))
+        return true;
+    const uint32_t by = data.tree->blocker(part.origin, part.direction);
+    if (by == kNoTriangle)
+        return false;
+    const Triangle& t = data.triangles[by];
+    blockers.add({data.positions[t.x], data.positions[t.y], data.positions[t.z]});
+    return true;
+}
+
 size_t Scene::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                       std::span<uint32_t> list) const {
     const Data& data = *data_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "model/mesh.h"
+#include "ray/blockers.h"
 #include "ray/skin.h"
 
 #include <limits>
@@ -91,6 +92,9 @@ public:
     /// Whether first_hit would hit; faster.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
+
+    /// The same without an end, sooner among rays that the same triangles block (see Blockers).
+    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, Blockers& blockers) const;
 
     /// Lists the triangles that end rays where this one crosses them with 0 <= t <= far, in no
     /// order, as many as there is room for. How many were listed.
