@@ -14,6 +14,52 @@ constexpr size_t kMostAround = 1000;
 /// Twice the area over the longest edge squared: thinner triangles are not made from fatter ones.
 constexpr double kThin = 2e-3;
 
+/// A number of each of four triangles.
+constexpr size_t kLanes = 4;
+using Lanes = float __attribute__((vector_size(4 * kLanes)));
+
+struct Vectors {
+    Lanes x, y, z;
+};
+
+Lanes dot(const Vectors& a, const Vectors& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// Differences are all that single precision is asked for.
+Vectors between(const glm::dvec3* const (&ends)[kLanes], const glm::dvec3& from) {
+    using Two = double __attribute__((vector_size(16)));
+    using TwoFloats = float __attribute__((vector_size(8)));
+    const auto component = [&](auto member) {
+        const Two low = Two{ends[0]->*member, ends[1]->*member} - from.*member;
+        const Two high = Two{ends[2]->*member, ends[3]->*member} - from.*member;
+        return __builtin_shufflevector(__builtin_convertvector(low, TwoFloats),
+                                       __builtin_convertvector(high, TwoFloats), 0, 1, 2, 3);
+    };
+    return {component(&glm::dvec3::x), component(&glm::dvec3::y), component(&glm::dvec3::z)};
+}
+
+/// Of four triangles that share a corner, the edges from there.
+struct Spokes {
+    Vectors next, last;
+    Spokes(const glm::dvec3* const (&ends_next)[kLanes],
+           const glm::dvec3* const (&ends_last)[kLanes], const glm::dvec3& from)
+        : next(between(ends_next, from)), last(between(ends_last, from)) {}
+
+    /// The area vectors.
+    Vectors facet() const {
+        return {0.5f * (next.y * last.z - last.y * next.z),
+                0.5f * (next.z * last.x - last.z * next.x),
+                0.5f * (next.x * last.y - last.x * next.y)};
+    }
+    /// Of each triangle's longest edge.
+    Lanes longest_square() const {
+        const Vectors across{last.x - next.x, last.y - next.y, last.z - next.z};
+        const auto larger = [](const Lanes& a, const Lanes& b) { return a < b ? b : a; };
+        return larger(larger(dot(next, next), dot(last, last)), dot(across, across));
+    }
+};
+
 }  // namespace
 
 Collapser::Collapser(CollapseMesh& mesh, const Adjacency& adjacency, const Edges& edges,
@@ -86,42 +132,47 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
 
 bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corners,
                             const glm::dvec3& from, const glm::dvec3& point) {
-    const auto longest_square = [](const glm::vec3& next, const glm::vec3& last) {
-        const glm::vec3 across = last - next;
-        return static_cast<double>(
-            std::max({glm::dot(next, next), glm::dot(last, last), glm::dot(across, across)}));
-    };
-    for (Corner& corner : corners) {
-        const glm::dvec3& end_next = points[corner.next];
-        const glm::dvec3& end_last = points[corner.last];
-        // Differences are all that single precision is asked for; products of areas leave its
-        // range.
-        const glm::vec3 next(end_next - point);
-        const glm::vec3 last(end_last - point);
-        const glm::vec3 facet = 0.5f * glm::cross(next, last);
-        corner.facet = facet;
+    for (size_t first = 0; first < corners.count; first += kLanes) {
+        Corner* const some = corners.begin() + first;
+        const size_t count = std::min(kLanes, corners.count - first);
+        const glm::dvec3* ends_next[kLanes];
+        const glm::dvec3* ends_last[kLanes];
+        for (size_t i = 0; i < kLanes; ++i) {
+            const Corner& corner = some[std::min(i, count - 1)];
+            ends_next[i] = &points[corner.next];
+            ends_last[i] = &points[corner.last];
+        }
+        const Spokes spokes(ends_next, ends_last, point);
+        const Vectors facets = spokes.facet();
         // Not read: it lies where nothing else is needed from.
-        const glm::vec3 old_next(end_next - from);
-        const glm::vec3 old_last(end_last - from);
-        const glm::vec3 old = 0.5f * glm::cross(old_next, old_last);
-        const double square = glm::dot(facet, facet);
-        const double old_square = glm::dot(old, old);
-        const double longest = longest_square(next, last);
-        const double dot = glm::dot(facet, old);
-        const double thin = kThin * kThin * longest * longest;
-        if (dot > 0 && dot * dot >= square_cosine_ * square * old_square && 4 * square >= thin)
-            continue;
-        const double old_longest = longest_square(old_next, old_last);
-        // Where there was no area there is no side to keep.
-        if (old_square <= 1e-20 * old_longest * old_longest)
-            continue;
-        if (square <= 1e-20 * longest * longest)
-            return false;
-        if (dot <= 0 || dot * dot < square_cosine_ * square * old_square)
-            return false;
-        if (effort_ < Effort::Rough && 4 * square < thin &&
-            square * old_longest * old_longest < old_square * longest * longest)
-            return false;
+        const Spokes old_spokes(ends_next, ends_last, from);
+        const Vectors old_facets = old_spokes.facet();
+        const Lanes squares = dot(facets, facets);
+        const Lanes old_squares = dot(old_facets, old_facets);
+        const Lanes dots = dot(facets, old_facets);
+        const Lanes longest_squares = spokes.longest_square();
+        for (size_t i = 0; i < count; ++i) {
+            some[i].facet = glm::vec3(facets.x[i], facets.y[i], facets.z[i]);
+            // Products of areas leave the range of single precision.
+            const double square = squares[i];
+            const double old_square = old_squares[i];
+            const double longest = longest_squares[i];
+            const double dot = dots[i];
+            const double thin = kThin * kThin * longest * longest;
+            if (dot > 0 && dot * dot >= square_cosine_ * square * old_square && 4 * square >= thin)
+                continue;
+            const double old_longest = old_spokes.longest_square()[i];
+            // Where there was no area there is no side to keep.
+            if (old_square <= 1e-20 * old_longest * old_longest)
+                continue;
+            if (square <= 1e-20 * longest * longest)
+                return false;
+            if (dot <= 0 || dot * dot < square_cosine_ * square * old_square)
+                return false;
+            if (effort_ < Effort::Rough && 4 * square < thin &&
+                square * old_longest * old_longest < old_square * longest * longest)
+                return false;
+        }
     }
     return true;
 }
