@@ -176,7 +176,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
     std::vector<Quadric> quadrics(others_.size());
     int open = 0;
     bool holds = false;
-    for (const Neighbors::Neighbor& n : neighbors.find(mesh, ring, vertex, closed)) {
+    for (const Neighbors::Neighbor& n : neighbors.find(mesh, ring, vertex, fan)) {
         const bool two = n.uses == 2;
         if (!two && n.vertex > vertex && borders != nullptr)
             borders->borders.emplace_back(vertex, n.vertex);
@@ -277,7 +277,8 @@ public:
         const VertexKind kind = edges_.kinds_[vertex];
         const bool curve = kind == VertexKind::CurveFan;
         if ((kind != VertexKind::FreeFan && !curve) || !edges_.others_.empty()) {
-            for (const Neighbors::Neighbor& n : neighbors_.find(mesh_, ring, vertex, false)) {
+            for (const Neighbors::Neighbor& n :
+                 neighbors_.find(mesh_, ring, vertex, Neighbors::Fan::None)) {
                 if (n.vertex > vertex)
                     price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
             }

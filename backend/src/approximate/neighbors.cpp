@@ -7,13 +7,42 @@ namespace lodestone::approximate {
 
 std::span<const Neighbors::Neighbor> Neighbors::find(const CollapseMesh& mesh,
                                                      std::span<const uint32_t> ring,
-                                                     uint32_t vertex, bool closed) {
+                                                     uint32_t vertex, Fan fan) {
     found_.clear();
-    for (uint32_t i = 0; closed && i < ring.size(); ++i)
-        found_.push_back({to_[i], 2, ring[i], ring[before_[i]], true, false});
-    if (!closed)
+    if (fan == Fan::Closed) {
+        for (uint32_t i = 0; i < ring.size(); ++i)
+            found_.push_back({to_[i], 2, ring[i], ring[before_[i]], true, false});
+    } else if (fan != Fan::Open || !find_in_open_fan(ring)) {
         find_any(mesh, ring, vertex);
+    }
     return found_;
+}
+
+/// In the order in which find_any() finds them. False, and nothing done, where an edge on its
+/// border has another triangle.
+bool Neighbors::find_in_open_fan(std::span<const uint32_t> ring) {
+    const auto count = static_cast<uint32_t>(ring.size());
+    uint32_t after[kMost]{};
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        met += (to_[i] == to_[begin_]) + (from_[i] == to_[begin_]);
+        met += (to_[i] == from_[end_]) + (from_[i] == from_[end_]);
+        if (i != begin_)
+            after[before_[i]] = i;
+    }
+    if (met != 2)
+        return false;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (i == begin_)
+            found_.push_back({to_[i], 1, ring[i], kNone, true, false});
+        else if (before_[i] > i)
+            found_.push_back({to_[i], 2, ring[i], ring[before_[i]], true, false});
+        if (i == end_)
+            found_.push_back({from_[i], 1, ring[i], kNone, false, false});
+        else if (after[i] > i)
+            found_.push_back({from_[i], 2, ring[i], ring[after[i]], false, true});
+    }
+    return true;
 }
 
 void Neighbors::find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring,

@@ -106,13 +106,14 @@ public:
     uint32_t first_corner() const { return to_[begin_]; }
     uint32_t last_corner() const { return from_[end_]; }
 
-    /// Of any vertex; `closed`: as find_fan() has just found.
+    /// Of any vertex; `fan`: as find_fan() has just found.
     std::span<const Neighbor> find(const CollapseMesh& mesh, std::span<const uint32_t> ring,
-                                   uint32_t vertex, bool closed);
+                                   uint32_t vertex, Fan fan);
 
 private:
     static constexpr uint32_t kMost = 16;
 
+    bool find_in_open_fan(std::span<const uint32_t> ring);
     void find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex);
 
     // Where in the fan a neighbor is, by its lowest bits.
