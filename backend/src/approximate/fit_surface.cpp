@@ -52,6 +52,9 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
         for (const uint32_t t : ring) {
             const Triangle& c = mesh_.triangles[t];
             const glm::vec3& facet = mesh_.facets[t];
+            const float agree = glm::dot(facet, normal);
+            if (!(agree > 0 && agree * agree > 0.25f * glm::dot(facet, facet)))
+                continue;
             const glm::vec3 a = points_[c.x] - point;
             const glm::vec3 b = points_[c.y] - point;
             const glm::vec3 d = points_[c.z] - point;
@@ -60,9 +63,6 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
             const float z = glm::dot(facet, glm::cross(a, b));
             const float sum = x + y + z;
             if (!(x >= 0 && y >= 0 && z >= 0 && sum > 0))
-                continue;
-            const float agree = glm::dot(facet, normal);
-            if (!(agree > 0 && agree * agree > 0.25f * glm::dot(facet, facet)))
                 continue;
             const float scale = 1 / sum;
             best = {0, t, glm::vec3(x * scale, y * scale, z * scale)};
