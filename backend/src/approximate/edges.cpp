@@ -63,6 +63,12 @@ void hold_edge(Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet
 /// encodes colors, roughly.
 double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& w0,
                   const Triangle& t1, const Triangle& w1, uint32_t a, uint32_t b) {
+    bool one = true;  // color: no kink
+    for (int corner = 0; corner < 3; ++corner)
+        one = one && mesh.colors[w0[corner]] == mesh.colors[w0.x] &&
+              mesh.colors[w1[corner]] == mesh.colors[w0.x];
+    if (one)
+        return 0;
     const auto color = [&](uint32_t wedge) {
         return glm::sqrt(glm::clamp(mesh.colors[wedge], 0.0f, 1.0f));
     };
