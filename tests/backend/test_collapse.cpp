@@ -202,6 +202,10 @@ TEST(Collapse, FansAreFoundAndPutInOrder) {
     EXPECT_FALSE(single);
     EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {7, 8}, {3, 1}}), ring, single), Neighbors::Fan::Open);
     EXPECT_FALSE(single);
+    // Neighbors whose lowest bits are the same, as far as they are looked up by these.
+    EXPECT_EQ(fan_of(around({{1, 2}, {2, 1 + (1u << 20)}, {1 + (1u << 20), 1}}), ring, single),
+              Neighbors::Fan::Closed);
+    EXPECT_TRUE(single);
     EXPECT_EQ(fan_of(around({{1, 2}, {3, 2}}), ring, single), Neighbors::Fan::None);
     EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {2, 4}}), ring, single), Neighbors::Fan::None);
 }

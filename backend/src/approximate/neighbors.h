@@ -68,6 +68,11 @@ public:
         if (starts > 1 || !std::has_single_bit(all ^ met))
             return Fan::None;
         end_ = static_cast<uint32_t>(std::countr_zero(all ^ met));
+        if (to_[begin_] == from_[end_]) {  // whose slot another neighbor has taken
+            before_[begin_] = end_;
+            begin_ = end_;
+            return Fan::Closed;
+        }
         open_ = true;
         return Fan::Open;
     }
