@@ -85,7 +85,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
             const size_t end = std::min<size_t>(seen.size(), (block + 1) * kBlock);
             for (size_t i = block * kBlock; i < end; ++i) {
                 const int rays = rays_of(glm::length(area_vector(mesh, i)));
-                const int half = rays > rays_per_triangle ? rays : (rays + 1) / 2;
+                const int half = (rays + 1) / 2;
                 if (!again)
                     seen[i] = see(i, 0, half, blockers) ? 1 : 0;
                 else if (seen[i] == 0 && half < rays && may_be_bright(i))

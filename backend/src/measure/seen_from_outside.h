@@ -12,8 +12,8 @@ namespace lodestone::measure {
 /// before simplifying. Rays leave random points in random directions (cosine), on both sides of
 /// parts that are not closed and opaque. A triangle larger than the mean gets in proportion more
 /// rays, up to 64 times `rays_per_triangle`: a large one that was dropped would leave a hole that
-/// is seen. The others get half of their rays first, and the rest only if a triangle that shares a
-/// corner with them was seen. Triangles without area count as seen.
+/// is seen. Each gets half of its rays first, and the rest only if a triangle that shares a corner
+/// with it was seen. Triangles without area count as seen.
 /// Same bits on any number of threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});
