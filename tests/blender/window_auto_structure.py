@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Inside a Blender window (see test_window.py): Auto-Structure, its numbers, OK, undo, Esc."""
 
+import math
 import sys
 from pathlib import Path
 
@@ -16,7 +17,7 @@ import window_steps as steps  # noqa: E402
 FOLDER = Path(sys.argv[-1])
 
 
-def make():
+def make(subdivisions=3):
     scene = scenes.fresh()
     scene.camera.location = (50, 50, 900)
     scene.camera.data.clip_end = 2000
@@ -26,7 +27,9 @@ def make():
             bpy.data.objects.remove(item)
     yard = auto.flat()
     ball = bmesh.new()
-    bmesh.ops.create_icosphere(ball, subdivisions=3, radius=0.7)
+    bmesh.ops.create_icosphere(ball, subdivisions=subdivisions, radius=0.7)
+    for vertex in ball.verts:  # a ball itself would be an ellipsoid at once
+        vertex.co *= 1 + 0.1 * math.sin(9 * vertex.co.z) * math.cos(7 * vertex.co.x)
     ball.to_mesh(yard.objects[0].data)  # which all share
     ball.free()
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "yard.blend"))
@@ -93,7 +96,7 @@ def one_undo_takes_it_back():
 
 
 def escape_while_measuring_changes_nothing():
-    make()
+    make(subdivisions=6)  # takes long enough for the key to come while it measures
     start()
     yield from steps.wait_until(measures)
     steps.press("ESC")
