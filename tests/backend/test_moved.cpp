@@ -153,3 +153,15 @@ TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
         EXPECT_EQ(rest.objects[3].representations.at(i).summary.hash,
                   whole.objects[3].representations[i].summary.hash);
 }
+
+TEST_F(MovedGroups, ThatAPictureDoesNotCallForAreCountedAsLeft) {
+    Model model = rooms({Affine{}, turned(0.5, {20, -30, 2}), turned(2, {9, 40, 0})});
+    Problems problems;
+    build::Settings settings;
+    settings.demand.emplace();
+    settings.demand->share = 0;  // for nothing at all
+    const build::Report report =
+        build::build_hierarchy(model, segment::Store(scratch("left")), settings, problems, {});
+    EXPECT_EQ(report.built, 0u);
+    EXPECT_EQ(report.left, report.objects);
+}

@@ -111,10 +111,10 @@ public:
         wanted_ = std::move(plan.wanted);
 
         std::vector<Task>& tasks = plan.tasks;
-        const size_t all = tasks.size();
+        const size_t all = stale_in(tasks);
         if (settings_.demand)
             keep_called_for(tasks);
-        report.left = all - tasks.size();
+        report.left = all - stale_in(tasks);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
         std::map<size_t, std::vector<Moved>> moved;        // likewise
@@ -168,6 +168,14 @@ private:
         return static_cast<double>(
                    std::min<uint64_t>(object.representations[0].summary.cost.triangles, 60000)) +
                1000;
+    }
+
+    /// How many objects and groups are built for themselves or as others moved.
+    static size_t stale_in(const std::vector<Task>& tasks) {
+        size_t count = tasks.size();
+        for (const Task& task : tasks)
+            count += task.moved.size();
+        return count;
     }
 
     /// Leaves what a demand does not call for as it is.
