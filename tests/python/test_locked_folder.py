@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards temporary folders: a living owner's is left alone, a dead one's is found."""
 
+import itertools
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import addon_path
 from lodestone.core import locked_folder
@@ -22,6 +25,27 @@ folder = LockedFolder(Path(sys.argv[1]), sys.argv[2])
 (folder.path / "scene.pov").write_text("sphere{}")
 os.kill(os.getpid(), 9)
 """
+
+
+def die_at(wanted, parent):
+    """Makes, fills and removes a folder; kills this process before the line of that number."""
+    lines = itertools.count()
+
+    def trace(frame, event, argument):
+        if event == "line" and next(lines) == wanted:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return trace
+
+    try:
+        sys.settrace(trace)
+        folder = LockedFolder(parent, "a.scene")
+        (folder.path / "scene.pov").write_text("sphere{}")
+        (folder.path / "objects").mkdir()
+        (folder.path / "objects" / "ball.inc").write_text("sphere{}")
+        folder.remove()
+    except BaseException:
+        os._exit(1)
+    os._exit(0)
 
 
 class Folders(unittest.TestCase):
@@ -51,20 +75,53 @@ class Folders(unittest.TestCase):
 
     def test_a_kept_folder_is_the_users(self):
         folder = LockedFolder(self.parent, "a.scene")
+        (folder.path / "scene.pov").write_text("sphere{}")
         folder.keep()
         locked_folder.settle(self.parent, "a.scene")
-        self.assertEqual(list(folder.path.iterdir()), [])
+        self.assertEqual(os.listdir(folder.path), ["scene.pov"])
 
     def test_a_killed_owners_folder_is_removed_or_kept_as_asked(self):
         self.die()
         self.die()
         self.die("b.scene")
-        first, second = locked_folder.abandoned(self.parent, "a.scene")
+        kept = [name for name in self.names() if name.startswith("a.scene")]
         locked_folder.settle(self.parent, "a.scene", keep=True)
-        self.assertEqual(os.listdir(first), ["scene.pov"])
-        self.assertEqual(list(locked_folder.abandoned(self.parent, "a.scene")), [])
+        locked_folder.settle(self.parent, "a.scene")
         locked_folder.settle(self.parent, "b.scene")
-        self.assertEqual(self.names(), sorted([first.name, second.name]))
+        self.assertEqual(self.names(), kept)
+        self.assertEqual([os.listdir(self.parent / name) for name in kept], [["scene.pov"]] * 2)
+
+    def test_a_folder_whose_owner_was_killed_between_any_two_lines_is_removed(self):
+        ends, left = 0, 0
+        for line in range(1000):
+            child = os.fork()
+            if child == 0:
+                die_at(line, self.parent)
+            _, status = os.waitpid(child, 0)
+            left += self.names() != []
+            locked_folder.settle(self.parent, "a.scene")
+            self.assertEqual(self.names(), [], f"killed at line {line}")
+            ends += os.WIFEXITED(status)
+            if ends:
+                break
+        self.assertEqual((ends, os.WEXITSTATUS(status)), (1, 0))
+        self.assertGreater(left, 10)
+
+    def test_a_new_folder_taken_for_a_dead_ones_is_made_again(self):
+        make, made = tempfile.mkdtemp, []
+
+        def made_and_settled(**options):
+            made.append(make(**options))
+            if len(made) < 3:
+                locked_folder.settle(self.parent, "a.scene")
+            return made[-1]
+
+        with mock.patch.object(tempfile, "mkdtemp", made_and_settled):
+            folder = LockedFolder(self.parent, "a.scene")
+        self.assertEqual(len(made), 3)
+        locked_folder.settle(self.parent, "a.scene")
+        self.assertEqual(self.names(), [folder.path.name])
+        folder.remove()
 
     def test_two_cannot_keep_their_scene_in_one_folder(self):
         kept = self.parent / "a.scene"
@@ -82,14 +139,18 @@ class Folders(unittest.TestCase):
         self.assertEqual(self.names(), [])
 
     def test_folders_of_others_are_never_touched(self):
-        for name in ("a.scene-mine", "a.scene", "a.scene-link", "b"):
+        for name in ("a.scene-mine", "a.scene", "a.scene-the_link", "a.scene-mystuff_", "b"):
             (self.parent / name).mkdir()
         outside = self.parent / "b" / "precious"
         outside.write_text("x")
-        (self.parent / "a.scene-link" / locked_folder.MARK).symlink_to(outside)
+        (self.parent / "a.scene-mystuff_" / "precious").write_text("x")
+        (self.parent / "a.scene-the_link" / locked_folder.MARK).symlink_to(outside)
+        (self.parent / "b" / locked_folder.MARK).write_text("")
+        (self.parent / "a.scene-to_there").symlink_to(self.parent / "b")
         before = self.names()
         locked_folder.settle(self.parent, "a.scene")
         self.assertEqual(self.names(), before)
+        self.assertEqual(outside.read_text(), "x")
 
     def test_any_name_of_a_file_makes_a_folder(self):
         for name in ("x" * 255, "名" * 85, "a b'\"\n", "-rf"):

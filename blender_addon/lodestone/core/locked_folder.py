@@ -13,6 +13,7 @@ from .file_names import fitting
 
 MARK = "in_use"
 _LONGEST = 200  # bytes of a prefix: file names end at 255
+_RANDOM = 8  # characters that mkdtemp() adds
 
 
 def prefix_of(name: str) -> str:
@@ -32,24 +33,10 @@ class Hold:
         self._mark = folder / MARK
         self._lock = -1
         while self._lock < 0:
-            lock = os.open(self._mark, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
             try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                self._lock = _take(self._mark)
             except BlockingIOError:
-                os.close(lock)
                 raise InUse(f"another Blender is at work in {folder}") from None
-            except OSError:
-                pass  # a file system without locks
-            if self._is(lock):
-                self._lock = lock
-            else:  # the one before removed the mark while we looked at it
-                os.close(lock)
-
-    def _is(self, lock: int) -> bool:
-        try:
-            return os.path.samestat(os.fstat(lock), os.lstat(self._mark))
-        except OSError:
-            return False
 
     def release(self) -> None:
         self._mark.unlink(missing_ok=True)
@@ -60,22 +47,20 @@ class LockedFolder:
     """A new folder in `parent`, which exists. Ends with remove() or keep()."""
 
     def __init__(self, parent: Path, name: str) -> None:
-        self.path = Path(tempfile.mkdtemp(prefix=prefix_of(name), dir=parent))
-        # The mark appears with its lock on: nobody may take it for a dead one's in between.
-        early = self.path / f".{MARK}"
-        self._lock = os.open(early, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            pass  # a file system without locks: such a folder stays
-        os.rename(early, self.path / MARK)
+        self._lock = -1
+        while self._lock < 0:
+            self.path = Path(tempfile.mkdtemp(prefix=prefix_of(name), dir=parent))
+            try:
+                self._lock = _take(self.path / MARK)
+            except (FileNotFoundError, BlockingIOError):
+                pass  # settle() found it before the lock was on
 
     def remove(self) -> None:
-        shutil.rmtree(self.path, ignore_errors=True)
+        _clear(self.path)
         self._close()
 
     def keep(self) -> None:
-        """It is the user's from now on."""
+        """What is in it is the user's from now on."""
         (self.path / MARK).unlink(missing_ok=True)
         self._close()
 
@@ -85,36 +70,83 @@ class LockedFolder:
             self._lock = -1
 
 
-def abandoned(parent: Path, name: str) -> Iterator[Path]:
-    """The folders of that name whose owner ended without saying what is to become of them."""
+def settle(parent: Path, name: str, keep: bool = False) -> None:
+    """Removes the folders of that name whose owner ended without saying what is to become of them,
+    or keeps them for the user."""
+    for folder in _folders(parent, name):
+        try:
+            lock = os.open(folder / MARK, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+        except FileNotFoundError:
+            _remove_empty(folder)  # its owner died right before it was marked, or after
+            continue
+        except OSError:
+            continue  # not ours
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if keep:
+                os.unlink(folder / MARK)
+            else:
+                _clear(folder)
+        except OSError:
+            pass  # its owner lives
+        finally:
+            os.close(lock)
+
+
+def _take(mark: Path) -> int:
+    """The mark's file with its lock on; -1 if the mark was removed in between. Raises
+    BlockingIOError: another process has it."""
+    lock = os.open(mark, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(lock)
+        raise
+    except OSError:
+        pass  # a file system without locks: such a folder stays
+    try:
+        if os.path.samestat(os.fstat(lock), os.lstat(mark)):
+            return lock
+    except OSError:
+        pass
+    os.close(lock)
+    return -1
+
+
+def _folders(parent: Path, name: str) -> Iterator[Path]:
+    """Our own ones: what a link leads to, or somebody else can exchange, is not cleared."""
     prefix = prefix_of(name)
     try:
-        entries = [entry.name for entry in os.scandir(parent) if entry.name.startswith(prefix)]
+        entries = [entry for entry in os.scandir(parent) if entry.name.startswith(prefix)]
     except OSError:
         return
     for entry in entries:
-        if _without_owner(parent / entry / MARK):
-            yield parent / entry
+        try:
+            ours = entry.stat(follow_symlinks=False).st_uid == os.geteuid()
+        except OSError:
+            continue
+        if ours and entry.is_dir(follow_symlinks=False):
+            if len(entry.name) == len(prefix) + _RANDOM:
+                yield Path(entry.path)
 
 
-def settle(parent: Path, name: str, keep: bool = False) -> None:
-    """Removes abandoned folders, or keeps them for the user."""
-    for folder in abandoned(parent, name):
-        if keep:
-            (folder / MARK).unlink(missing_ok=True)
-        else:
-            shutil.rmtree(folder, ignore_errors=True)
-
-
-def _without_owner(mark: Path) -> bool:
+def _clear(folder: Path) -> None:
+    """The mark goes last: whoever is killed on the way leaves a folder that settle() knows."""
     try:
-        file = os.open(mark, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+        for entry in os.scandir(folder):
+            if entry.is_dir(follow_symlinks=False):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            elif entry.name != MARK:
+                os.unlink(entry.path)
+        if os.listdir(folder) == [MARK]:
+            os.unlink(folder / MARK)
     except OSError:
-        return False  # none, or not ours
+        return
+    _remove_empty(folder)
+
+
+def _remove_empty(folder: Path) -> None:
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return True
+        os.rmdir(folder)
     except OSError:
-        return False
-    finally:
-        os.close(file)
+        pass  # something is in it
