@@ -8,7 +8,6 @@
 #include "approximate/whole.h"
 #include "build/glow.h"
 #include "measure/opacity.h"
-#include "measure/visible.h"
 
 #include <glm/common.hpp>
 
@@ -67,6 +66,17 @@ uint32_t samples_of(const Mesh& finest, bool environment, const Settings& settin
         settings.samples, std::max(kFewest, kOfTriangle * finest.triangles.size())));
 }
 
+std::vector<double> area_by_tag(const measure::Visible& visible, size_t tags) {
+    uint64_t all = 0;
+    for (const uint64_t hits : visible.hits_by_tag)
+        all += hits;
+    std::vector<double> out(tags, 0);
+    for (size_t tag = 0; all > 0 && tag < std::min(tags, visible.hits_by_tag.size()); ++tag)
+        out[tag] = visible.attributes.visible_area * static_cast<double>(visible.hits_by_tag[tag]) /
+                   static_cast<double>(all);
+    return out;
+}
+
 }  // namespace
 
 double counted_error(double error, bool environment, double size) {
@@ -92,14 +102,11 @@ Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::Tex
 
 void Judge::measure_finest(const Mesh& finest, const Job& job) {
     opacity_ = measure::mean_opacity(finest, *skin_, seed_);
-    measure::VisibleOptions options;
-    options.rays = rays_;
-    options.seed = seed_;
     // The reference was made with the same rays.
     cast_ = reference_.take_cast();
-    attributes_ =
-        measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast_, job)
-            .attributes;
+    attributes_ = measure::measure_visible(finest, reference_.sampler(), skin_,
+                                           visible_options(rays_), {}, cast_, job)
+                      .attributes;
     if (!environment_)
         patches_.emplace(finest, reference_.sampler(), *skin_, cast_, seed_);
 }
@@ -190,10 +197,8 @@ void Judge::measure_primitive(Candidate& candidate, const Job& job) {
 
 const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled, const Job& job) {
     if (sure_rays_ < rays) {
-        measure::VisibleOptions options;
-        options.rays = rays;
+        measure::VisibleOptions options = visible_options(rays);
         options.settled = settled;
-        options.seed = seed_;
         sure_ =
             measure::measure_visible(finest, reference_.sampler(), skin_, options, {}, cast_, job)
                 .attributes;
@@ -244,7 +249,7 @@ void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
 }
 
 void Judge::take_pictures_of(const Mesh& finest, int side, const Job& job) {
-    if (finest.triangles.size() == finest_scene().triangles())
+    if (is_whole(finest))
         pictures_.emplace(finest, finest_scene(), skin_, seed_, side, job);
     else
         pictures_.emplace(finest, skin_, seed_, side, job);
@@ -385,26 +390,28 @@ bool Judge::looks_alike(const Mesh& drawn, std::span<const Material> materials, 
     return std::abs(light - 1) <= kMostOff && kPictures * seen.error + child_error_ <= error;
 }
 
-std::vector<double> Judge::visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
-                                          size_t tags, const Job& job) const {
+measure::VisibleOptions Judge::visible_options(uint64_t rays) const {
     measure::VisibleOptions options;
-    options.rays = rays_;
+    options.rays = rays;
     options.seed = seed_;
-    // Of the finest they are cast already.
-    const measure::Visible visible =
-        mesh.triangles.size() == finest_scene().triangles()
-            ? measure::measure_visible(mesh, reference_.sampler(), skin_, options, by_triangle,
-                                       cast_, job)
-            : measure::measure_visible(mesh, ray::Scene(mesh, skin_), skin_, options, by_triangle,
-                                       job);
-    uint64_t all = 0;
-    for (const uint64_t hits : visible.hits_by_tag)
-        all += hits;
-    std::vector<double> out(tags, 0);
-    for (size_t tag = 0; all > 0 && tag < std::min(tags, visible.hits_by_tag.size()); ++tag)
-        out[tag] = visible.attributes.visible_area * static_cast<double>(visible.hits_by_tag[tag]) /
-                   static_cast<double>(all);
-    return out;
+    return options;
+}
+
+std::vector<double> Judge::visible_by_tag(const Mesh& finest, std::span<const uint32_t> by_triangle,
+                                          size_t tags, const Job& job) const {
+    if (!is_whole(finest))
+        return visible_by_tag_of_level(finest, by_triangle, tags, job);
+    return area_by_tag(measure::measure_visible(finest, reference_.sampler(), skin_,
+                                                visible_options(rays_), by_triangle, cast_, job),
+                       tags);
+}
+
+std::vector<double> Judge::visible_by_tag_of_level(const Mesh& level,
+                                                   std::span<const uint32_t> by_triangle,
+                                                   size_t tags, const Job& job) const {
+    return area_by_tag(measure::measure_visible(level, ray::Scene(level, skin_), skin_,
+                                                visible_options(rays_), by_triangle, job),
+                       tags);
 }
 
 double Judge::distance_for(double error) const {

@@ -8,6 +8,7 @@
 #include "measure/deviation.h"
 #include "measure/looks.h"
 #include "measure/patches.h"
+#include "measure/visible.h"
 
 #include <limits>
 #include <optional>
@@ -107,14 +108,24 @@ public:
     bool looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,
                      double error, const Job& job);
 
-    /// Visible area by tag (one a triangle, below `tags`) of a mesh in these materials.
-    std::vector<double> visible_by_tag(const Mesh& mesh, std::span<const uint32_t> by_triangle,
+    /// Visible area by tag (one a triangle, below `tags`) of the finest, all of it or what of it
+    /// can be seen.
+    std::vector<double> visible_by_tag(const Mesh& finest, std::span<const uint32_t> by_triangle,
                                        size_t tags, const Job& job) const;
+    /// Likewise of a level in the finest's materials.
+    std::vector<double> visible_by_tag_of_level(const Mesh& level,
+                                                std::span<const uint32_t> by_triangle, size_t tags,
+                                                const Job& job) const;
 
 private:
     bool shows_as_much(const Mesh& level, const ray::Scene& scene, const Job& job) const;
     void set_error(Candidate& candidate, const measure::Deviation& deviation) const;
     void take_pictures_of(const Mesh& finest, int side, const Job& job);
+    /// Whether what is called the finest is all of it, for which a scene is there.
+    bool is_whole(const Mesh& finest) const {
+        return finest.triangles.size() == finest_scene().triangles();
+    }
+    measure::VisibleOptions visible_options(uint64_t rays) const;
     /// Whether match_brightness() does anything to what is used so far.
     bool is_matched(double used_to) const;
     /// The finest's, by so many rays or more.

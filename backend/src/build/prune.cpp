@@ -141,8 +141,8 @@ public:
             std::vector<uint32_t> tags(level.triangles.size(), 0);
             for (size_t t = 0; t < crowd.kind_of.size(); ++t)
                 tags[t] = 1 + crowd.kind_of[t];
-            if (i == kCorrections ||
-                correct(growth, judge_.visible_by_tag(level, tags, 1 + growth.size(), job_))) {
+            if (i == kCorrections || correct(growth, judge_.visible_by_tag_of_level(
+                                                         level, tags, 1 + growth.size(), job_))) {
                 out.mesh = std::make_shared<Mesh>(std::move(level));
                 out.materials =
                     contrasted(materials_, crowd_, rest_slots_, visible_, crowd.variance);
