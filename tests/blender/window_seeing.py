@@ -101,8 +101,9 @@ def compare_fills_the_slots():
     with steps.window():
         assert bpy.ops.lodestone.compare("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
-    def compared():
-        return compare_plan.get("Scene") is not None and compare_plan.current() is None
+    def compared():  # Blender refuses to change anything until its job is over, a little later
+        ended = compare_plan.get("Scene") is not None and compare_plan.current() is None
+        return ended and not bpy.app.is_job_running("RENDER")
 
     yield from steps.wait_until(compared, 120.0)
     assert bpy.data.images["Render Result"].render_slots.active_index == 2
