@@ -34,6 +34,20 @@ TEST(Mesh, IndexOutOfRangeIsNamed) {
     }
 }
 
+TEST(Mesh, IndicesFarOutOfRangeAreFoundAtAnyCorner) {
+    for (const uint32_t index : {4u, 5u, 0x7fffffffu, 0x80000000u, 0x80000003u, 0xffffffffu}) {
+        for (int corner = 0; corner < 3; ++corner) {
+            Mesh mesh = shapes::quad(1, 1);
+            mesh.triangles[0][corner] = index;
+            EXPECT_THROW(check(mesh), Error) << index;
+        }
+    }
+    Mesh nothing;
+    EXPECT_NO_THROW(check(nothing));
+    nothing.triangles = {{0, 0, 0}};
+    EXPECT_THROW(check(nothing), Error);
+}
+
 TEST(Mesh, RepairDropsTrianglesWithNanVerticesAndSaysSo) {
     Mesh mesh = shapes::quad(1, 1);
     mesh.positions[1].x = std::numeric_limits<float>::quiet_NaN();

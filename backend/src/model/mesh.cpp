@@ -108,10 +108,13 @@ void check(const Mesh& mesh) {
     if (!mesh.slots.empty() && mesh.slots.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, mesh.slots.size(), " material slots for ",
              mesh.triangles.size(), " triangles");
-    Triangle highest(0);  // all of them first, without a branch
+    // All of them first, without a branch: an index beyond the last has the highest bit, or what is
+    // left of the last has.
+    const auto last = static_cast<uint32_t>(vertices) - 1;
+    Triangle beyond(0);
     for (const Triangle& t : mesh.triangles)
-        highest = glm::max(highest, t);
-    if (mesh.triangles.empty() || std::max({highest.x, highest.y, highest.z}) < vertices)
+        beyond |= t | (last - t);
+    if ((beyond.x | beyond.y | beyond.z) >> 31u == 0)
         return;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (int corner = 0; corner < 3; ++corner) {
