@@ -236,6 +236,33 @@ TEST(Cluster, WhatHasNoExtentOrIsAllSpecksIsNeverEmpty) {
     EXPECT_FALSE(cluster(line, 20).empty());
 }
 
+TEST(Cluster, TrianglesWithoutAreaGoWithTheirVertices) {
+    Mesh mesh = without_normals(grid(10));
+    mesh.slots.assign(mesh.triangles.size(), 1);
+    const auto add = [&](uint32_t corners, float away, float step, uint16_t slot) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (uint32_t i = 0; i < corners; ++i)
+            mesh.positions.emplace_back(away + step * static_cast<float>(i), 0, 0);
+        for (uint32_t i = 2; i < corners; ++i) {
+            mesh.triangles.emplace_back(first + i - 2, first + i - 1, first + i);
+            mesh.slots.push_back(slot);
+        }
+    };
+    add(50, 1.1f, 0.02f, 2);   // a line, whose triangles stay between cells of their own
+    add(400, 0.0f, 1e-7f, 3);  // all within one cell: nothing else needs to go
+    const Mesh level = cluster(mesh, 350);
+    expect_sound(level, mesh, 350);
+    EXPECT_GT(level.triangles.size(), 100u);
+    std::set<uint32_t> used;
+    for (size_t i = 0; i < level.triangles.size(); ++i) {
+        EXPECT_GT(glm::length(area_vector(level, i)), 0);
+        EXPECT_EQ(level.slots[i], 1);
+        for (int corner = 0; corner < 3; ++corner)
+            used.insert(level.triangles[i][corner]);
+    }
+    EXPECT_EQ(used.size(), level.positions.size());
+}
+
 TEST(Cluster, AnyIndicesAndScalesSurvive) {
     Random random(7);
     for (int round = 0; round < 60; ++round) {

@@ -70,20 +70,31 @@ private:
     ScratchVector<Entry> entries_;
 };
 
-Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group, size_t count) {
+Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group) {
     Grouped out;
     out.group = std::move(group);
-    out.triangles.reserve(count);
-    out.sources.reserve(count);
-    Once once(count);
-    for (size_t i = 0; i < cells.triangles.size(); ++i) {
+    out.triangles.resize(cells.triangles.size() + 1);
+    out.sources.resize(cells.triangles.size() + 1);
+    size_t count = 0;
+    for (size_t i = 0; i < cells.triangles.size(); ++i) {  // without a branch, as half of them go
         const Triangle& t = cells.triangles[i];
         const Triangle of(out.group[t.x], out.group[t.y], out.group[t.z]);
-        if (!differ(of) || !once.add(of))
-            continue;
-        out.triangles.push_back(of);
-        out.sources.push_back(cells.sources[i]);
+        out.triangles[count] = of;
+        out.sources[count] = cells.sources[i];
+        count += differ(of) ? 1 : 0;
     }
+    Once once(count);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const Triangle of = out.triangles[i];
+        if (!once.add(of))
+            continue;
+        out.triangles[kept] = of;
+        out.sources[kept] = out.sources[i];
+        ++kept;
+    }
+    out.triangles.resize(kept);
+    out.sources.resize(kept);
     return out;
 }
 
@@ -197,7 +208,9 @@ Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wa
         const uint32_t of = number[start.group[i]];
         group[i] = of == count ? count : merge.whole(of);
     }
-    return grouped(cells, std::move(group), triangles.size());
+    Grouped out = grouped(cells, std::move(group));
+    out.scattered = true;
+    return out;
 }
 
 }  // namespace
@@ -222,7 +235,7 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     size_t left = 0;
     if (plan.merges) {
         ScratchVector<uint32_t> group = joined(cells, tree, plan.begin * wanted, 0.9, count, left);
-        best = grouped(cells, std::move(group), count);
+        best = grouped(cells, std::move(group));
         return best.triangles.size() > target ? merged(cells, best, tree.nodes(), target, job)
                                               : best;
     }
@@ -231,7 +244,7 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     double too_many = 0;  // 0: none yet
     for (int i = 0; i < kGoals; ++i) {
         ScratchVector<uint32_t> group = joined(cells, tree, goal, kNear, count, left);
-        Grouped found = grouped(cells, std::move(group), count);
+        Grouped found = grouped(cells, std::move(group));
         const size_t kept = found.triangles.size();
         const bool within = kept <= target;
         if (best.triangles.empty() || (within && kept > best.triangles.size()))

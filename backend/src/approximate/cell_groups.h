@@ -11,6 +11,7 @@ struct Grouped {
     ScratchVector<uint32_t> group;      // of each cell
     ScratchVector<Triangle> triangles;  // of groups
     ScratchVector<uint32_t> sources;    // the mesh's triangle each was
+    bool scattered = false;             // otherwise cells of a group follow each other
 };
 
 /// How the work is shared: the tree leaves `begin` cells for each one wanted, merging across the

@@ -49,18 +49,18 @@ struct Key {
 
 /// The vertices along the curve; those of one code in their own order.
 template <typename Code>
-ScratchVector<Key<Code>> sorted(std::span<const CellVertex> vertices) {
+ScratchVector<Key<Code>> sorted(std::span<const glm::vec3> positions, const CellFrame& frame) {
     constexpr size_t kDigits = 3 * kAxisBits<Code> / kDigit;
     constexpr size_t kValues = size_t{1} << static_cast<unsigned>(kDigit);
-    ScratchVector<Key<Code>> keys(vertices.size());
+    ScratchVector<Key<Code>> keys(positions.size());
     std::array<std::array<uint32_t, kValues>, kDigits> starts{};
-    for (size_t i = 0; i < vertices.size(); ++i) {
-        const Code code = code_of<Code>(vertices[i].point, kAxisBits<Code>);
+    for (size_t i = 0; i < positions.size(); ++i) {
+        const Code code = code_of<Code>(frame(positions[i]), kAxisBits<Code>);
         keys[i] = {code, static_cast<uint32_t>(i)};
         for (size_t digit = 0; digit < kDigits; ++digit)
             ++starts[digit][code >> (digit * kDigit) & (kValues - 1)];
     }
-    ScratchVector<Key<Code>> other(vertices.size());
+    ScratchVector<Key<Code>> other(positions.size());
     for (size_t digit = 0; digit < kDigits; ++digit) {
         uint32_t sum = 0;
         for (uint32_t& start : starts[digit])
@@ -91,8 +91,9 @@ int spare_bits(const Each& each, int bits, size_t least) {
 
 /// Cells in the order of the curve, by sorting all vertices along it.
 template <typename Code>
-void number_sorted(Cells& cells, std::span<const CellVertex> vertices, size_t least) {
-    const ScratchVector<Key<Code>> keys = sorted<Code>(vertices);
+void number_sorted(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+                   size_t least) {
+    const ScratchVector<Key<Code>> keys = sorted<Code>(positions, frame);
     const auto each = [&](const auto& visit) {
         for (size_t i = 1; i < keys.size(); ++i)
             visit(keys[i].code, keys[i - 1].code);
@@ -151,14 +152,15 @@ private:
 };
 
 /// The same without sorting, for few cells. False: they are too many, or too near to each other.
-bool number_few(Cells& cells, std::span<const CellVertex> vertices, size_t least) {
+bool number_few(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+                size_t least) {
     // Surfaces go through at least the square of the steps a side.
     const int bits = static_cast<int>(std::bit_width(least) + 2) / 2;
-    if (bits > kAxisBits<uint32_t> || size_t{1} << (3 * bits) > 64 * vertices.size())
+    if (bits > kAxisBits<uint32_t> || size_t{1} << (3 * bits) > 64 * positions.size())
         return false;
     CodeSet fine(size_t{1} << (3 * bits));
-    for (size_t i = 0; i < vertices.size(); ++i) {
-        cells.cell[i] = code_of<uint32_t>(vertices[i].point, bits);
+    for (size_t i = 0; i < positions.size(); ++i) {
+        cells.cell[i] = code_of<uint32_t>(frame(positions[i]), bits);
         fine.add(cells.cell[i]);
     }
     const auto each = [&](const auto& visit) { fine.each_pair(visit); };
@@ -184,12 +186,13 @@ bool number_few(Cells& cells, std::span<const CellVertex> vertices, size_t least
 
 }  // namespace
 
-void number_cells(Cells& cells, std::span<const CellVertex> vertices, size_t least) {
-    cells.cell.resize(vertices.size());
-    if (vertices.size() > kManyPoints)
-        number_sorted<uint64_t>(cells, vertices, least);
-    else if (!number_few(cells, vertices, least))
-        number_sorted<uint32_t>(cells, vertices, least);
+void number_cells(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+                  size_t least) {
+    cells.cell.resize(positions.size());
+    if (positions.size() > kManyPoints)
+        number_sorted<uint64_t>(cells, positions, frame, least);
+    else if (!number_few(cells, positions, frame, least))
+        number_sorted<uint32_t>(cells, positions, frame, least);
 }
 
 }  // namespace lodestone::approximate

@@ -8,19 +8,24 @@
 
 namespace lodestone::approximate {
 
-/// A vertex and what the triangles around it add up to: a line of the processor's cache.
-struct alignas(64) CellVertex {
-    Four point;     // in the frame; not written to again, as the next triangle waits for it
-    Four planes_a;  // xx xy xz yy
-    Four planes_b;  // yz zz 0 0
-    Four open;      // from the first neighbor to the last: nothing where the fan closes
+/// From metres into the frame.
+class CellFrame {
+public:
+    /// `scale` is one through the unit.
+    CellFrame(const glm::vec3& low, double scale)
+        : half_low_(four(low) * 0.5f), twice_(static_cast<float>(2 * scale)) {}
+    /// By halves, as their differences are floats in any case; the last number is 0.
+    Four operator()(const glm::vec3& point) const {
+        return (four(point) * 0.5f - half_low_) * twice_;
+    }
 
-    /// Of its planes: twice the area around it.
-    float weight() const { return planes_a[0] + planes_a[3] + planes_b[1]; }
-    bool is_open() const { return dot_three(open, open) > 1e-4f * weight(); }
+private:
+    Four half_low_;
+    float twice_;
 };
 
-/// Sets `cell`, `split` and `step`; see divide(). Points are in the frame.
-void number_cells(Cells& cells, std::span<const CellVertex> vertices, size_t least);
+/// Sets `cell`, `split` and `step`; see divide(). Positions in metres.
+void number_cells(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+                  size_t least);
 
 }  // namespace lodestone::approximate

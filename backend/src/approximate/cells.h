@@ -7,6 +7,8 @@
 #include "base/scratch.h"
 #include "model/mesh.h"
 
+#include <span>
+
 namespace lodestone::approximate {
 
 constexpr uint32_t kNoCell = ~uint32_t{0};
@@ -27,8 +29,17 @@ struct Cells {
     glm::vec3 metres(const glm::vec3& p) const { return glm::vec3(glm::dvec3(p) * unit + low); }
 };
 
+/// Where points lie, in metres, if all are finite.
+struct Extent {
+    glm::vec3 low{0.0f}, high{0.0f};
+    bool finite = true;
+};
+
+Extent extent_of(std::span<const glm::vec3> points);
+
 /// At least `least` cells, if there are as many vertices and the grid can tell them apart: it has
-/// 2^10 steps a side, 2^20 for more than a million vertices. All vertices must be finite.
-Cells divide(const Mesh& mesh, size_t least, const Job& job);
+/// 2^10 steps a side, 2^20 for more than a million vertices. `extent` is that of the
+/// vertices, which must be finite.
+Cells divide(const Mesh& mesh, const Extent& extent, size_t least, const Job& job);
 
 }  // namespace lodestone::approximate

@@ -8,20 +8,18 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 
 namespace lodestone::approximate {
 namespace {
 
 // Cells of the fine grid for each one that the tree leaves: enough to choose from.
 constexpr double kCellsPerLeft = 1.6;
-// Bytes it takes in all, for each vertex and each triangle.
-constexpr size_t kScratch = 64;
+// Bytes it takes in all, for each vertex and each cell.
+constexpr size_t kVertexBytes = 40;
+constexpr size_t kCellBytes = 320;
 
-/// The triangles with finite corners; nothing when these are all.
-std::optional<Mesh> finite_part(const Mesh& mesh) {
-    if (all_finite(mesh.positions))
-        return {};
+/// The triangles with finite corners.
+Mesh finite_part(const Mesh& mesh) {
     std::vector<uint8_t> keep(mesh.triangles.size());
     for (size_t i = 0; i < keep.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
@@ -78,6 +76,31 @@ ScratchVector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const G
     return patch;
 }
 
+/// Cells of one group.
+class CellBlock {
+public:
+    explicit CellBlock(const CellQuadric& quadric)
+        : quadric_(quadric), low_(quadric.at), high_(quadric.at) {}
+    void add(const CellBlock& other) {
+        quadric_.add(other.quadric_);
+        low_ = least_of(low_, other.low_);
+        high_ = most_of(high_, other.high_);
+    }
+    /// The place of its vertex, in metres.
+    glm::vec3 point(const Cells& cells) const {
+        // Planes that hardly differ meet anywhere: not far from what they are planes of.
+        const glm::vec3 low = first_three(low_);
+        const glm::vec3 high = first_three(high_);
+        const glm::vec3 size = high - low;
+        const glm::vec3 room(0.25f * std::max({size.x, size.y, size.z}) + cells.step);
+        return cells.metres(glm::clamp(quadric_.lowest(), low - room, high + room));
+    }
+
+private:
+    CellQuadric quadric_;
+    Four low_, high_;  // of the cells' origins, in the frame
+};
+
 /// One vertex for each group that a triangle uses.
 struct Places {
     ScratchVector<uint32_t> of;       // a group's place; kNoCell where nothing uses it
@@ -90,38 +113,56 @@ Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
     places.of.assign(nodes, kNoCell);
     for (const Triangle& t : grouping.triangles)
         places.of[t.x] = places.of[t.y] = places.of[t.z] = kUsed;
-    struct Sum {
-        CellQuadric quadric;
-        Four low, high;  // of the cells' origins, in the frame
-    };
-    ScratchVector<Sum> sums;
-    sums.reserve(std::min(cells.count(), 2 * grouping.triangles.size()) + 1);
-    for (size_t i = 0; i < cells.count(); ++i) {
-        const CellQuadric& quadric = cells.quadrics[i];
-        uint32_t& place = places.of[grouping.group[i]];
-        if (place == kNoCell)
-            continue;
-        if (place == kUsed) {
-            place = static_cast<uint32_t>(sums.size());
-            sums.push_back({quadric, quadric.at, quadric.at});
+    ScratchVector<CellBlock> shared;  // of groups whose cells are not all beside each other
+    places.points.reserve(std::min(cells.count(), 3 * grouping.triangles.size()));
+    for (size_t i = 0; i < cells.count();) {
+        const uint32_t group = grouping.group[i];
+        uint32_t& place = places.of[group];
+        if (place == kNoCell) {
+            ++i;
             continue;
         }
-        Sum& sum = sums[place];
-        sum.quadric.add(quadric);
-        sum.low = least_of(sum.low, quadric.at);
-        sum.high = most_of(sum.high, quadric.at);
+        CellBlock block(cells.quadrics[i]);
+        for (++i; i < cells.count() && grouping.group[i] == group; ++i)
+            block.add(CellBlock(cells.quadrics[i]));
+        if (!grouping.scattered) {
+            place = static_cast<uint32_t>(places.points.size());
+            places.points.push_back(block.point(cells));
+        } else if (place == kUsed) {
+            place = static_cast<uint32_t>(shared.size());
+            shared.push_back(block);
+        } else {
+            shared[place].add(block);
+        }
     }
-    places.points.reserve(sums.size());
-    for (const Sum& sum : sums) {
-        // Planes that hardly differ meet anywhere: not far from what they are planes of.
-        const glm::vec3 low = first_three(sum.low);
-        const glm::vec3 high = first_three(sum.high);
-        const glm::vec3 size = high - low;
-        const glm::vec3 room(0.25f * std::max({size.x, size.y, size.z}) + cells.step);
-        const glm::vec3 point = sum.quadric.lowest();
-        places.points.push_back(cells.metres(glm::clamp(point, low - room, high + room)));
-    }
+    for (const CellBlock& block : shared)
+        places.points.push_back(block.point(cells));
     return places;
+}
+
+bool without_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return glm::cross(b - a, c - a) == glm::dvec3(0);
+}
+
+/// Every place is a vertex.
+Mesh plain(const Mesh& mesh, const Grouped& grouping, const Places& places) {
+    Mesh out;
+    out.positions.assign(places.points.begin(), places.points.end());
+    out.triangles.reserve(grouping.triangles.size());
+    std::vector<uint8_t> keep(grouping.triangles.size(), 1);
+    size_t kept = 0;
+    for (size_t i = 0; i < keep.size(); ++i) {
+        const Triangle& of = grouping.triangles[i];
+        const Triangle t(places.of[of.x], places.of[of.y], places.of[of.z]);
+        keep[i] = !without_area(out.positions[t.x], out.positions[t.y], out.positions[t.z]);
+        kept += keep[i];
+        out.triangles.push_back(t);
+        if (!mesh.slots.empty())
+            out.slots.push_back(mesh.slots[grouping.sources[i]]);
+    }
+    if (kept < keep.size())
+        out = subset(out, keep);
+    return out;
 }
 
 /// Vertices of the result, made from the surface around them.
@@ -129,27 +170,19 @@ class Assembly {
 public:
     Assembly(const Mesh& mesh, const Cells& cells, const Grouped& grouping, const Places& places)
         : mesh_(mesh) {
-        const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
-        ScratchVector<uint32_t> patch;
-        if (attributes)
-            patch = patches_of(mesh, cells, grouping);
-        ScratchVector<uint32_t> vertex_of(attributes ? patch.size() : places.points.size(),
-                                          kNoCell);
+        const ScratchVector<uint32_t> patch = patches_of(mesh, cells, grouping);
+        ScratchVector<uint32_t> vertex_of(patch.size(), kNoCell);
         out_.triangles.reserve(grouping.triangles.size());
-        if (!attributes)
-            out_.positions.reserve(places.points.size());
         for (size_t i = 0; i < grouping.triangles.size(); ++i) {
             const Triangle& groups = grouping.triangles[i];
             const Triangle& source = mesh.triangles[grouping.sources[i]];
-            const glm::dvec3 a(places.points[places.of[groups.x]]);
-            const glm::dvec3 b(places.points[places.of[groups.y]]);
-            const glm::dvec3 c(places.points[places.of[groups.z]]);
-            if (glm::cross(b - a, c - a) == glm::dvec3(0))
+            if (without_area(places.points[places.of[groups.x]], places.points[places.of[groups.y]],
+                             places.points[places.of[groups.z]]))
                 continue;  // draws nothing
             Triangle t;
             for (int k = 0; k < 3; ++k) {
                 const uint32_t place = places.of[groups[k]];
-                uint32_t& vertex = vertex_of[attributes ? patch[source[k]] : place];
+                uint32_t& vertex = vertex_of[patch[source[k]]];
                 if (vertex == kNoCell) {
                     vertex = static_cast<uint32_t>(out_.positions.size());
                     out_.positions.push_back(places.points[place]);
@@ -160,8 +193,7 @@ public:
             if (!mesh.slots.empty())
                 out_.slots.push_back(mesh.slots[grouping.sources[i]]);
         }
-        if (attributes)
-            take_attributes(patch, vertex_of);
+        take_attributes(patch, vertex_of);
         if (!mesh.normals.empty())
             mend_normals();
     }
@@ -245,12 +277,14 @@ Mesh cluster(const Mesh& mesh, size_t target, const Job& job) {
         fail(Status::InvalidArgument, "the target is 0 triangles");
     if (mesh.triangles.size() <= target)
         return mesh;
-    if (const std::optional<Mesh> part = finite_part(mesh))
-        return cluster(*part, target, job);
-    Scratch scratch(kScratch * (mesh.positions.size() + mesh.triangles.size()));
+    const Extent extent = extent_of(mesh.positions);
+    if (!extent.finite)
+        return cluster(finite_part(mesh), target, job);
     const GroupingPlan plan(mesh.triangles.size(), target);
-    const double least = kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target);
-    const Cells cells = divide(mesh, static_cast<size_t>(least) + 16, job);
+    const size_t least =
+        16 + static_cast<size_t>(kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target));
+    Scratch scratch(kVertexBytes * mesh.positions.size() + kCellBytes * least);
+    const Cells cells = divide(mesh, extent, least, job);
     Grouped grouping;
     if (cells.count() > 0)
         grouping = group_cells(cells, plan, target, job);
@@ -258,7 +292,9 @@ Mesh cluster(const Mesh& mesh, size_t target, const Job& job) {
     if (grouping.triangles.empty())  // no extent, or all of it in specks
         return largest(mesh, target);
     const Places places = places_of(cells, grouping, 2 * cells.count());
-    Mesh out = Assembly(mesh, cells, grouping, places).result();
+    const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
+    Mesh out = attributes ? Assembly(mesh, cells, grouping, places).result()
+                          : plain(mesh, grouping, places);
     if (out.empty())
         out = largest(mesh, target);
     if (out.triangles.size() > target)
