@@ -13,7 +13,7 @@ namespace lodestone::approximate {
 namespace {
 
 // Cells of the fine grid for each one that the tree leaves: enough to choose from.
-constexpr double kCellsPerLeft = 1.6;
+constexpr double kCellsPerLeft = 1.3;
 // Bytes it takes in all, for each vertex and each cell.
 constexpr size_t kVertexBytes = 40;
 constexpr size_t kCellBytes = 320;
