@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import json
 import math
 import sys
 import tempfile
@@ -69,6 +70,33 @@ class Bench(unittest.TestCase):
         found["mo018_sloppy", "a", 0.1] = result(2e-3, [0.1])
         said = bench.sloppy_sentence(found)
         self.assertIn("mean 0.50 (<= 0.6), CPU 2.000 / 2.000 / 2.000 (<= 1.3)", said)
+        self.assertNotIn("a process for each target (", said)
+        found[bench.ALONE, "a", 0.1] = result(2e-3, [0.16])
+        said = bench.sloppy_sentence(found)
+        self.assertIn("a process for each target (1 pairs): mean 0.50 (<= 0.6), CPU 1.250", said)
+        self.assertIn("one for all targets (1 pairs): mean 0.50 (<= 0.6), CPU 2.000", said)
+
+    def test_sloppy_gets_a_process_for_each_target_and_is_not_reused(self):
+        with tempfile.TemporaryDirectory() as name:
+            options = bench.options_of(["--folder", name])
+            runs = bench.Bench(options, Path(name))
+            told = '{"peer": "mo018_sloppy", "target": %s, "cpu": 0.1, "got": 7}'
+            with mock.patch.object(
+                bench, "run", side_effect=lambda command: told % command[3]
+            ) as process:
+                runs.run_sloppy_alone(Path("a.ply"))
+            self.assertEqual(process.call_count, len(bench.TARGETS))
+            self.assertEqual({one["peer"] for one in runs.found.values()}, {bench.ALONE})
+            self.assertEqual(
+                set(runs.found), {(bench.ALONE, "a", target) for target in bench.TARGETS}
+            )
+            file = Path(name, "earlier.json")
+            one = {"model": "a", "target": 0.5}
+            ones = [{"peer": bench.ALONE, **one}, {"peer": "mo018_sloppy", **one}]
+            file.write_text(json.dumps({"results": ones}), "utf-8")
+            runs.found.clear()
+            runs.reuse(file)
+        self.assertEqual(list(runs.found), [("mo018_sloppy", "a", 0.5)])
 
     def test_the_first_rounds_result_is_kept_with_all_rounds_seconds(self):
         with tempfile.TemporaryDirectory() as name:
