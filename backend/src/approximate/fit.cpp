@@ -16,8 +16,6 @@ constexpr size_t kFewSamples = 1000;
 constexpr size_t kSamplesToFlip = 3;
 /// Sweeps, times the square root of the original's triangles for each vertex.
 constexpr double kSweeps = 0.7;
-/// For each sweep beyond the least, samples that a closed part lies outside of count so much more.
-constexpr float kOutside = 0.1f;
 /// Parts of no more triangles, and of at least this closed_share(), are not moved.
 constexpr uint32_t kFewTriangles = 8;
 constexpr float kClosed = 0.99f;
@@ -127,7 +125,6 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         static_cast<double>(source.triangles.size()) / static_cast<double>(mesh.points.size());
     const int sweeps = std::clamp(static_cast<int>(std::lround(kSweeps * std::sqrt(coarse))),
                                   options.least_sweeps, options.most_sweeps);
-    const float outside = kOutside * static_cast<float>(sweeps - options.least_sweeps);
     const std::vector<float> closed = closed_share(mesh);
     const std::vector<bool> still = too_few(mesh, closed);
     FitSamples samples;
@@ -146,9 +143,9 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
         sample_outline(places, adjacency, job, samples);
         if (options.careful)
             weigh_by_distance(samples);
-        if (outside > 0)
-            weigh_outside(samples, mesh, closed, outside);
-        solve_fit(mesh, samples, options.iterations, moves);
+        if (options.outside > 0)
+            weigh_outside(samples, mesh, closed, options.outside);
+        solve_fit(mesh, samples, options.iterations, options.hold, moves);
         move(places, adjacency, moves, still);
     }
     // Nothing moves after it: what misses most then misses less.

@@ -16,16 +16,20 @@ struct FitOptions {
     int iterations = 3;  // of the solver in each sweep
     /// Flips edges before solving and draws back vertices that stick out. Takes many samples.
     bool careful = false;
+    /// Holds each vertex where it is, relative to the area of the samples near it. The more samples
+    /// and sweeps, the less it takes.
+    float hold = 0.1f;
+    /// Samples that a closed part lies outside of count so much more.
+    float outside = 0;
     /// Vertices that may be put back where it is farthest from the original. Takes many samples.
     size_t insert = 0;
 };
 
 /// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was
 /// opened from) to the surface they are nearest to, over all vertices together; those on open
-/// borders also to the outline's. Of closed parts what lies outside of the original counts more,
-/// the more sweeps the more; those of at most 8 triangles (bricks, boards) stay as they are. `mesh`
-/// must be compact and `adjacency` its own. No triangle turns over. A mesh with other poses is left
-/// as it is. source: Hoppe et al. 1993 (mesh optimization), with distances to planes.
+/// borders also to the outline's. Closed parts of at most 8 triangles (bricks, boards) stay as they
+/// are. `mesh` must be compact and `adjacency` its own. No triangle turns over. A mesh with other
+/// poses is left as it is. source: Hoppe et al. 1993 (mesh optimization), with distances to planes.
 void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const FitOptions& options,
          const Job& job);
 

@@ -88,8 +88,9 @@ void sample_outline(FitPlaces& places, const Adjacency& adjacency, const Job& jo
 void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples);
 
 /// How far each vertex of the mesh has to move (into `moves`) for the least sum of squared misses,
-/// by `iterations` of a damped block Jacobi. None moves further than its samples miss.
-void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations,
+/// by `iterations` of a damped block Jacobi; `hold`: see FitOptions. None moves further than its
+/// samples miss.
+void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations, float hold,
                std::vector<glm::vec3>& moves);
 
 }  // namespace lodestone::approximate

@@ -9,12 +9,10 @@ namespace {
 
 /// Of a step of block Jacobi: with three unknown vertices a row it converges below 2/3.
 constexpr float kDamping = 0.65f;
-/// Holds a vertex where it is, relative to the area of the samples near it.
-constexpr float kHold = 0.1f;
 
 }  // namespace
 
-void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations,
+void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations, float hold,
                std::vector<glm::vec3>& moves) {
     struct Matrix {
         float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
@@ -51,10 +49,10 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
             m = {};
             continue;
         }
-        const float hold = kHold * m.mass;
-        m.xx += hold;
-        m.yy += hold;
-        m.zz += hold;
+        const float held = hold * m.mass;
+        m.xx += held;
+        m.yy += held;
+        m.zz += held;
         const float cxx = m.yy * m.zz - m.yz * m.yz;
         const float cxy = m.xz * m.yz - m.xy * m.zz;
         const float cxz = m.xy * m.yz - m.xz * m.yy;

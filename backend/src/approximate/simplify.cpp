@@ -10,8 +10,8 @@
 namespace lodestone::approximate {
 namespace {
 
-constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false};
-constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true};
+constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false, 0.1f, 0};
+constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true, 0.02f, 0.6f};
 /// Mode best collapses this share of the triangles too many and puts them back where they are
 /// missed most: what is farthest off is a few spots.
 constexpr double kPutBack = 0.0025;
