@@ -4,6 +4,7 @@
 #pragma once
 
 #include "approximate/adjacency.h"
+#include "approximate/fit_nearest.h"
 
 #include <glm/geometric.hpp>
 
@@ -69,10 +70,6 @@ private:
     std::vector<uint32_t> first_;
     std::vector<uint32_t> order_;
 };
-
-/// Barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
-/// Real-Time Collision Detection, 5.1.5.
-glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 /// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is
 /// in `samples`; room for `more` after them.

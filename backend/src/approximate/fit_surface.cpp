@@ -11,12 +11,6 @@ namespace {
 constexpr size_t kMostAround = 32;
 constexpr int kMostSteps = 4;
 
-struct Place {
-    float square = 1e30f;
-    uint32_t triangle = kNone;
-    glm::vec3 weights{0.0f};
-};
-
 /// Triangles of the original that are sampled on one thread.
 constexpr size_t kChunk = 4096;
 constexpr size_t kAhead = 8;
@@ -42,7 +36,7 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
                           const glm::vec3& normal, float area, FitSample& sample) const {
     if (from == kNone)
         return;
-    Place best;
+    Spot best;
     uint32_t at = from;
     bool found = false;
     for (int step = 0; step < kMostSteps && !found; ++step) {
@@ -71,17 +65,11 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
         }
         if (found)
             break;
-        for (const uint32_t t : ring) {
+        const auto corners = [&](uint32_t t) {
             const Triangle& c = mesh_.triangles[t];
-            const glm::vec3 a = points_[c.x] - point;
-            const glm::vec3 b = points_[c.y] - point;
-            const glm::vec3 d = points_[c.z] - point;
-            const glm::vec3 weights = nearest_weights(a, b, d);
-            const glm::vec3 off = weights.x * a + weights.y * b + weights.z * d;
-            const float square = glm::dot(off, off);
-            if (square < best.square)
-                best = {square, t, weights};
-        }
+            return TrianglePoints{points_[c.x], points_[c.y], points_[c.z]};
+        };
+        look_on(ring, point, corners, best);
         if (best.triangle == kNone)
             return;
         const Triangle& c = mesh_.triangles[best.triangle];
@@ -171,40 +159,6 @@ SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
     for (uint32_t i = 0; i < samples.size(); ++i)
         order_[next[samples[i].triangle]++] = i;
-}
-
-glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const glm::vec3 ab = b - a;
-    const glm::vec3 ac = c - a;
-    const float d1 = -glm::dot(ab, a);
-    const float d2 = -glm::dot(ac, a);
-    if (d1 <= 0 && d2 <= 0)
-        return {1, 0, 0};
-    const float d3 = -glm::dot(ab, b);
-    const float d4 = -glm::dot(ac, b);
-    if (d3 >= 0 && d4 <= d3)
-        return {0, 1, 0};
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        const float t = d1 / (d1 - d3);
-        return {1 - t, t, 0};
-    }
-    const float d5 = -glm::dot(ab, c);
-    const float d6 = -glm::dot(ac, c);
-    if (d6 >= 0 && d5 <= d6)
-        return {0, 0, 1};
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        const float t = d2 / (d2 - d6);
-        return {1 - t, 0, t};
-    }
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const float t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {0, 1 - t, t};
-    }
-    const float sum = va + vb + vc;
-    return {va / sum, vb / sum, vc / sum};
 }
 
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,

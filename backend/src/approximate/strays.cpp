@@ -24,15 +24,6 @@ int nearest_corner(const glm::vec3& w) {
 
 }  // namespace
 
-Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point) {
-    const glm::vec3 a = corners[0] - point;
-    const glm::vec3 b = corners[1] - point;
-    const glm::vec3 d = corners[2] - point;
-    const glm::vec3 weights = nearest_weights(a, b, d);
-    const glm::vec3 off = weights.x * a + weights.y * b + weights.z * d;
-    return {glm::dot(off, off), 0, weights};
-}
-
 Strays::Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
                const Job& job)
     : places_(places),
@@ -49,12 +40,8 @@ Spot Strays::find(const glm::vec3& point, uint32_t from) const {
     Spot best;
     uint32_t at = from;
     for (int step = 0; step < kMostSearched; ++step) {
-        for (const uint32_t t : ring(at)) {
-            Spot spot = nearest_on(corners(t), point);
-            spot.triangle = t;
-            if (spot.square < best.square)
-                best = spot;
-        }
+        look_on(
+            ring(at), point, [&](uint32_t t) { return corners(t); }, best);
         if (best.triangle == kNone)
             return best;
         const glm::vec3& w = best.weights;
@@ -116,12 +103,9 @@ void Strays::look_from_original(const Job& job) {
 }
 
 Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
-    const auto look = [&](uint32_t t) {
-        Spot spot = nearest_on(original(t), point);
-        spot.triangle = t;
-        return spot;
-    };
-    Spot best = look(from);
+    const auto corners_of = [&](uint32_t t) { return original(t); };
+    Spot best = nearest_on(original(from), point);
+    best.triangle = from;
     for (int step = 0; step < kMostWalked; ++step) {
         const float before = best.square;
         const glm::vec3& w = best.weights;
@@ -129,11 +113,8 @@ Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
         const uint32_t hub = welded(places_.source().triangles[best.triangle][corner]);
         const size_t last =
             std::min<size_t>(source_first_[hub + 1], source_first_[hub] + kMostRing);
-        for (size_t i = source_first_[hub]; i < last; ++i) {
-            const Spot spot = look(source_order_[i]);
-            if (spot.square < best.square)
-                best = spot;
-        }
+        look_on({source_order_.data() + source_first_[hub], source_order_.data() + last}, point,
+                corners_of, best);
         if (!(best.square < before))
             break;
     }

@@ -4,21 +4,7 @@
 
 #include "approximate/fit_sample.h"
 
-#include <array>
-
 namespace lodestone::approximate {
-
-using TrianglePoints = std::array<glm::vec3, 3>;
-
-/// A place on a triangle.
-struct Spot {
-    float square = 1e30f;  // of the distance
-    uint32_t triangle = kNone;
-    glm::vec3 weights{0.0f};
-};
-
-/// The place of a triangle nearest to a point.
-Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point);
 
 /// A place of the mesh that is too far from the original, or that the original is too far from.
 struct Stray {
