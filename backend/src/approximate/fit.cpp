@@ -129,10 +129,11 @@ void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const Fit
     const std::vector<bool> still = too_few(mesh, closed);
     FitSamples samples;
     std::vector<glm::vec3> moves;
+    std::vector<uint32_t> nearest;  // triangles, of the samples
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         const size_t more = 2 * mesh.outline.size() + (options.careful ? mesh.points.size() : 0);
         sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kFewSamples), more,
-                       job, samples);
+                       job, samples, &nearest);
         const bool dense = samples.size() >= kSamplesToFlip * mesh.triangles.size();
         // The last sweep only moves: what was flipped then fits, too.
         if (options.careful && dense && sweep + 1 < sweeps &&

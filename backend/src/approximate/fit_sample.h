@@ -72,9 +72,11 @@ private:
 };
 
 /// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is
-/// in `samples`; room for `more` after them.
+/// in `samples`; room for `more` after them. `nearest`, where given, keeps the triangles that they
+/// are nearest to from one call to the next of the same mesh: a sample that is still above or below
+/// its triangle is not looked for.
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
-                    const Job& job, FitSamples& samples);
+                    const Job& job, FitSamples& samples, std::vector<uint32_t>* nearest = nullptr);
 
 /// Appends samples of the edges that were open borders at first, and the borders nearest to them.
 void sample_outline(FitPlaces& places, const Adjacency& adjacency, const Job& job,

@@ -19,12 +19,16 @@ class SurfaceSampler {
 public:
     SurfaceSampler(const FitPlaces& places, const Adjacency& adjacency)
         : places_(places), mesh_(places.mesh()), adjacency_(adjacency), points_(places.points()) {}
-    /// Into two samples; of those that are none the triangle is kNone.
-    void sample(uint32_t source, int corner, FitSample* samples) const;
+    /// Into two samples; of those that are none the triangle is kNone. `nearest`: triangles that
+    /// they may lie above, or kNone.
+    void sample(uint32_t source, int corner, const uint32_t* nearest, FitSample* samples) const;
 
 private:
     void take(uint32_t source, const glm::vec3& point, uint32_t from, const glm::vec3& normal,
-              float area, FitSample& sample) const;
+              float area, uint32_t nearest, FitSample& sample) const;
+    /// The point lies above or below that triangle, turned as that is.
+    bool above(const glm::vec3& point, const glm::vec3& normal, uint32_t triangle,
+               Spot& spot) const;
 
     const FitPlaces& places_;
     const CollapseMesh& mesh_;
@@ -32,36 +36,43 @@ private:
     const std::vector<glm::vec3>& points_;
 };
 
+bool SurfaceSampler::above(const glm::vec3& point, const glm::vec3& normal, uint32_t triangle,
+                           Spot& spot) const {
+    const Triangle& c = mesh_.triangles[triangle];
+    const glm::vec3& facet = mesh_.facets[triangle];
+    const float agree = glm::dot(facet, normal);
+    if (!(agree > 0 && agree * agree > 0.25f * glm::dot(facet, facet)))
+        return false;
+    const glm::vec3 a = points_[c.x] - point;
+    const glm::vec3 b = points_[c.y] - point;
+    const glm::vec3 d = points_[c.z] - point;
+    const float x = glm::dot(facet, glm::cross(b, d));
+    const float y = glm::dot(facet, glm::cross(d, a));
+    const float z = glm::dot(facet, glm::cross(a, b));
+    const float sum = x + y + z;
+    if (!(x >= 0 && y >= 0 && z >= 0 && sum > 0))
+        return false;
+    const float scale = 1 / sum;
+    spot = {0, triangle, glm::vec3(x * scale, y * scale, z * scale)};
+    return true;
+}
+
 void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from,
-                          const glm::vec3& normal, float area, FitSample& sample) const {
+                          const glm::vec3& normal, float area, uint32_t nearest,
+                          FitSample& sample) const {
     if (from == kNone)
         return;
     Spot best;
     uint32_t at = from;
-    bool found = false;
+    bool found = nearest != kNone && above(point, normal, nearest, best);
     for (int step = 0; step < kMostSteps && !found; ++step) {
         const std::span<const uint32_t> whole = adjacency_.around(at);
         const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostAround));
         // Mostly it lies above one of them.
         for (const uint32_t t : ring) {
-            const Triangle& c = mesh_.triangles[t];
-            const glm::vec3& facet = mesh_.facets[t];
-            const float agree = glm::dot(facet, normal);
-            if (!(agree > 0 && agree * agree > 0.25f * glm::dot(facet, facet)))
-                continue;
-            const glm::vec3 a = points_[c.x] - point;
-            const glm::vec3 b = points_[c.y] - point;
-            const glm::vec3 d = points_[c.z] - point;
-            const float x = glm::dot(facet, glm::cross(b, d));
-            const float y = glm::dot(facet, glm::cross(d, a));
-            const float z = glm::dot(facet, glm::cross(a, b));
-            const float sum = x + y + z;
-            if (!(x >= 0 && y >= 0 && z >= 0 && sum > 0))
-                continue;
-            const float scale = 1 / sum;
-            best = {0, t, glm::vec3(x * scale, y * scale, z * scale)};
-            found = true;
-            break;
+            found = above(point, normal, t, best);
+            if (found)
+                break;
         }
         if (found)
             break;
@@ -99,7 +110,8 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
               toward,        miss,   area};
 }
 
-void SurfaceSampler::sample(uint32_t source, int corner, FitSample* samples) const {
+void SurfaceSampler::sample(uint32_t source, int corner, const uint32_t* nearest,
+                            FitSample* samples) const {
     samples[0].triangle = samples[1].triangle = kNone;
     const Triangle& t = places_.source().triangles[source];
     const uint32_t from = places_.place(t.x);
@@ -112,9 +124,10 @@ void SurfaceSampler::sample(uint32_t source, int corner, FitSample* samples) con
     const float area = glm::length(facet);
     if (!(area > 0))
         return;
-    take(source, (a + b + c) * (1.0f / 3), from, facet / area, 0.75f * area, samples[0]);
+    take(source, (a + b + c) * (1.0f / 3), from, facet / area, 0.75f * area, nearest[0],
+         samples[0]);
     take(source, corner == 0 ? a : (corner == 1 ? b : c), places_.place(t[corner]), facet / area,
-         0.25f * area, samples[1]);
+         0.25f * area, nearest[1], samples[1]);
 }
 
 }  // namespace
@@ -162,7 +175,7 @@ SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles
 }
 
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
-                    const Job& job, FitSamples& samples) {
+                    const Job& job, FitSamples& samples, std::vector<uint32_t>* nearest) {
     // Vertices and middles in turn, as many as wanted, spread evenly.
     const size_t count = places.source().triangles.size();
     const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
@@ -171,6 +184,9 @@ void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t 
     samples.clear();
     samples.reserve(2 * steps + more);
     samples.resize(2 * steps);
+    std::vector<uint32_t> unknown;
+    std::vector<uint32_t>& triangles = nearest != nullptr ? *nearest : unknown;
+    triangles.resize(samples.size(), kNone);
     parallel_for((steps + kChunk - 1) / kChunk, [&](size_t chunk) {
         job.check();
         const auto nth = [&](size_t n) {
@@ -181,7 +197,10 @@ void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t 
             const Triangle& coming = places.source().triangles[nth(n + kAhead)];
             for (const uint32_t vertex : {coming.x, coming.y, coming.z})
                 places.expect(vertex);
-            sampler.sample(static_cast<uint32_t>(nth(n)), static_cast<int>(n % 3), &samples[2 * n]);
+            sampler.sample(static_cast<uint32_t>(nth(n)), static_cast<int>(n % 3),
+                           &triangles[2 * n], &samples[2 * n]);
+            triangles[2 * n] = samples[2 * n].triangle;
+            triangles[2 * n + 1] = samples[2 * n + 1].triangle;
         }
     });
     const auto none = [](const FitSample& sample) { return sample.triangle == kNone; };
