@@ -83,12 +83,12 @@ private:
 };
 
 /// Mean square difference between the normals of samples and those blended from the corners'.
-float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const uint32_t> on,
+float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const PlacedSample> on,
              const Mesh& source) {
     float sum = 0;
     float area = 0;
-    for (const uint32_t i : on) {
-        const FitSample& s = samples[i];
+    for (const PlacedSample& placed : on) {
+        const FitSample& s = samples[placed.index];
         const glm::vec3 normal = normal_at(source, s);
         const glm::vec3 blend =
             s.weights[0] * corners[0] + s.weights[1] * corners[1] + s.weights[2] * corners[2];
@@ -102,7 +102,7 @@ float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<cons
 
 /// Into `corners`; leaves them where the wedges' normals do.
 bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
-                std::span<const uint32_t> on, const Mesh& source, glm::vec3* corners) {
+                std::span<const PlacedSample> on, const Mesh& source, glm::vec3* corners) {
     if (on.size() < kSamplesToShade)
         return false;
     const Triangle& wedges = mesh.wedges[triangle];
@@ -112,10 +112,11 @@ bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& s
     if (!(before > kLeastOff))
         return false;
     TriangleShading shading;
-    for (const uint32_t i : on) {
-        const glm::vec3 normal = normal_at(source, samples[i]);
+    for (const PlacedSample& placed : on) {
+        const FitSample& sample = samples[placed.index];
+        const glm::vec3 normal = normal_at(source, sample);
         if (shaded(normal))
-            shading.add(samples[i], normal);
+            shading.add(sample, normal);
     }
     glm::vec3 found[3];
     if (shading.count() < kSamplesToShade || !shading.solve(found) ||
@@ -172,7 +173,7 @@ std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
     sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kLeastSources), 0, job,
                    samples);
     const size_t count = mesh.triangles.size();
-    const SamplesByTriangle by_triangle(samples, count);
+    const SamplesByTriangle by_triangle(places, samples);
     std::vector<glm::vec3> normals(3 * count, glm::vec3(0.0f));
     std::atomic<bool> any{false};
     parallel_for((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](size_t chunk) {

@@ -58,17 +58,27 @@ private:
     std::vector<glm::vec3> points_;
 };
 
-/// Which samples lie on each triangle.
+/// Where a sample of the original's surface is, which it is, and what of it who looks at many
+/// needs.
+struct PlacedSample {
+    glm::vec3 place;
+    uint32_t index;
+    uint32_t source;
+    float miss;
+    float area;
+};
+
+/// Which samples of the original's surface lie on each triangle.
 class SamplesByTriangle {
 public:
-    SamplesByTriangle(const FitSamples& samples, size_t triangles);
-    std::span<const uint32_t> on(uint32_t triangle) const {
+    SamplesByTriangle(const FitPlaces& places, const FitSamples& samples);
+    std::span<const PlacedSample> on(uint32_t triangle) const {
         return {order_.data() + first_[triangle], order_.data() + first_[triangle + 1]};
     }
 
 private:
     std::vector<uint32_t> first_;
-    std::vector<uint32_t> order_;
+    std::vector<PlacedSample> order_;
 };
 
 /// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is

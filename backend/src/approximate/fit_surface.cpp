@@ -162,16 +162,26 @@ void FitPlaces::add(uint32_t vertex, uint32_t original) {
         mesh_.merged[original] = id;
 }
 
-SamplesByTriangle::SamplesByTriangle(const FitSamples& samples, size_t triangles) {
-    first_.assign(triangles + 1, 0);
+SamplesByTriangle::SamplesByTriangle(const FitPlaces& places, const FitSamples& samples) {
+    const std::vector<Triangle>& triangles = places.mesh().triangles;
+    const std::vector<glm::vec3>& points = places.points();
+    first_.assign(triangles.size() + 1, 0);
     for (const FitSample& sample : samples)
-        ++first_[sample.triangle + 1];
+        first_[sample.triangle + 1] += sample.source != kNone;
     for (size_t t = 1; t < first_.size(); ++t)
         first_[t] += first_[t - 1];
-    order_.resize(samples.size());
+    order_.resize(first_.back());
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
-    for (uint32_t i = 0; i < samples.size(); ++i)
-        order_[next[samples[i].triangle]++] = i;
+    for (uint32_t i = 0; i < samples.size(); ++i) {
+        const FitSample& sample = samples[i];
+        if (sample.source == kNone)
+            continue;
+        const Triangle& c = triangles[sample.triangle];
+        order_[next[sample.triangle]++] = {
+            sample.weights[0] * points[c.x] + sample.weights[1] * points[c.y] +
+                sample.weights[2] * points[c.z] + sample.miss * sample.toward,
+            i, sample.source, sample.miss, sample.area};
+    }
 }
 
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,

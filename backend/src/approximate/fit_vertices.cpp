@@ -26,7 +26,7 @@ void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& 
     const CollapseMesh& mesh = places.mesh();
     const Mesh& source = places.source();
     const std::vector<glm::vec3>& points = places.points();
-    const SamplesByTriangle by_triangle(samples, mesh.triangles.size());
+    const SamplesByTriangle by_triangle(places, samples);
     for (uint32_t v = 0; v < points.size(); ++v) {
         const std::span<const uint32_t> whole = adjacency.around(v);
         const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostAround));
@@ -35,14 +35,8 @@ void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& 
         float squares = 0;
         size_t count = 0;
         for (const uint32_t t : ring) {
-            const Triangle& c = mesh.triangles[t];
-            for (const uint32_t index : by_triangle.on(t)) {
-                const FitSample& sample = samples[index];
-                if (sample.source == kNone)
-                    continue;
-                const glm::vec3 off =
-                    sample.weights[0] * points[c.x] + sample.weights[1] * points[c.y] +
-                    sample.weights[2] * points[c.z] + sample.miss * sample.toward - points[v];
+            for (const PlacedSample& sample : by_triangle.on(t)) {
+                const glm::vec3 off = sample.place - points[v];
                 area += sample.area;
                 squares += sample.area * sample.miss * sample.miss;
                 ++count;

@@ -51,7 +51,6 @@ private:
     glm::vec3 facet(uint32_t u, uint32_t v, uint32_t w) const {
         return 0.5f * glm::cross(points_[v] - points_[u], points_[w] - points_[u]);
     }
-    glm::vec3 place_of(const FitSample& sample) const;
     /// True on the side of triangle (d, b, c) of the plane through c and d.
     struct Cut {
         glm::vec3 from, normal;
@@ -74,20 +73,19 @@ Flipper::Flipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samp
       adjacency_(adjacency),
       points_(places.points()),
       samples_(samples),
-      by_triangle_(samples, places.mesh().triangles.size()) {
+      by_triangle_(places, samples) {
     const Mesh& source = places.source();
     normals_.resize(samples.size());
     for (size_t i = 0; i < samples.size(); ++i) {
+        // Two of each triangle.
+        if (i > 0 && samples[i].source == samples[i - 1].source) {
+            normals_[i] = normals_[i - 1];
+            continue;
+        }
         const Triangle& t = source.triangles[samples[i].source];
         const glm::vec3 a = places.original(t.x);
         normals_[i] = unit(glm::cross(places.original(t.y) - a, places.original(t.z) - a));
     }
-}
-
-glm::vec3 Flipper::place_of(const FitSample& sample) const {
-    const Triangle& t = mesh_.triangles[sample.triangle];
-    return sample.weights[0] * points_[t.x] + sample.weights[1] * points_[t.y] +
-           sample.weights[2] * points_[t.z] + sample.miss * sample.toward;
 }
 
 bool Flipper::find_quad(uint32_t triangle, int corner, Quad& quad) const {
@@ -197,10 +195,9 @@ float Flipper::gain_of(const Quad& q) const {
     float new_most = 0;
     for (int side = 0; side < 2; ++side) {
         const uint32_t t = side == 0 ? q.t0 : q.t1;
-        for (const uint32_t index : by_triangle_.on(t)) {
-            const FitSample& sample = samples_[index];
-            const glm::vec3& normal = normals_[index];
-            const glm::vec3 point = place_of(sample);
+        for (const PlacedSample& sample : by_triangle_.on(t)) {
+            const glm::vec3& point = sample.place;
+            const glm::vec3& normal = normals_[sample.index];
             const int now = cut.second(point) ? 1 : 0;
             const float miss = glm::dot(point - points_[q.c], is[now]);
             old_most = std::max(old_most, std::abs(sample.miss));
@@ -217,12 +214,6 @@ float Flipper::gain_of(const Quad& q) const {
 void Flipper::apply(const Quad& q) {
     const Facets before{mesh_.facets[q.t0], mesh_.facets[q.t1]};
     const Cut cut = cut_of(q, before);
-    // Where the samples are, before the triangles change.
-    std::vector<std::pair<uint32_t, glm::vec3>> moved;
-    for (const uint32_t t : {q.t0, q.t1}) {
-        for (const uint32_t index : by_triangle_.on(t))
-            moved.emplace_back(index, place_of(samples_[index]));
-    }
     if (!mesh_.wedges.empty()) {
         Triangle& w0 = mesh_.wedges[q.t0];
         Triangle& w1 = mesh_.wedges[q.t1];
@@ -237,8 +228,9 @@ void Flipper::apply(const Quad& q) {
     mesh_.triangles[q.t1] = Triangle(q.d, q.b, q.c);
     for (const uint32_t t : {q.t0, q.t1})
         mesh_.facets[t] = glm::vec3(mesh_.facet_of(mesh_.triangles[t]));
-    for (const auto& [index, point] : moved) {
-        FitSample& sample = samples_[index];
+    const auto move = [&](const PlacedSample& placed) {
+        const glm::vec3& point = placed.place;
+        FitSample& sample = samples_[placed.index];
         sample.triangle = cut.second(point) ? q.t1 : q.t0;
         const Triangle& t = mesh_.triangles[sample.triangle];
         const glm::vec3 weights =
@@ -251,7 +243,9 @@ void Flipper::apply(const Quad& q) {
         if (!std::isfinite(sample.miss + weights.x + weights.y + weights.z))
             sample.area = sample.miss = sample.weights[0] = sample.weights[1] = sample.weights[2] =
                 0;
-    }
+    };
+    for (const uint32_t t : {q.t0, q.t1})
+        std::ranges::for_each(by_triangle_.on(t), move);
 }
 
 size_t Flipper::flip(const Job& job) {

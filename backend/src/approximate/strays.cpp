@@ -15,6 +15,7 @@ constexpr int kMostWalked = 8;
 constexpr size_t kMostStarts = 8;
 constexpr size_t kSearched = 4096;  // vertices looked at on one thread
 constexpr size_t kLooked = 1024;    // triangles
+constexpr size_t kAhead = 8;        // of them, memory is asked for what they need
 /// A square distance that other ways find to be less than this times as large was none.
 constexpr float kConfirmed = 0.25f;
 
@@ -30,8 +31,7 @@ Strays::Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSam
       mesh_(places.mesh()),
       adjacency_(adjacency),
       points_(places.points()),
-      samples_(samples),
-      by_triangle_(samples, places.mesh().triangles.size()) {
+      by_triangle_(places, samples) {
     find_rings();
     look_from_original(job);
 }
@@ -126,35 +126,28 @@ Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
 void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
                   std::span<const uint32_t> hubs, float least, Stray& worst) const {
     const float enough = std::max(least, worst.square);
-    const std::span<const uint32_t> own = by_triangle_.on(triangle);
-    for (const uint32_t index : own.first(std::min(own.size(), kMostStarts))) {
-        const uint32_t source = samples_[index].source;
-        if (source != kNone && nearest_on(original(source), place).square < enough)
+    const std::span<const PlacedSample> own = by_triangle_.on(triangle);
+    for (const PlacedSample& sample : own.first(std::min(own.size(), kMostStarts))) {
+        if (nearest_on(original(sample.source), place).square < enough)
             return;
     }
     float nearest = 1e30f;
-    uint32_t from = kNone;
+    const PlacedSample* from = nullptr;
     for (const uint32_t hub : hubs) {
         for (const uint32_t t : ring(hub)) {
-            const TrianglePoints c = corners(t);
-            for (const uint32_t index : by_triangle_.on(t)) {
-                const FitSample& sample = samples_[index];
-                if (sample.source == kNone)
-                    continue;
-                const glm::vec3 off = sample.weights[0] * c[0] + sample.weights[1] * c[1] +
-                                      sample.weights[2] * c[2] + sample.miss * sample.toward -
-                                      place;
+            for (const PlacedSample& sample : by_triangle_.on(t)) {
+                const glm::vec3 off = sample.place - place;
                 const float square = glm::dot(off, off);
                 if (square < nearest) {
                     nearest = square;
-                    from = sample.source;
+                    from = &sample;
                 }
             }
         }
     }
-    if (from == kNone)
+    if (from == nullptr)
         return;
-    const Spot spot = walk(place, from);
+    const Spot spot = walk(place, from->source);
     if (!(spot.square > worst.square))
         return;
     const TrianglePoints c = original(spot.triangle);
@@ -170,6 +163,9 @@ void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job
         const size_t last = std::min(count, (chunk + 1) * kLooked);
         for (size_t i = chunk * kLooked; i < last; ++i) {
             const auto t = static_cast<uint32_t>(i);
+            const auto coming = static_cast<uint32_t>(std::min(i + kAhead, count - 1));
+            if (const auto samples = by_triangle_.on(coming); !samples.empty())
+                __builtin_prefetch(&places_.source().triangles[samples.front().source]);
             const Triangle& c = mesh_.triangles[t];
             const TrianglePoints at = corners(t);
             Stray& worst = worst_of[t];
@@ -203,11 +199,9 @@ void Strays::confirm_from_mesh(Stray& stray) const {
         if (!known(hubs[k]))
             continue;
         for (const uint32_t t : ring(hubs[k])) {
-            const std::span<const uint32_t> on_it = by_triangle_.on(t);
-            for (const uint32_t index : on_it.first(std::min(on_it.size(), kMostStarts))) {
-                if (samples_[index].source == kNone)
-                    continue;
-                const Spot spot = walk(place, samples_[index].source);
+            const std::span<const PlacedSample> on_it = by_triangle_.on(t);
+            for (const PlacedSample& sample : on_it.first(std::min(on_it.size(), kMostStarts))) {
+                const Spot spot = walk(place, sample.source);
                 if (!(spot.square < stray.square))
                     continue;
                 const TrianglePoints c = original(spot.triangle);

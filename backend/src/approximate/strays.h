@@ -71,7 +71,6 @@ private:
     const CollapseMesh& mesh_;
     const Adjacency& adjacency_;
     const std::vector<glm::vec3>& points_;
-    const FitSamples& samples_;
     SamplesByTriangle by_triangle_;
     std::vector<std::pair<float, uint32_t>>
         nearest_;                         // of the original's vertices: square, triangle
