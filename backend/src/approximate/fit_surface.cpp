@@ -202,11 +202,19 @@ void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t 
         const auto nth = [&](size_t n) {
             return std::min(static_cast<size_t>(step * static_cast<double>(n)), count - 1);
         };
-        for (size_t n = chunk * kChunk; n < std::min(steps, (chunk + 1) * kChunk); ++n) {
+        const size_t end = std::min(steps, (chunk + 1) * kChunk);
+        for (size_t n = chunk * kChunk; n < end; ++n) {
             // Scans are in no order: what comes is asked for some triangles ahead.
-            const Triangle& coming = places.source().triangles[nth(n + kAhead)];
+            const size_t ahead = std::min(n + kAhead, end - 1);
+            const Triangle& coming = places.source().triangles[nth(ahead)];
             for (const uint32_t vertex : {coming.x, coming.y, coming.z})
                 places.expect(vertex);
+            for (const uint32_t t : {triangles[2 * ahead], triangles[2 * ahead + 1]}) {
+                if (t != kNone) {
+                    __builtin_prefetch(&places.mesh().triangles[t]);
+                    __builtin_prefetch(&places.mesh().facets[t]);
+                }
+            }
             sampler.sample(static_cast<uint32_t>(nth(n)), static_cast<int>(n % 3),
                            &triangles[2 * n], &samples[2 * n]);
             triangles[2 * n] = samples[2 * n].triangle;

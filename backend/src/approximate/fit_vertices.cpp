@@ -15,10 +15,38 @@ constexpr float kFar = 2;
 constexpr float kTypical = 4;
 constexpr size_t kMostAround = 32;
 
+/// Vertices looked at before the original is asked for what is nearest to them: it lies anywhere.
+constexpr size_t kAtOnce = 64;
+
+/// Of a vertex: the triangle of the original that the nearest sample on the ring is of, how many
+/// these samples are, and sums of their areas and squared misses.
 struct Nearest {
-    float square = 1e30f;
+    uint32_t vertex = kNone;
     uint32_t source = kNone;
+    float square = 1e30f;
+    float area = 0;
+    float squares = 0;
+    size_t count = 0;
 };
+
+Nearest nearest_to(uint32_t vertex, const glm::vec3& point, std::span<const uint32_t> ring,
+                   const SamplesByTriangle& by_triangle) {
+    Nearest nearest{vertex};
+    for (const uint32_t t : ring) {
+        for (const PlacedSample& sample : by_triangle.on(t)) {
+            const glm::vec3 off = sample.place - point;
+            nearest.area += sample.area;
+            nearest.squares += sample.area * sample.miss * sample.miss;
+            ++nearest.count;
+            const float square = glm::dot(off, off);
+            if (square < nearest.square) {
+                nearest.square = square;
+                nearest.source = sample.source;
+            }
+        }
+    }
+    return nearest;
+}
 
 }  // namespace
 
@@ -27,26 +55,8 @@ void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& 
     const Mesh& source = places.source();
     const std::vector<glm::vec3>& points = places.points();
     const SamplesByTriangle by_triangle(places, samples);
-    for (uint32_t v = 0; v < points.size(); ++v) {
-        const std::span<const uint32_t> whole = adjacency.around(v);
-        const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostAround));
-        Nearest nearest;
-        float area = 0;
-        float squares = 0;
-        size_t count = 0;
-        for (const uint32_t t : ring) {
-            for (const PlacedSample& sample : by_triangle.on(t)) {
-                const glm::vec3 off = sample.place - points[v];
-                area += sample.area;
-                squares += sample.area * sample.miss * sample.miss;
-                ++count;
-                const float square = glm::dot(off, off);
-                if (square < nearest.square)
-                    nearest = {square, sample.source};
-            }
-        }
-        if (nearest.source == kNone)
-            continue;
+    const auto append = [&](const Nearest& nearest) {
+        const uint32_t v = nearest.vertex;
         const Triangle& t = source.triangles[nearest.source];
         const glm::vec3 a = places.original(t.x) - points[v];
         const glm::vec3 b = places.original(t.y) - points[v];
@@ -57,25 +67,41 @@ void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& 
         const glm::vec3 facet = glm::cross(b - a, c - a);
         const float twice = glm::length(facet);
         if (!(distance > 0) || !(twice > 0))
-            continue;
-        const float spacing = std::sqrt(area / static_cast<float>(count));
+            return;
+        const float spacing = std::sqrt(nearest.area / static_cast<float>(nearest.count));
         const bool far = distance > kFar * spacing;
         // Beside the triangle another one, of which there is no sample, may be nearer.
         if (!far && !(weights.x > 0 && weights.y > 0 && weights.z > 0))
-            continue;
+            return;
         const glm::vec3 toward = far ? off / distance : facet / twice;
-        const uint32_t triangle = ring.front();
+        const uint32_t triangle = adjacency.around(v).front();
         const Triangle& corners = mesh.triangles[triangle];
-        const float share = kWeight * area / static_cast<float>(3);
+        const float share = kWeight * nearest.area / static_cast<float>(3);
         const float miss = glm::dot(toward, off);
-        const float least = kTypical * std::sqrt(squares / area);
+        const float least = kTypical * std::sqrt(nearest.squares / nearest.area);
         if (!(std::abs(miss) > least))
-            continue;
+            return;
         FitSample sample{triangle, kNone, {0, 0, 0}, toward, miss > 0 ? miss - least : miss + least,
                          share};
         sample.weights[corners.x == v ? 0 : (corners.y == v ? 1 : 2)] = 1;
         if (std::isfinite(sample.miss + share + toward.x + toward.y + toward.z))
             samples.push_back(sample);
+    };
+    std::vector<Nearest> some;
+    some.reserve(kAtOnce);
+    for (size_t first = 0; first < points.size(); first += kAtOnce) {
+        some.clear();
+        for (size_t v = first; v < std::min(points.size(), first + kAtOnce); ++v) {
+            const auto vertex = static_cast<uint32_t>(v);
+            const std::span<const uint32_t> whole = adjacency.around(vertex);
+            const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostAround));
+            const Nearest nearest = nearest_to(vertex, points[v], ring, by_triangle);
+            if (nearest.source == kNone)
+                continue;
+            __builtin_prefetch(&source.triangles[nearest.source]);
+            some.push_back(nearest);
+        }
+        std::for_each(some.begin(), some.end(), append);
     }
 }
 
