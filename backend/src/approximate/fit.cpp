@@ -51,20 +51,24 @@ std::vector<bool> too_few(const CollapseMesh& mesh, const std::vector<float>& cl
 /// distance, not to its square: least squares of reweighted samples. What fits already is then not
 /// moved for the sake of what cannot fit. source: Huber 1964 (robust estimation).
 void weigh_by_distance(FitSamples& samples) {
-    double misses[2] = {0, 0};
-    double areas[2] = {0, 0};
-    for (const FitSample& s : samples) {
-        misses[s.source == kNone] += double{s.area} * std::abs(s.miss);
-        areas[s.source == kNone] += s.area;
-    }
-    float means[2] = {0, 0};
-    for (int kind = 0; kind < 2; ++kind)
-        means[kind] = areas[kind] > 0 ? static_cast<float>(misses[kind] / areas[kind]) : 0;
-    for (FitSample& s : samples) {
-        const float mean = means[s.source == kNone];
-        if (std::abs(s.miss) > mean)
-            s.area *= mean / std::abs(s.miss);
-    }
+    const auto outline = std::find_if(samples.begin(), samples.end(), [](const FitSample& s) {
+        return s.source == kNone;  // which come last
+    });
+    const auto weigh = [](std::span<FitSample> kind) {
+        double misses = 0;
+        double areas = 0;
+        for (const FitSample& s : kind) {
+            misses += double{s.area} * std::abs(s.miss);
+            areas += s.area;
+        }
+        const float mean = areas > 0 ? static_cast<float>(misses / areas) : 0;
+        for (FitSample& s : kind) {
+            if (std::abs(s.miss) > mean)
+                s.area *= mean / std::abs(s.miss);
+        }
+    };
+    weigh({samples.begin(), outline});
+    weigh({outline, samples.end()});
 }
 
 /// What lies outside of the original shows in silhouettes, what lies inside does not.
