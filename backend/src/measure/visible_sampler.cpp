@@ -61,13 +61,22 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
     if (inertia_.empty())
         return;
     sides_ = sides_of(mesh, scene);
-    area_up_to_.resize(mesh.triangles.size());
-    for (size_t i = 0; i < area_up_to_.size(); ++i) {
-        const double part = (sides_.both(i) ? 1 : 0.5) * glm::length(area_vector(mesh, i));
-        possible_area_ += part > 0 && std::isfinite(part) ? part : 0;
-        area_up_to_[i] = possible_area_;
+    std::vector<double> up_to(mesh.triangles.size());
+    std::vector<double> covered_up_to(scene.see_through() ? up_to.size() : 0);
+    double covered = 0;
+    for (size_t i = 0; i < up_to.size(); ++i) {
+        double part = (sides_.both(i) ? 1 : 0.5) * glm::length(area_vector(mesh, i));
+        part = part > 0 && std::isfinite(part) ? part : 0;
+        possible_area_ += part;
+        up_to[i] = possible_area_;
+        if (covered_up_to.empty())
+            continue;
+        covered += part * scene.even_alpha(static_cast<uint32_t>(i)).value_or(1);
+        covered_up_to[i] = covered;
     }
-    find_steps();
+    sides_area_ = Draw(std::move(up_to));
+    if (covered > 0 && covered < possible_area_)
+        covers_.emplace(std::move(covered_up_to));
     const std::vector<glm::dvec3> points = used_points(mesh);
     lift_ = ray_lift(radius_around(points));
     from_surface_ = casting != Casting::FromBound;
@@ -76,7 +85,7 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
     Pilot surface;
     if (casting == Casting::Best) {
         surface = pilot(seed);
-        shows_all_ = sides_.hides_nothing && surface.hits == kPilotRays;
+        shows_all_ = sides_.hides_nothing && !covers_ && surface.hits == kPilotRays;
         if (surface.hits + kFewMisses >= kPilotRays)
             return;  // lines could hardly be surer
     }
@@ -90,16 +99,31 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
     }
 }
 
-void VisibleSampler::find_steps() {
-    const size_t count = area_up_to_.size();
+VisibleSampler::Draw::Draw(std::vector<double> area_up_to) : up_to_(std::move(area_up_to)) {
+    const size_t count = up_to_.size();
     steps_.assign(count + 1, static_cast<std::ptrdiff_t>(count));
     size_t i = 0;
     for (size_t step = 0; step < count; ++step) {
         const double up_to = static_cast<double>(step) / static_cast<double>(count);
-        while (i < count && area_up_to_[i] <= up_to * area_up_to_.back())
+        while (i < count && up_to_[i] <= up_to * up_to_.back())
             ++i;
         steps_[step] = static_cast<std::ptrdiff_t>(i);
     }
+}
+
+size_t VisibleSampler::Draw::at(double share, double& rest) const {
+    const double target = share * up_to_.back();
+    // Only near the step that it lies in: a step more on both sides, as rounding may have it.
+    const size_t last = steps_.size() - 1;
+    const auto step = static_cast<size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(last));
+    auto found = std::upper_bound(up_to_.begin() + steps_[std::max<size_t>(step, 1) - 1],
+                                  up_to_.begin() + steps_[std::min(step + 2, last)], target);
+    if (found == up_to_.end())
+        found = std::lower_bound(up_to_.begin(), up_to_.end(), up_to_.back());
+    const auto index = static_cast<size_t>(found - up_to_.begin());
+    const double before = index == 0 ? 0 : up_to_[index - 1];
+    rest = std::clamp((target - before) / (up_to_[index] - before), 0.0, 1.0);
+    return index;
 }
 
 VisibleSampler::Pilot VisibleSampler::pilot(uint64_t seed) {
@@ -134,7 +158,7 @@ bool VisibleSampler::is_surface_better(const Pilot& surface, const Pilot& line,
 
 bool VisibleSampler::hits(const std::array<double, 4>& u) const {
     if (from_surface_)
-        return sees_out(on_surface(u), u);
+        return sees_out(drawn(starts(), u), u);
     const Ray line = bound_.enter(u);
     return scene_->occluded(line.origin, line.direction);
 }
@@ -143,7 +167,7 @@ int VisibleSampler::cast(const std::array<double, 4>& u,
                          std::array<VisiblePoint, 2>& points) const {
     if (!from_surface_)
         return cast_line(u, points);
-    points[0] = on_surface(u);
+    points[0] = drawn(starts(), u);
     return sees_out(points[0], u) ? 1 : 0;
 }
 
@@ -165,17 +189,12 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
 }
 
 VisiblePoint VisibleSampler::on_surface(const std::array<double, 4>& u) const {
-    const double target = u[0] * area_up_to_.back();
-    // Only near the step that it lies in: a step more on both sides, as rounding may have it.
-    const size_t last = steps_.size() - 1;
-    const auto step = static_cast<size_t>(std::clamp(u[0], 0.0, 1.0) * static_cast<double>(last));
-    auto found = std::upper_bound(area_up_to_.begin() + steps_[std::max<size_t>(step, 1) - 1],
-                                  area_up_to_.begin() + steps_[std::min(step + 2, last)], target);
-    if (found == area_up_to_.end())
-        found = std::lower_bound(area_up_to_.begin(), area_up_to_.end(), area_up_to_.back());
-    const auto index = static_cast<size_t>(found - area_up_to_.begin());
-    const double before = index == 0 ? 0 : area_up_to_[index - 1];
-    const double rest = std::clamp((target - before) / (area_up_to_[index] - before), 0.0, 1.0);
+    return drawn(sides_area_, u);
+}
+
+VisiblePoint VisibleSampler::drawn(const Draw& from, const std::array<double, 4>& u) const {
+    double rest = 0;
+    const size_t index = from.at(u[0], rest);
     glm::dvec3 normal = glm::normalize(area_vector(*mesh_, index));
     double across = u[1];
     if (sides_.of[index] == Side::Both) {
@@ -195,7 +214,9 @@ VisiblePoint VisibleSampler::on_surface(const std::array<double, 4>& u) const {
 }
 
 bool VisibleSampler::sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const {
-    return scene_->stops(from.triangle, from.u, from.v) &&
+    // What is drawn as often as it covers is there.
+    return ((covers_ && scene_->even_alpha(from.triangle)) ||
+            scene_->stops(from.triangle, from.u, from.v)) &&
            !scene_->occluded(from.point + lift_ * from.seen_from,
                              cosine_direction(from.seen_from, u[2], u[3])) &&
            (!sides_.may_coincide || is_first(from));

@@ -8,6 +8,9 @@
 #include "measure/surface_inertia.h"
 #include "ray/scene.h"
 
+#include <optional>
+#include <vector>
+
 namespace lodestone::measure {
 
 /// A point of the mesh that a ray from outside hit.
@@ -32,8 +35,9 @@ enum class Casting : uint8_t { Best, FromBound, FromSurface };
 /// Draws visible points by one of two kinds of rays: lines that cross a tight convex bound (dense
 /// things: a book), or rays that leave the surface (sparse things: a flock). Where surfaces of
 /// several triangles lie in one place and face the same way, the first of these triangles has the
-/// points. What a ray finds depends on its four numbers alone. The mesh and the scene must outlive
-/// the sampler. Const methods may be called from any thread.
+/// points. Rays leave what is as clear everywhere as often as it covers what is behind it, and
+/// count fully. What a ray finds depends on its four numbers alone. The mesh and the scene must
+/// outlive the sampler. Const methods may be called from any thread.
 class VisibleSampler {
 public:
     /// `scene` must hold `mesh`, else Error(InvalidArgument). The better casting is chosen for an
@@ -47,7 +51,7 @@ public:
     /// transparent counts.
     double possible_area() const { return possible_area_; }
     /// Visible area (4.6) = reference_area() * rays that hit / rays cast.
-    double reference_area() const { return from_surface_ ? possible_area_ : bound_.area(); }
+    double reference_area() const { return from_surface_ ? starts().area() : bound_.area(); }
     /// Whether rays leave the surface: then a ray that hits has one point, else mostly two.
     bool from_surface() const { return from_surface_; }
     /// Whether nothing hides anything, so that all of possible_area() is visible.
@@ -72,6 +76,23 @@ public:
     VisiblePoint on_surface(uint32_t ray) const { return on_surface(numbers_.point(ray)); }
 
 private:
+    /// Triangles, drawn in proportion to what each has of some area.
+    class Draw {
+    public:
+        Draw() = default;
+        explicit Draw(std::vector<double> area_up_to);
+        double area() const { return up_to_.empty() ? 0 : up_to_.back(); }
+        /// The triangle at that share of all area; `rest`: how far in it, 0...1.
+        size_t at(double share, double& rest) const;
+
+    private:
+        std::vector<double> up_to_;          // area of each triangle and all before
+        std::vector<std::ptrdiff_t> steps_;  // the triangle at even steps of that area
+    };
+
+    /// What rays from the surface leave.
+    const Draw& starts() const { return covers_ ? *covers_ : sides_area_; }
+    VisiblePoint drawn(const Draw& from, const std::array<double, 4>& u) const;
     int cast_line(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
     bool sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const;
     bool is_first(const VisiblePoint& point) const;
@@ -88,7 +109,6 @@ private:
         /// How many rays make the estimate as sure as that, about.
         double rays_for(double relative_error) const;
     };
-    void find_steps();
     Pilot pilot(uint64_t seed);
     static bool is_surface_better(const Pilot& surface, const Pilot& line, double relative_error);
 
@@ -99,8 +119,8 @@ private:
     double possible_area_ = 0;
     double lift_ = 0;
     ConvexBound bound_;
-    std::vector<double> area_up_to_;     // sides that could be seen of each triangle and all before
-    std::vector<std::ptrdiff_t> steps_;  // the triangle at even steps of that area
+    Draw sides_area_;             // sides that could be seen
+    std::optional<Draw> covers_;  // the same times the alpha, where some of it is clear
     bool from_surface_ = false;
     bool shows_all_ = false;
     uint64_t pilot_rays_ = 0;

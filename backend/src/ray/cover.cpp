@@ -41,4 +41,8 @@ bool Cover::shows(uint32_t triangle, double u, double v) const {
                         v + kInside * (1.0 / 3 - v)) >= kLeastShown;
 }
 
+std::optional<double> Cover::even_alpha(uint32_t triangle) const {
+    return skin_->even_alpha(mesh_, mesh_.slot(triangle));
+}
+
 }  // namespace lodestone::ray

@@ -4,6 +4,8 @@
 
 #include "ray/skin.h"
 
+#include <optional>
+
 namespace lodestone::ray {
 
 /// Keeps of the mesh what it needs. Any thread.
@@ -11,9 +13,10 @@ class Cover {
 public:
     Cover(const Mesh& mesh, SkinPtr skin);
 
-    /// As Scene::stops and Scene::shows.
+    /// As the Scene's.
     bool stops(uint32_t triangle, double u, double v) const;
     bool shows(uint32_t triangle, double u, double v) const;
+    std::optional<double> even_alpha(uint32_t triangle) const;
 
 private:
     Mesh mesh_;  // without positions

@@ -145,6 +145,10 @@ bool Scene::shows(uint32_t triangle, double u, double v) const {
     return !data_->cover || data_->cover->shows(triangle, u, v);
 }
 
+std::optional<double> Scene::even_alpha(uint32_t triangle) const {
+    return data_->cover ? data_->cover->even_alpha(triangle) : 1;
+}
+
 Hit Scene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
     const Data& data = *data_;
     Hit out;

@@ -8,6 +8,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -83,6 +84,8 @@ public:
     bool stops(uint32_t triangle, double u, double v) const;
     /// Whether there is anything to see at all.
     bool shows(uint32_t triangle, double u, double v) const;
+    /// How often stops() is true, where that is as often at all points of the triangle.
+    std::optional<double> even_alpha(uint32_t triangle) const;
 
     /// The nearest hit with 0 <= t <= far, from either side. Direction need not have unit length;
     /// a zero or non-finite one hits nothing. An origin may be arbitrarily far away.

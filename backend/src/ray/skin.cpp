@@ -97,6 +97,13 @@ struct Skin::Slot {
         return own || (other && other->sees_through(colors));
     }
 
+    /// Whether points of one triangle may have different alphas.
+    bool alpha_varies(bool uvs, bool colors) const {
+        const bool own = material.alpha_mode != AlphaMode::Opaque &&
+                         ((uvs && alpha) || (colors && material.vertex_colors));
+        return own || (other && ((uvs && mix) || other->alpha_varies(uvs, colors)));
+    }
+
     double mixed(const std::optional<glm::dvec2>& uv) const {
         return share(uv && mix ? mix.number(*uv) : material.mix);
     }
@@ -228,6 +235,16 @@ double Skin::alpha(const Mesh& mesh, uint32_t triangle, double u, double v) cons
         return 1;
     const Place place(mesh, triangle, u, v);
     return own.alpha_at(place.uv, place.tint);
+}
+
+std::optional<double> Skin::even_alpha(const Mesh& mesh, uint16_t index) const {
+    const Slot& own = slot(index);
+    const bool colors = !mesh.colors.empty();
+    if (!own.sees_through(colors))
+        return 1;
+    if (own.alpha_varies(!mesh.uvs.empty(), colors))
+        return std::nullopt;
+    return own.alpha_at(std::nullopt, glm::dvec4(1));
 }
 
 double Skin::opacity(const Mesh& mesh, uint32_t triangle, double u, double v) const {

@@ -7,6 +7,7 @@
 #include "model/mesh.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace lodestone::ray {
@@ -46,6 +47,8 @@ public:
     Shown at(const Mesh& mesh, uint32_t triangle, double u, double v) const;
     /// 0...1: how much of what is behind the point is covered by it.
     double alpha(const Mesh& mesh, uint32_t triangle, double u, double v) const;
+    /// The alpha of all points of the slot's triangles, where they have the same.
+    std::optional<double> even_alpha(const Mesh& mesh, uint16_t slot) const;
     /// Of alpha, what is not transmitted.
     double opacity(const Mesh& mesh, uint32_t triangle, double u, double v) const;
     /// Whether any of its materials transmits anything.
