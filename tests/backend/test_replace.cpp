@@ -404,6 +404,25 @@ TEST(Replace, SparseGroupsAreClearShellsOfTheirExtentAndOpaqueAsThereIsToSee) {
     EXPECT_FALSE(fit_clear_box(faint, bound_of(flock.positions)));
 }
 
+TEST(Replace, ClearShellSettlesByItsOpacity) {
+    Attributes rough;
+    rough.visible_area = 1;
+    rough.moments = glm::dmat3(1.0);
+    Attributes sure = rough;
+    sure.visible_area = 1.02;
+    sure.centroid = {0.1, 0, 0};
+    const approximate::Clear clear{{{1, 2, 3}, glm::dmat3(1.0), {1, 2, 3}}, 0.5};
+    const approximate::Clear now = approximate::settled(clear, rough, sure);
+    EXPECT_NEAR(now.opacity, 0.51, 1e-12);
+    EXPECT_NEAR(glm::length(now.primitive.center - glm::dvec3(1.1, 2, 3)), 0, 1e-12);
+    EXPECT_EQ(now.primitive.half_size, clear.primitive.half_size);
+    // A solid has nothing but its size.
+    EXPECT_NEAR(approximate::settled(clear.primitive, rough, sure).half_size.x, std::sqrt(1.02),
+                1e-12);
+    // Nobody knows better by what sees nothing.
+    EXPECT_EQ(approximate::settled(clear, rough, Attributes{}).opacity, 0.5);
+}
+
 TEST(Replace, FourthMomentTellsBoxesFromBalls) {
     EXPECT_TRUE(boxlike(by_rays(shapes::box({-1, -2, -3}, {1, 2, 3}), 2048, 1)));
     EXPECT_TRUE(boxlike(by_rays(shapes::cube(), 2048, 1)));

@@ -293,14 +293,20 @@ std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bou
     return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
 }
 
-Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure,
-                  bool clear) {
+Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure) {
     if (rough.empty() || sure.empty())
         return primitive;
     primitive.center += sure.centroid - rough.centroid;
-    if (!clear)
-        primitive.half_size *= std::sqrt(sure.visible_area / rough.visible_area);
+    primitive.half_size *= std::sqrt(sure.visible_area / rough.visible_area);
     return primitive;
+}
+
+Clear settled(Clear clear, const Attributes& rough, const Attributes& sure) {
+    if (rough.empty() || sure.empty())
+        return clear;
+    clear.primitive.center += sure.centroid - rough.centroid;
+    clear.opacity = std::min(1.0, clear.opacity * sure.visible_area / rough.visible_area);
+    return clear;
 }
 
 std::optional<Clear> shell_box(const Attributes& attributes) {

@@ -40,12 +40,18 @@ struct Clear {
 std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
 std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
 
-/// Many rays that settle a solid end when the last half of them changed no more (VisibleOptions).
+/// Many rays settle a solid: so many times those that it was fitted by, or fewer, when the last
+/// half of them changed no more (VisibleOptions). 4,096 rays know the centroid of the reference
+/// shapes to .32 % of the radius of gyration, 32,768 to .07 %; what is mostly air needs twice as
+/// many, all of them.
+inline constexpr uint64_t kRaysOfSolid = 8;
 inline constexpr double kSettled = 0.0008;
+inline constexpr uint64_t kRaysOfClear = 16;
 
 /// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved
-/// with the centroid, scaled with the area unless it is `clear`.
-Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure, bool clear);
+/// with the centroid, and scaled with the area; or, if it is clear, more or less opaque with it.
+Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure);
+Clear settled(Clear clear, const Attributes& rough, const Attributes& sure);
 
 /// A clear primitive whatever it covers: opacity may be more than 1, where no shell is dense
 /// enough. Nothing where there is no extent to match.

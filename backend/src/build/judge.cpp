@@ -208,9 +208,8 @@ const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled,
 }
 
 void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job) {
-    // 4,096 rays know the centroid of the reference shapes to .32 % of the radius of gyration,
-    // 32,768 to .07 %; of solids that hide each other to .3 and .1 %, 262,144 to .04 %.
-    constexpr uint64_t kMoreRays = 8;
+    // Solids that hide each other: 32,768 rays know their centroid to .1 % of the radius of
+    // gyration, 262,144 to .04 %.
     constexpr uint32_t kRaysOfMany = 262144;
     constexpr uint64_t kSeedOfMany = 1;
     constexpr double kStands = 1e-9;  // over the size
@@ -236,8 +235,19 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     const bool clear = candidate.materials[0].alpha_mode == AlphaMode::Blend;
     Primitive& primitive = candidate.primitive;
     const bool stands = approximate::reach_of(primitive, box).low <= floor + kStands * size_;
-    primitive = approximate::settled(
-        primitive, attributes_, sure(finest, kMoreRays * rays_, approximate::kSettled, job), clear);
+    if (clear) {
+        Material& material = candidate.materials[0];
+        const double through = 1 - material.alpha;
+        const auto now =
+            approximate::settled(approximate::Clear{primitive, 1 - through * through}, attributes_,
+                                 sure(finest, approximate::kRaysOfClear * rays_, 0, job));
+        primitive = now.primitive;
+        material.alpha = approximate::surface_alpha(now.opacity);
+    } else {
+        primitive = approximate::settled(
+            primitive, attributes_,
+            sure(finest, approximate::kRaysOfSolid * rays_, approximate::kSettled, job));
+    }
     const double low = approximate::reach_of(primitive, box).low;
     if (stands || low < floor)
         primitive.center.z += floor - low;
