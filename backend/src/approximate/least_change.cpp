@@ -12,11 +12,11 @@
 namespace lodestone::approximate {
 namespace {
 
-constexpr size_t kNumbers = 10;    // area, three of the centroid, six of the variances
+constexpr size_t kNumbers = Experience::kNumbers;
 constexpr size_t kUnknowns = 6;    // of a solid: a move, logarithms of three stretches
 constexpr double kMostMove = 0.5;  // radii of gyration
 constexpr double kMostStretch = 0.4;
-using Row = std::array<double, kNumbers>;
+using Row = Experience::Row;
 
 double trace_of(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
@@ -132,7 +132,47 @@ std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<
     return right;
 }
 
+/// The unknowns of all solids, moves in metres.
+std::vector<double> places_of(const Composite& composite) {
+    std::vector<double> out;
+    for (const Solid& solid : composite.solids) {
+        for (int axis = 0; axis < 3; ++axis)
+            out.push_back(solid.primitive.center[axis]);
+        for (int axis = 0; axis < 3; ++axis)
+            out.push_back(std::log(solid.primitive.half_size[axis]));
+    }
+    return out;
+}
+
 }  // namespace
+
+void Experience::learn(const std::vector<double>& at, double unit,
+                       const std::vector<double>& weight, const Row& missing) {
+    constexpr double kLeast = 1e-16;  // of a step that tells anything
+    corrections_.resize(at.size(), Row{});
+    if (effect_.size() == at.size()) {
+        std::vector<double> moved(at.size(), 0);
+        double square = 0;
+        Row surprise{};
+        for (size_t row = 0; row < kNumbers; ++row)
+            surprise[row] = missing_[row] - missing[row];
+        for (size_t i = 0; i < at.size(); ++i) {
+            moved[i] = (at[i] - at_[i]) / (i % kUnknowns < 3 ? unit : 1);
+            square += weight[i] > 0 ? moved[i] * moved[i] / weight[i] : 0;
+            for (size_t row = 0; row < kNumbers; ++row)
+                surprise[row] -= moved[i] * effect_[i][row];
+        }
+        for (size_t i = 0; square > kLeast && std::isfinite(square) && i < at.size(); ++i) {
+            if (!(weight[i] > 0))
+                continue;
+            for (size_t row = 0; row < kNumbers; ++row)
+                corrections_[i][row] += moved[i] / weight[i] / square * surprise[row];
+        }
+    }
+    at_ = at;
+    missing_ = missing;
+    effect_.clear();
+}
 
 Missing missing_of(const measure::SurfaceInertia& now, const Attributes& wanted, bool size) {
     const glm::dmat3 should = wanted.moments / wanted.visible_area;
@@ -149,7 +189,7 @@ Missing missing_of(const measure::SurfaceInertia& now, const Attributes& wanted,
 
 void make_up(Composite& composite, const measure::SurfaceInertia& now,
              const std::vector<measure::SurfaceInertia>& each, const Missing& missing, bool size,
-             double floor) {
+             double floor, Experience* experience) {
     const size_t solids = composite.solids.size();
     const Effects effects(now, size);
     const double mean = now.area / static_cast<double>(solids);
@@ -178,6 +218,15 @@ void make_up(Composite& composite, const measure::SurfaceInertia& now,
             weight[move] = weight[move + 3] = own;
         }
     }
+    const Row wanted = numbers_of(missing);
+    if (experience != nullptr) {
+        experience->learn(places_of(composite), effects.gyration(), weight, wanted);
+        for (size_t unknown = 0; unknown < effect.size(); ++unknown) {
+            for (size_t row = 0; row < kNumbers; ++row)
+                effect[unknown][row] += experience->corrections()[unknown][row];
+        }
+        experience->expect(effect);
+    }
     std::vector<size_t> standing;  // solids that are kept on the floor
     std::vector<double> step(effect.size(), 0);
     const auto sinks = [&](size_t solid, size_t unknown) {
@@ -186,7 +235,6 @@ void make_up(Composite& composite, const measure::SurfaceInertia& now,
             return unknown == 2 ? 1.0 : 0.0;
         return -feet[solid].sinks[static_cast<int>(unknown) - 3] / effects.gyration();
     };
-    const Row wanted = numbers_of(missing);
     for (size_t round = 0; round <= solids; ++round) {
         const size_t count = kNumbers + standing.size();
         const auto entry = [&](size_t row, size_t unknown) {

@@ -40,6 +40,8 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
     constexpr double kFew = 1.0 / 8;
     constexpr double kAll = 1;
     constexpr int kLast = 3;
+    constexpr int kMost = 8;  // where it is far off: solids that stand and hide much of each other
+    const Miss far{0.01, 0.003, 0.005};
     const Miss rough{0.004, 0.004, 0.004};
     const Miss exact{0.001, 0.0005, 0.001};
     // Plates around a closed body have no size that gives both its area and its variances: after so
@@ -59,7 +61,9 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
     int last = 0;  // rounds with all rays
     bool size = true;
     std::vector<measure::SurfaceInertia> each;
-    for (int round = 0; last < kLast; ++round) {
+    Experience experience;
+    bool near = false;
+    for (int round = 0; last < (near ? kLast : kMost); ++round) {
         measure::SurfaceInertia now = visible.of(composite, last > 0 ? kAll : kFew, job, &each);
         if (now.empty())
             break;
@@ -77,11 +81,13 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
         if (last > 0 && off < least) {
             least = off;
             best = composite;
+            near = !shape || within(Miss(missing), far);
         }
         if (last > 0 && off <= 1)
             break;
         if (shape) {
-            make_up(composite, now, each, missing, size, floor);
+            // Few rays are too unsure to learn from.
+            make_up(composite, now, each, missing, size, floor, last > 0 ? &experience : nullptr);
             continue;
         }
         const double scale =

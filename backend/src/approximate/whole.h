@@ -10,8 +10,8 @@ namespace lodestone::approximate {
 /// Moves and stretches solids, altogether as little as possible (least_change.h), until what can be
 /// seen of them has the area that is wanted and, with `shape`, its centroid and variances; where no
 /// size gives both area and variances (plates around a closed body) their ratios, as for a single
-/// solid. In at most `rounds` with an eighth of the rays of `visible`, and three with all, of which
-/// the best one is kept. Nothing reaches below `floor`.
+/// solid. In at most `rounds` with an eighth of the rays of `visible`, and three with all (eight
+/// where it is far off), of which the best one is kept. Nothing reaches below `floor`.
 void match_whole(Composite& composite, const Attributes& wanted, double floor,
                  const VisibleSolids& visible, bool shape, int rounds, const Job& job);
 
