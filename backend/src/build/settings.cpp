@@ -4,7 +4,7 @@
 namespace lodestone::build {
 
 Hash hash_of(const Settings& settings) {
-    constexpr uint32_t kAlgorithms = 26;  // raised whenever the same settings give other stand-ins
+    constexpr uint32_t kAlgorithms = 27;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)
