@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards temporary folders: a living owner's is left alone, a dead one's is found."""
 
+import fcntl
 import itertools
 import os
 import signal
@@ -93,7 +94,7 @@ class Folders(unittest.TestCase):
 
     def test_a_folder_whose_owner_was_killed_between_any_two_lines_is_removed(self):
         ends, left = 0, 0
-        for line in range(1000):
+        for line in range(5000):
             child = os.fork()
             if child == 0:
                 die_at(line, self.parent)
@@ -138,8 +139,38 @@ class Folders(unittest.TestCase):
         locked_folder.Hold(self.parent).release()
         self.assertEqual(self.names(), [])
 
+    def test_a_folder_kept_while_it_is_taken_for_a_dead_ones_stays(self):
+        folder = LockedFolder(self.parent, "a.scene")
+        (folder.path / "scene.pov").write_text("sphere{}")
+        lock = fcntl.flock
+
+        def kept_before(file, how):
+            folder.keep()
+            lock(file, how)
+
+        with mock.patch.object(fcntl, "flock", kept_before):
+            locked_folder.settle(self.parent, "a.scene")
+        self.assertEqual(os.listdir(folder.path), ["scene.pov"])
+
+    def test_what_vanishes_meanwhile_does_not_save_the_rest(self):
+        self.die()
+        (folder,) = self.parent.iterdir()
+        for name in "abcd":
+            (folder / name).write_text("")
+        unlink = os.unlink
+
+        def vanished(path, **options):
+            unlink(path, **options)
+            if Path(path).name != locked_folder.MARK:
+                raise FileNotFoundError(path)
+
+        with mock.patch.object(os, "unlink", vanished):
+            locked_folder.settle(self.parent, "a.scene")
+        self.assertEqual(self.names(), [])
+
     def test_folders_of_others_are_never_touched(self):
-        for name in ("a.scene-mine", "a.scene", "a.scene-the_link", "a.scene-mystuff_", "b"):
+        names = ("mine", "textures", "the_link", "mystuff_")
+        for name in ("a.scene", "b", *(f"a.scene-{name}" for name in names)):
             (self.parent / name).mkdir()
         outside = self.parent / "b" / "precious"
         outside.write_text("x")

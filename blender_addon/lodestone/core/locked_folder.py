@@ -2,9 +2,11 @@
 """Temporary folders whose owner is known to live or not: what a killed run left is found by the
 next one. While a folder is in use its owner holds a lock that the system drops when it dies."""
 
+import contextlib
 import fcntl
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -77,12 +79,15 @@ def settle(parent: Path, name: str, keep: bool = False) -> None:
         try:
             lock = os.open(folder / MARK, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
         except FileNotFoundError:
-            _remove_empty(folder)  # its owner died right before it was marked, or after
+            if _is_private(folder):  # its owner died right before it was marked, or after
+                _remove_empty(folder)
             continue
         except OSError:
             continue  # not ours
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not _is(lock, folder / MARK):
+                continue  # it was kept, or removed, before we had the lock
             if keep:
                 os.unlink(folder / MARK)
             else:
@@ -104,13 +109,25 @@ def _take(mark: Path) -> int:
         raise
     except OSError:
         pass  # a file system without locks: such a folder stays
-    try:
-        if os.path.samestat(os.fstat(lock), os.lstat(mark)):
-            return lock
-    except OSError:
-        pass
+    if _is(lock, mark):
+        return lock
     os.close(lock)
     return -1
+
+
+def _is(lock: int, mark: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(lock), os.lstat(mark))
+    except OSError:
+        return False
+
+
+def _is_private(folder: Path) -> bool:
+    """As mkdtemp() makes them, and few people."""
+    try:
+        return stat.S_IMODE(os.lstat(folder).st_mode) == 0o700
+    except OSError:
+        return False
 
 
 def _folders(parent: Path, name: str) -> Iterator[Path]:
@@ -133,11 +150,12 @@ def _folders(parent: Path, name: str) -> Iterator[Path]:
 def _clear(folder: Path) -> None:
     """The mark goes last: whoever is killed on the way leaves a folder that settle() knows."""
     try:
-        for entry in os.scandir(folder):
+        for entry in list(os.scandir(folder)):
             if entry.is_dir(follow_symlinks=False):
                 shutil.rmtree(entry.path, ignore_errors=True)
             elif entry.name != MARK:
-                os.unlink(entry.path)
+                with contextlib.suppress(OSError):  # gone already, or not ours to remove
+                    os.unlink(entry.path)
         if os.listdir(folder) == [MARK]:
             os.unlink(folder / MARK)
     except OSError:
