@@ -292,6 +292,19 @@ TEST(Cluster, AnyIndicesAndScalesSurvive) {
     }
 }
 
+// Vertices were placed beyond what numbers hold, as a cell's planes may meet a little outside of
+// it.
+TEST(Cluster, WhatReachesToTheEdgeOfNumbersStaysFinite) {
+    for (int i = 0; i < 12; ++i) {
+        Mesh ball = sphere(1, 3);
+        for (glm::vec3& p : ball.positions)
+            p = glm::clamp(p * (1 + 0.02f * static_cast<float>(i)), glm::vec3(-1), glm::vec3(1)) *
+                std::numeric_limits<float>::max();
+        for (const size_t target : {8, 20, 60, 200})
+            expect_sound(cluster(ball, target), ball, target);
+    }
+}
+
 TEST(Cluster, TheSameBitsOnAnyNumberOfThreads) {
     const Mesh mesh = terrain(150);
     const Hash one = [&] {

@@ -7,6 +7,9 @@
 #include "base/scratch.h"
 #include "model/mesh.h"
 
+#include <glm/common.hpp>
+
+#include <limits>
 #include <span>
 
 namespace lodestone::approximate {
@@ -26,7 +29,10 @@ struct Cells {
     ScratchVector<uint32_t> sources;    // the mesh's triangle each of them was
 
     size_t count() const { return quadrics.size(); }
-    glm::vec3 metres(const glm::vec3& p) const { return glm::vec3(glm::dvec3(p) * unit + low); }
+    glm::vec3 metres(const glm::vec3& p) const {
+        constexpr double kMost = std::numeric_limits<float>::max();
+        return glm::vec3(glm::clamp(glm::dvec3(p) * unit + low, -kMost, kMost));
+    }
 };
 
 /// Where points lie, in metres, if all are finite.
