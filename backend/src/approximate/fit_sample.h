@@ -4,7 +4,7 @@
 #pragma once
 
 #include "approximate/adjacency.h"
-#include "approximate/fit_nearest.h"
+#include "approximate/nearest_on_triangle.h"
 
 #include <glm/geometric.hpp>
 

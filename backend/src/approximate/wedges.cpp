@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "approximate/wedges.h"
 
+#include "approximate/nearest_on_triangle.h"
 #include "base/maths.h"
 
 #include <algorithm>
@@ -12,46 +13,6 @@ namespace {
 
 /// A vertex of so many wedges has noise for normals: its corners just keep what they have.
 constexpr size_t kMostWedges = 64;
-
-/// Barycentric coordinates of the point of triangle abc nearest to p (Ericson, Real-Time Collision
-/// Detection, 5.1.5: by Voronoi region).
-glm::dvec3 nearest(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
-                   const glm::dvec3& c) {
-    const glm::dvec3 ab = b - a;
-    const glm::dvec3 ac = c - a;
-    const glm::dvec3 ap = p - a;
-    const double d1 = glm::dot(ab, ap);
-    const double d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0)
-        return {1, 0, 0};
-    const glm::dvec3 bp = p - b;
-    const double d3 = glm::dot(ab, bp);
-    const double d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3)
-        return {0, 1, 0};
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        const double t = d1 / (d1 - d3);
-        return {1 - t, t, 0};
-    }
-    const glm::dvec3 cp = p - c;
-    const double d5 = glm::dot(ab, cp);
-    const double d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6)
-        return {0, 0, 1};
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        const double t = d2 / (d2 - d6);
-        return {1 - t, 0, t};
-    }
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {0, 1 - t, t};
-    }
-    const double sum = va + vb + vc;
-    return {va / sum, vb / sum, vc / sum};
-}
 
 /// Nobody sees the difference, whatever light falls on them.
 bool alike(const glm::vec4& a, const glm::vec4& b) {
@@ -213,7 +174,7 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
             const Triangle& corners = mesh.triangles[t];
             const glm::dvec3 p[3] = {mesh.points[corners.x], mesh.points[corners.y],
                                      mesh.points[corners.z]};
-            const glm::dvec3 weights = nearest(point, p[0], p[1], p[2]);
+            const glm::dvec3 weights = nearest_weights(p[0] - point, p[1] - point, p[2] - point);
             if (!finite(weights))
                 continue;
             const glm::dvec3 off = weights.x * p[0] + weights.y * p[1] + weights.z * p[2] - point;

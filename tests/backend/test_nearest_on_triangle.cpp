@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that four triangles looked at together give what one after the other does.
-#include "approximate/fit_nearest.h"
+#include "approximate/nearest_on_triangle.h"
 
 #include <bit>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ bool same_bits(float a, float b) {
 
 }  // namespace
 
-TEST(FitNearest, ManyTrianglesGiveWhatOneAfterTheOtherDoes) {
+TEST(NearestOnTriangle, ManyTrianglesGiveWhatOneAfterTheOtherDoes) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> number(-6, 6);
     for (int round = 0; round < 5000; ++round) {
@@ -56,7 +56,7 @@ TEST(FitNearest, ManyTrianglesGiveWhatOneAfterTheOtherDoes) {
     }
 }
 
-TEST(FitNearest, NothingFartherThanTheBestIsTaken) {
+TEST(NearestOnTriangle, NothingFartherThanTheBestIsTaken) {
     const TrianglePoints corners{glm::vec3(0, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 1, 1)};
     const std::vector<uint32_t> ring{3, 4, 5, 6, 7};
     Spot best{0.5f, 9, glm::vec3(1, 0, 0)};

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "approximate/fit_nearest.h"
-
-#include <glm/geometric.hpp>
+#include "approximate/nearest_on_triangle.h"
 
 #include <cstring>
 
@@ -21,40 +19,6 @@ Lanes dot(const Vectors& a, const Vectors& b) {
 }
 
 }  // namespace
-
-glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const glm::vec3 ab = b - a;
-    const glm::vec3 ac = c - a;
-    const float d1 = -glm::dot(ab, a);
-    const float d2 = -glm::dot(ac, a);
-    if (d1 <= 0 && d2 <= 0)
-        return {1, 0, 0};
-    const float d3 = -glm::dot(ab, b);
-    const float d4 = -glm::dot(ac, b);
-    if (d3 >= 0 && d4 <= d3)
-        return {0, 1, 0};
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        const float t = d1 / (d1 - d3);
-        return {1 - t, t, 0};
-    }
-    const float d5 = -glm::dot(ab, c);
-    const float d6 = -glm::dot(ac, c);
-    if (d6 >= 0 && d5 <= d6)
-        return {0, 0, 1};
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        const float t = d2 / (d2 - d6);
-        return {1 - t, 0, t};
-    }
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const float t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {0, 1 - t, t};
-    }
-    const float sum = va + vb + vc;
-    return {va / sum, vb / sum, vc / sum};
-}
 
 Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point) {
     const glm::vec3 a = corners[0] - point;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit nearest: places of triangles that are nearest to a point.
+// Nearest on triangle: the place of a triangle that is nearest to a point.
 #pragma once
 
 #include "approximate/collapse_mesh.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace lodestone::approximate {
 
@@ -20,7 +23,41 @@ struct Spot {
 
 /// Barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
 /// Real-Time Collision Detection, 5.1.5.
-glm::vec3 nearest_weights(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+template <typename Number>
+glm::vec<3, Number> nearest_weights(const glm::vec<3, Number>& a, const glm::vec<3, Number>& b,
+                                    const glm::vec<3, Number>& c) {
+    const glm::vec<3, Number> ab = b - a;
+    const glm::vec<3, Number> ac = c - a;
+    const Number d1 = -glm::dot(ab, a);
+    const Number d2 = -glm::dot(ac, a);
+    if (d1 <= 0 && d2 <= 0)
+        return {1, 0, 0};
+    const Number d3 = -glm::dot(ab, b);
+    const Number d4 = -glm::dot(ac, b);
+    if (d3 >= 0 && d4 <= d3)
+        return {0, 1, 0};
+    const Number vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        const Number t = d1 / (d1 - d3);
+        return {1 - t, t, 0};
+    }
+    const Number d5 = -glm::dot(ab, c);
+    const Number d6 = -glm::dot(ac, c);
+    if (d6 >= 0 && d5 <= d6)
+        return {0, 0, 1};
+    const Number vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        const Number t = d2 / (d2 - d6);
+        return {1 - t, 0, t};
+    }
+    const Number va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const Number t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1 - t, t};
+    }
+    const Number sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
 
 /// The place of a triangle nearest to a point.
 Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point);
