@@ -3,13 +3,13 @@
 // rays. For tests and for tests/bench/replace_shapes.cpp.
 #pragma once
 
-#include "approximate/composite.h"
-#include "approximate/replace.h"
-#include "approximate/simplify.h"
-#include "approximate/stand_in_material.h"
 #include "build/judge.h"
 #include "measure/agreement.h"
 #include "measure/visible.h"
+#include "simplify/simplify.h"
+#include "solids/composite_replacement.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,41 +87,40 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
         build::Candidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
-        candidate.materials = {
-            approximate::clear_material(approximate::mean_material(wanted), opacity)};
+        candidate.materials = {solids::clear_material(solids::mean_material(wanted), opacity)};
         add(name, candidate,
             kind == Kind::Box ? tessellate_box(primitive) : tessellate_ellipsoid(primitive, 4));
     };
-    if (const auto box = approximate::fit_box(wanted, bound))
+    if (const auto box = solids::fit_box(wanted, bound))
         add_solid("box", Kind::Box, *box, 1);
-    if (const auto ellipsoid = approximate::fit_ellipsoid(wanted, bound))
+    if (const auto ellipsoid = solids::fit_ellipsoid(wanted, bound))
         add_solid("ellipsoid", Kind::Ellipsoid, *ellipsoid, 1);
-    if (const auto box = approximate::fit_clear_box(wanted, bound))
+    if (const auto box = solids::fit_clear_box(wanted, bound))
         add_solid("clear box", Kind::Box, box->primitive, box->opacity);
-    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(wanted, bound))
+    if (const auto ellipsoid = solids::fit_clear_ellipsoid(wanted, bound))
         add_solid("clear ellipsoid", Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
     const auto add_composites = [&](const std::string& name,
-                                    const std::vector<approximate::Clustered>& levels) {
-        for (const approximate::Clustered& level : levels) {
+                                    const std::vector<solids::Clustered>& levels) {
+        for (const solids::Clustered& level : levels) {
             if (level.composite.solids.size() > most_solids)
                 break;
             build::Candidate candidate;
             candidate.kind = Kind::Composite;
             candidate.composite = std::make_shared<const Composite>(level.composite);
             for (size_t i = 0; i < level.attributes.size(); ++i)
-                candidate.materials.push_back(approximate::clear_material(
-                    approximate::mean_material(level.attributes[i]), level.opacities[i]));
+                candidate.materials.push_back(solids::clear_material(
+                    solids::mean_material(level.attributes[i]), level.opacities[i]));
             add(name + " " + std::to_string(level.composite.solids.size()), candidate,
                 tessellate(level.composite, 3));
         }
     };
-    add_composites("composite", approximate::composites(mesh, skin, wanted, {settings.seed}));
-    if (!approximate::boxlike(wanted))
+    add_composites("composite", solids::composites(mesh, skin, wanted, {settings.seed}));
+    if (!solids::boxlike(wanted))
         add_composites("clear composite",
-                       approximate::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
+                       solids::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
     build::Candidate collapsed;
     collapsed.mesh = std::make_shared<const Mesh>(
-        approximate::simplify(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
+        simplify::simplify_mesh(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
     collapsed.materials = materials;
     if (judge.shows_as_much(*collapsed.mesh, {}))  // else it is none
         add("collapsed", collapsed, *collapsed.mesh);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the brightness of stand-ins: collapsed meshes, textured leaves and solids scatter as much
 // light as what they stand for, by other rays than they were matched with.
-#include "approximate/stand_in_material.h"
 #include "backend/foliage.h"
 #include "backend/models.h"
 #include "backend/rematched.h"
@@ -11,6 +10,7 @@
 #include "measure/agreement.h"
 #include "ray/scene.h"
 #include "scratch.h"
+#include "solids/stand_in_material.h"
 
 #include <gtest/gtest.h>
 #include <set>
@@ -195,7 +195,7 @@ TEST_F(Brightness, ATextureIsBrightenedByItsScaleAndMixturesBothWays) {
     material.base_color_texture = foliage::texture(foliage::left_half());
     material.other = std::make_shared<Material>(inner);
     material.emission = {3, 3, 3};
-    approximate::brighten(material, {1.2, 1.1, 1.3});
+    solids::brighten(material, {1.2, 1.1, 1.3});
     EXPECT_NEAR(material.base_color.x, 0.48, 1e-12);
     EXPECT_NEAR(material.base_color_texture.scale.x, 1.2, 1e-12);
     EXPECT_EQ(material.base_color_texture.scale.x, material.base_color_texture.scale.z);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards clustering: targets kept, shape and attributes of what was joined, any input survived.
-#include "approximate/cluster.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "simplify/cluster/vertex_clustering.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include <set>
 
 using namespace lodestone;
-using approximate::cluster;
+using simplify::cluster;
 using namespace lodestone::shapes;
 
 namespace {

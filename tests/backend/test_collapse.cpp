@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the collapse engine: modes, costs, fitting to the original, threads, fuzzed meshes.
-#include "approximate/adjacency.h"
-#include "approximate/edge_costs.h"
-#include "approximate/neighbors.h"
-#include "approximate/quadric.h"
-#include "approximate/simplify.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "geometry/quadric.h"
+#include "simplify/collapse/adjacency.h"
+#include "simplify/collapse/edge_costs.h"
+#include "simplify/collapse/edge_neighbors.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <bit>
@@ -19,10 +19,10 @@
 #include <utility>
 
 using namespace lodestone;
-using approximate::simplify;
-using approximate::simplify_chain;
-using approximate::SimplifyMode;
-using approximate::SimplifyOptions;
+using simplify::simplify_mesh;
+using simplify::simplify_chain;
+using simplify::SimplifyMode;
+using simplify::SimplifyOptions;
 using namespace lodestone::shapes;
 
 namespace {
@@ -85,21 +85,21 @@ void expect_sane(const Mesh& level, const Mesh& input, size_t target) {
 }  // namespace
 
 TEST(Collapse, ModesThatAreNoneAreRefused) {
-    EXPECT_THROW(simplify(shapes::cube(), 4, in_mode(static_cast<SimplifyMode>(7))), Error);
+    EXPECT_THROW(simplify_mesh(shapes::cube(), 4, in_mode(static_cast<SimplifyMode>(7))), Error);
 }
 
 TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
     Random random(3);
     const auto number = [&] { return 2 * random.uniform() - 1; };
     const auto vector = [&] { return glm::dvec3(number(), number(), number()); };
-    constexpr size_t kCount = approximate::EdgeBlock::kSize;
-    approximate::EdgeBlock block{};
-    std::vector<approximate::VertexAround> ends(2 * kCount);
-    std::vector<approximate::Optimum> expected(kCount);
+    constexpr size_t kCount = simplify::EdgeBlock::kSize;
+    simplify::EdgeBlock block{};
+    std::vector<simplify::VertexAround> ends(2 * kCount);
+    std::vector<geometry::Optimum> expected(kCount);
     std::vector<glm::dvec3> froms(kCount);
     for (size_t i = 0; i < kCount; ++i) {
-        approximate::EdgeEnd a{vector(), {}, {}};
-        approximate::EdgeEnd b{vector(), {}, {}};
+        geometry::EdgeEnd a{vector(), {}, {}};
+        geometry::EdgeEnd b{vector(), {}, {}};
         glm::dvec3 shared(0.0);
         for (int k = 0; k < 5; ++k) {
             // Nearly flat rings for half of them: where the volume decides.
@@ -114,17 +114,17 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
                 shared += facet_a;
         }
         const int held = static_cast<int>(i % 4) - 2;  // -1 a, 1 b
-        const auto around = [](const approximate::EdgeEnd& end) {
-            const approximate::Quadric& q = end.quadric;
+        const auto around = [](const geometry::EdgeEnd& end) {
+            const geometry::Quadric& q = end.quadric;
             const auto f = [](double value) { return static_cast<float>(value); };
-            return approximate::VertexAround{glm::vec3(end.point),
-                                             glm::vec3(end.facet),
-                                             f(q.xx),
-                                             f(q.xy),
-                                             f(q.xz),
-                                             f(q.yy),
-                                             f(q.yz),
-                                             f(q.zz)};
+            return simplify::VertexAround{glm::vec3(end.point),
+                                          glm::vec3(end.facet),
+                                          f(q.xx),
+                                          f(q.xy),
+                                          f(q.xz),
+                                          f(q.yy),
+                                          f(q.yz),
+                                          f(q.zz)};
         };
         ends[2 * i] = around(a);
         ends[2 * i + 1] = around(b);
@@ -146,7 +146,7 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
     }
     // Whatever the processor's vectors are, and how many edges: the same bits.
     for (const size_t count : {size_t{1}, size_t{5}, kCount}) {
-        approximate::EdgeBlock by_4{};
+        simplify::EdgeBlock by_4{};
         std::copy(std::begin(block.in), std::end(block.in), by_4.in);
         edge_costs_by_4(by_4, count);
         for (size_t i = 0; i < count; ++i) {
@@ -158,10 +158,10 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
 }
 
 TEST(Collapse, FansAreFoundAndPutInOrder) {
-    using approximate::Neighbors;
+    using simplify::Neighbors;
     // Around vertex 0: triangles (0, a, b), in no order.
     const auto around = [](const std::vector<std::pair<uint32_t, uint32_t>>& pairs) {
-        approximate::CollapseMesh mesh;
+        simplify::CollapseMesh mesh;
         uint32_t turn = 0;
         for (const auto& [a, b] : pairs) {
             const Triangle turned[] = {{0, a, b}, {a, b, 0}, {b, 0, a}};
@@ -169,7 +169,7 @@ TEST(Collapse, FansAreFoundAndPutInOrder) {
         }
         return mesh;
     };
-    const auto fan_of = [](const approximate::CollapseMesh& mesh, std::vector<uint32_t>& ring,
+    const auto fan_of = [](const simplify::CollapseMesh& mesh, std::vector<uint32_t>& ring,
                            bool& single) {
         ring.resize(mesh.triangles.size());
         std::iota(ring.begin(), ring.end(), 0u);
@@ -187,8 +187,8 @@ TEST(Collapse, FansAreFoundAndPutInOrder) {
     EXPECT_EQ(fan_of(closed, ring, single), Neighbors::Fan::Closed);
     ASSERT_TRUE(single);
     for (size_t i = 0; i < ring.size(); ++i)
-        EXPECT_EQ(approximate::ends_of(closed.triangles[ring[i]], 0).last,
-                  approximate::ends_of(closed.triangles[ring[(i + 1) % ring.size()]], 0).next);
+        EXPECT_EQ(simplify::ends_of(closed.triangles[ring[i]], 0).last,
+                  simplify::ends_of(closed.triangles[ring[(i + 1) % ring.size()]], 0).next);
     const auto open = around({{3, 4}, {1, 2}, {2, 3}});
     EXPECT_EQ(fan_of(open, ring, single), Neighbors::Fan::Open);
     EXPECT_TRUE(single);
@@ -212,38 +212,38 @@ TEST(Collapse, FansAreFoundAndPutInOrder) {
 
 TEST(Collapse, CompactingFillsTheListsThatBuildingMakes) {
     const Mesh mesh = hills(20);
-    approximate::CollapseMesh working = approximate::open(mesh, {});
+    simplify::CollapseMesh working = simplify::open(mesh, {});
     for (size_t i = 0; i < working.triangles.size(); i += i % 7 + 2)
-        working.triangles[i].x = approximate::kNone;
-    approximate::Adjacency filled;
+        working.triangles[i].x = simplify::kNone;
+    simplify::Adjacency filled;
     compact(working, &filled);
-    approximate::Adjacency built;
+    simplify::Adjacency built;
     built.build(working);
     EXPECT_EQ(filled.first, built.first);
     EXPECT_EQ(filled.triangles, built.triangles);
 }
 
 TEST(Collapse, KeysSortAsCostsDo) {
-    EXPECT_LT(approximate::key_of_cost(0.0f), approximate::key_of_cost(1e-30f));
-    EXPECT_LT(approximate::key_of_cost(1e-30f), approximate::key_of_cost(2.0f));
-    EXPECT_EQ(approximate::key_of_cost(-0.0f), approximate::key_of_cost(0.0f));
+    EXPECT_LT(simplify::key_of_cost(0.0f), simplify::key_of_cost(1e-30f));
+    EXPECT_LT(simplify::key_of_cost(1e-30f), simplify::key_of_cost(2.0f));
+    EXPECT_EQ(simplify::key_of_cost(-0.0f), simplify::key_of_cost(0.0f));
     for (const float none :
          {-1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
-        EXPECT_EQ(approximate::key_of_cost(none), approximate::kImpossible);
+        EXPECT_EQ(simplify::key_of_cost(none), simplify::kImpossible);
 }
 
 TEST(Collapse, BothModesComeNearTheSurface) {
     const Mesh mesh = hills(64);
     const size_t target = mesh.triangles.size() / 20;
-    const double fast = height_error(simplify(mesh, target, in_mode(SimplifyMode::Fast)));
-    const double best = height_error(simplify(mesh, target, in_mode(SimplifyMode::Best)));
+    const double fast = height_error(simplify_mesh(mesh, target, in_mode(SimplifyMode::Fast)));
+    const double best = height_error(simplify_mesh(mesh, target, in_mode(SimplifyMode::Best)));
     EXPECT_LT(fast, 4e-4);
     EXPECT_LT(best, 4e-4);
 }
 
 TEST(Collapse, FittingLeavesFlatFacesAndTheirEdgesExact) {
     for (const SimplifyMode mode : kModes) {
-        const Mesh level = simplify(fine_cube(16), 60, in_mode(mode));
+        const Mesh level = simplify_mesh(fine_cube(16), 60, in_mode(mode));
         EXPECT_NEAR(surface_area(level), 6, 1e-5);
         EXPECT_TRUE(closed(level));
         for (const glm::vec3& p : level.positions) {
@@ -278,7 +278,7 @@ TEST(Collapse, OutlineOfAnOpenDiskKeepsItsArea) {
         }
     }
     for (const SimplifyMode mode : kModes) {
-        const Mesh level = simplify(disk, 14, in_mode(mode));
+        const Mesh level = simplify_mesh(disk, 14, in_mode(mode));
         EXPECT_NEAR(surface_area(level) / surface_area(disk), 1, 0.02);
     }
 }
@@ -314,26 +314,26 @@ TEST(Collapse, ManySheetsThatCoincideAroundOneVertexAreAllKept) {
             mesh.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % kCorners);
     }
     const double area = surface_area(mesh);
-    const Mesh level = simplify(mesh, kSheets * kCorners / 3);
+    const Mesh level = simplify_mesh(mesh, kSheets * kCorners / 3);
     EXPECT_LE(level.triangles.size(), kSheets * kCorners / 3);
     EXPECT_NEAR(surface_area(level), area, 0.05 * area);
 }
 
 TEST(Collapse, ScalesByPowersOfTwoAndMovesGiveTheSameTriangles) {
     const Mesh mesh = hills(40);
-    const Mesh level = simplify(mesh, 300);
+    const Mesh level = simplify_mesh(mesh, 300);
     for (const double scale : {0x1p-99, 0x1p99}) {
         Mesh other = mesh;
         for (glm::vec3& p : other.positions)
             p = glm::vec3(scale * glm::dvec3(p));
-        EXPECT_EQ(simplify(other, 300).triangles, level.triangles) << scale;
+        EXPECT_EQ(simplify_mesh(other, 300).triangles, level.triangles) << scale;
     }
     // What floats can hold of it there is the same surface, not the same bits.
     const glm::dvec3 far(3000, -2000, 1000);
     Mesh moved = mesh;
     for (glm::vec3& p : moved.positions)
         p = glm::vec3(glm::dvec3(p) + far);
-    Mesh back = simplify(moved, 300);
+    Mesh back = simplify_mesh(moved, 300);
     EXPECT_LE(back.triangles.size(), 300u);
     for (glm::vec3& p : back.positions)
         p = glm::vec3(glm::dvec3(p) - far);
@@ -349,7 +349,7 @@ TEST(Collapse, CustomNormalsAndUvsStayTrueInBothModes) {
         mesh.uvs.emplace_back(p.x, 1 - p.y);
     }
     for (const SimplifyMode mode : kModes) {
-        const Mesh level = simplify(mesh, 400, in_mode(mode));
+        const Mesh level = simplify_mesh(mesh, 400, in_mode(mode));
         ASSERT_FALSE(level.uvs.empty());
         double worst = 0;
         for (size_t i = 0; i < level.positions.size(); ++i) {
@@ -400,7 +400,7 @@ TEST(Collapse, FuzzedMeshesEndWithinTheirTargets) {
             }
         }
         const size_t count = mesh.triangles.size();
-        const Mesh level = simplify(mesh, count / 4, in_mode(kModes[run % 2]));
+        const Mesh level = simplify_mesh(mesh, count / 4, in_mode(kModes[run % 2]));
         expect_sane(level, mesh, count / 4);
     }
 }
@@ -413,8 +413,8 @@ TEST(Collapse, HourglassAndManySmallPartsReachTheirTargets) {
         p.z += 2;  // they touch in one point
     append(hourglass, upper, Affine{});
     for (const SimplifyMode mode : kModes) {
-        expect_sane(simplify(hourglass, 200, in_mode(mode)), hourglass, 200);
+        expect_sane(simplify_mesh(hourglass, 200, in_mode(mode)), hourglass, 200);
         const Mesh many = boxes(600);
-        expect_sane(simplify(many, 90, in_mode(mode)), many, 90);
+        expect_sane(simplify_mesh(many, 90, in_mode(mode)), many, 90);
     }
 }

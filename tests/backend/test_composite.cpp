@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards composites: as much surface as the original, nested, matched cluster by cluster.
-#include "approximate/composite.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/visible_solids.h"
-#include "approximate/whole.h"
 #include "backend/foliage.h"
 #include "backend/with_rays.h"
 #include "measure/visible.h"
 #include "ray/scene.h"
+#include "solids/composite_replacement.h"
+#include "solids/match_solids.h"
+#include "solids/stand_in_material.h"
+#include "solids/visible_solids.h"
 
 #include <gtest/gtest.h>
 #include <set>
 
 using namespace lodestone;
-using approximate::Clustered;
+using solids::Clustered;
 
 namespace {
 
@@ -22,7 +22,7 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, ui
     options.rays = 16384;
     const Attributes wanted =
         measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, options).attributes;
-    return approximate::composites(mesh, skin, wanted, {seed});
+    return solids::composites(mesh, skin, wanted, {seed});
 }
 
 class Composites : public WithRays {};
@@ -90,13 +90,12 @@ TEST_F(Composites, CubeByEightSolidsThatStandIsMatched) {
         Mesh cube;
         append(cube, shapes::cube(), {glm::dmat3(1.0), {away, away, 0}});
         const Attributes wanted = attributes_of(cube, 1);
-        approximate::CompositeOptions options;
+        solids::CompositeOptions options;
         options.least = options.most = 8;
-        const std::vector<Clustered> levels =
-            approximate::composites(cube, nullptr, wanted, options);
+        const std::vector<Clustered> levels = solids::composites(cube, nullptr, wanted, options);
         ASSERT_EQ(levels.size(), 1u);
         const measure::SurfaceInertia seen =
-            approximate::VisibleSolids(262144, 7).of(levels[0].composite, 1, {});
+            solids::VisibleSolids(262144, 7).of(levels[0].composite, 1, {});
         const double off = std::abs(seen.area / wanted.visible_area - 1);
         const double apart =
             glm::length(seen.center - wanted.centroid) / wanted.radius_of_gyration();
@@ -162,12 +161,12 @@ TEST_F(Composites, LevelsShareWhatIsNotSplit) {
 TEST_F(Composites, LevelsThatAreNotAskedForLeaveTheOthersAsTheyAre) {
     const Mesh mesh = leaves_in_a_ball(500);
     const Attributes wanted = attributes_of(mesh, 1);
-    approximate::CompositeOptions options{1};
-    const std::vector<Clustered> all = approximate::composites(mesh, nullptr, wanted, options);
+    solids::CompositeOptions options{1};
+    const std::vector<Clustered> all = solids::composites(mesh, nullptr, wanted, options);
     ASSERT_EQ(all.size(), 4u);
     options.least = 8;
     options.most = 16;
-    const std::vector<Clustered> some = approximate::composites(mesh, nullptr, wanted, options);
+    const std::vector<Clustered> some = solids::composites(mesh, nullptr, wanted, options);
     ASSERT_EQ(some.size(), 2u);
     for (size_t i = 0; i < some.size(); ++i) {
         EXPECT_EQ(some[i].clusters, all[i + 1].clusters);
@@ -208,7 +207,7 @@ TEST_F(Composites, TheWholeIsMatchedInAreaCentroidAndTensor) {
     append(tree, shapes::sphere(2, 3), {glm::dmat3(1.0), {0, 0, 4.5}});
     struct Case {
         const Mesh& mesh;
-        approximate::CompositeOptions options;
+        solids::CompositeOptions options;
         double area;
         double centroid;  // over the radius of gyration
     };
@@ -218,8 +217,7 @@ TEST_F(Composites, TheWholeIsMatchedInAreaCentroidAndTensor) {
                             Case{cube, {.seed = 1, .most = 4}, 0.005, 0.004}}) {
         const Attributes wanted = attributes_of(now.mesh, 3);
         const double trace = wanted.moments[0][0] + wanted.moments[1][1] + wanted.moments[2][2];
-        for (const Clustered& level :
-             approximate::composites(now.mesh, nullptr, wanted, now.options)) {
+        for (const Clustered& level : solids::composites(now.mesh, nullptr, wanted, now.options)) {
             SCOPED_TRACE(level.composite.solids.size());
             const Attributes got = attributes_of(tessellate(level.composite, 4), 4);
             EXPECT_NEAR(got.visible_area / wanted.visible_area, 1, now.area);
@@ -242,14 +240,14 @@ TEST_F(Composites, AreaAndCentroidAreThoseThatAllRaysSee) {
     Composite composite{{{false, {{0, 0, 1}, straight, {1, 0.8, 0.9}}, 0},
                          {true, {{0.9, 0.2, 1.2}, straight, {0.5, 0.4, 0.6}}, 1},
                          {false, {{0.2, 0.7, 0.6}, straight, {0.5, 0.6, 0.4}}, 2}}};
-    const approximate::VisibleSolids visible(32768, 1);
+    const solids::VisibleSolids visible(32768, 1);
     const measure::SurfaceInertia before = visible.of(composite, 1, {});
     Attributes wanted;
     wanted.visible_area = 1.05 * before.area;
     wanted.centroid = before.center + glm::dvec3(0.1, -0.05, 0.08);
     wanted.moments = 1.1 * before.moments;
-    approximate::match_whole(composite, wanted, -10, visible, true, 12, {});
-    approximate::settle_whole(composite, wanted, -10, visible, {});
+    solids::match_whole(composite, wanted, -10, visible, true, 12, {});
+    solids::settle_whole(composite, wanted, -10, visible, {});
     const measure::SurfaceInertia now = visible.of(composite, 1, {});
     EXPECT_NEAR(now.area / wanted.visible_area, 1, 1e-5);
     EXPECT_LT(glm::length(now.center - wanted.centroid), 1e-5);
@@ -257,8 +255,7 @@ TEST_F(Composites, AreaAndCentroidAreThoseThatAllRaysSee) {
 
 TEST_F(Composites, OfACubeNoSolidSinksWhenTheWholeIsMoved) {
     const Mesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
-    for (const Clustered& level :
-         approximate::composites(cube, nullptr, attributes_of(cube, 3), {1}))
+    for (const Clustered& level : solids::composites(cube, nullptr, attributes_of(cube, 3), {1}))
         EXPECT_GE(bound_of(level.composite).box.low.z, -1e-6) << level.composite.solids.size();
 }
 
@@ -271,15 +268,14 @@ TEST_F(Composites, NoSolidReachesBelowTheGround) {
     const Mesh leaves = leaves_in_a_ball(300);
     const double low = bound_of(leaves.positions).box.low.z;
     for (const Clustered& level :
-         approximate::clear_composites(leaves, nullptr, {}, attributes_of(leaves, 1), {}))
+         solids::clear_composites(leaves, nullptr, {}, attributes_of(leaves, 1), {}))
         EXPECT_GE(bound_of(level.composite).box.low.z, low - 1e-6);
 }
 
 TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
     const Mesh leaves = leaves_in_a_ball(300);
     const Attributes wanted = attributes_of(leaves, 1);
-    const std::vector<Clustered> levels =
-        approximate::clear_composites(leaves, nullptr, {}, wanted, {});
+    const std::vector<Clustered> levels = solids::clear_composites(leaves, nullptr, {}, wanted, {});
     ASSERT_FALSE(levels.empty());
     for (const Clustered& level : levels) {
         ASSERT_EQ(level.opacities.size(), level.composite.solids.size());
@@ -289,7 +285,7 @@ TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
             EXPECT_GT(opacity, 0);
             EXPECT_LE(opacity, 1);
             clear += opacity < 1 ? 1 : 0;
-            materials.push_back(approximate::clear_material(Material{}, opacity));
+            materials.push_back(solids::clear_material(Material{}, opacity));
         }
         EXPECT_GT(clear, level.opacities.size() / 2);
         measure::VisibleOptions options;
@@ -305,7 +301,7 @@ TEST_F(Composites, ATrunkOfFewLongTrianglesDrawsNoLeavesDown) {
     Mesh tree = shapes::box({-0.1, -0.1, -6}, {0.1, 0.1, -1});
     append(tree, leaves_in_a_ball(300), {});
     for (const Clustered& level :
-         approximate::clear_composites(tree, nullptr, {}, attributes_of(tree, 1), {})) {
+         solids::clear_composites(tree, nullptr, {}, attributes_of(tree, 1), {})) {
         for (const Solid& solid : level.composite.solids) {
             const Bound bound =
                 solid.box ? bound_of_box(solid.primitive) : bound_of_ellipsoid(solid.primitive);
@@ -319,8 +315,8 @@ TEST_F(Composites, ATrunkOfFewLongTrianglesDrawsNoLeavesDown) {
 TEST_F(Composites, SolidThingsAreNeverClear) {
     Mesh two = shapes::box({-1, -1, 0}, {1, 1, 2});
     append(two, shapes::box({-1, -1, 0}, {1, 1, 2}), {glm::dmat3(1.0), {5, 0, 0}});
-    EXPECT_TRUE(approximate::clear_composites(two, nullptr, {}, attributes_of(two, 1), {}).empty());
-    EXPECT_TRUE(approximate::clear_composites(Mesh{}, nullptr, {}, Attributes{}, {}).empty());
+    EXPECT_TRUE(solids::clear_composites(two, nullptr, {}, attributes_of(two, 1), {}).empty());
+    EXPECT_TRUE(solids::clear_composites(Mesh{}, nullptr, {}, Attributes{}, {}).empty());
 }
 
 TEST_F(Composites, BoundAndTrianglesAreThoseOfTheSolids) {

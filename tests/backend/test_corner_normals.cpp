@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what simplified surfaces look like in the light: shaded as their originals are.
-#include "approximate/simplify.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ double shown_in_the_middle(const Mesh& mesh, size_t triangle) {
 TEST(CornerNormals, FlatSidesOfASmoothlyShadedCubeStayEvenlyLit) {
     const Mesh mesh = smooth(shapes::fine_cube(40));
     const size_t targets[] = {2000, 400, 48, 12};
-    for (const Mesh& level : approximate::simplify_chain(mesh, targets)) {
+    for (const Mesh& level : simplify::simplify_chain(mesh, targets)) {
         SCOPED_TRACE(level.triangles.size());
         double lit = 0;
         for (size_t i = 0; i < level.triangles.size(); ++i) {
@@ -58,18 +58,18 @@ TEST(CornerNormals, FlatSidesOfASmoothlyShadedCubeStayEvenlyLit) {
 }
 
 TEST(CornerNormals, CornersThatComeOutAlikeShareAVertex) {
-    const Mesh level = approximate::simplify(smooth(shapes::fine_cube(40)), 12);
+    const Mesh level = simplify::simplify_mesh(smooth(shapes::fine_cube(40)), 12);
     ASSERT_EQ(level.triangles.size(), 12u);
     EXPECT_LE(level.positions.size(), 24u);
 }
 
 TEST(CornerNormals, RoundThingsAreHardlySplit) {
-    for (const auto mode : {approximate::SimplifyMode::Fast, approximate::SimplifyMode::Best}) {
-        approximate::SimplifyOptions options;
+    for (const auto mode : {simplify::SimplifyMode::Fast, simplify::SimplifyMode::Best}) {
+        simplify::SimplifyOptions options;
         options.mode = mode;
-        const Mesh ball = approximate::simplify(smooth(shapes::sphere(1, 5)), 500, options);
+        const Mesh ball = simplify::simplify_mesh(smooth(shapes::sphere(1, 5)), 500, options);
         EXPECT_EQ(ball.positions.size(), ball.triangles.size() / 2 + 2);
-        const Mesh ring = approximate::simplify(smooth(shapes::torus(120, 60)), 600, options);
+        const Mesh ring = simplify::simplify_mesh(smooth(shapes::torus(120, 60)), 600, options);
         EXPECT_LE(ring.positions.size(), 0.65 * static_cast<double>(ring.triangles.size()));
     }
 }

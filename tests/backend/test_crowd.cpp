@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards pruning: which parts are a crowd, nested orders, survivors that show as much.
-#include "approximate/crowd.h"
 #include "backend/foliage.h"
+#include "prune/part_pruning.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <set>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::prune;
 
 namespace {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the order along a curve in which meshes are collapsed, and scratch memory.
-#include "approximate/curve.h"
 #include "base/random.h"
 #include "base/scratch.h"
+#include "geometry/morton_order.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <set>
 
 using namespace lodestone;
-using approximate::along_curve;
+using geometry::along_curve;
 
 namespace {
 

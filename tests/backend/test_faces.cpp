@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards Faces: the triangles, vertices and normals that polygons become.
-#include "model/faces.h"
+#include "geometry/polygon_mesh.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the fit: what it measures a simplified mesh against is all of the original.
-#include "approximate/fit.h"
-#include "approximate/fit_sample.h"
-#include "approximate/pass.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
+#include "simplify/collapse/collapse_pass.h"
+#include "simplify/fit/fit_samples.h"
+#include "simplify/fit/surface_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <iostream>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::simplify;
 
 namespace {
 
@@ -75,8 +75,8 @@ TEST(Fit, TrianglesWithVerticesOfTheirOwnAreFittedLikeWeldedOnes) {
     for (const SimplifyMode mode : {SimplifyMode::Fast, SimplifyMode::Best}) {
         SimplifyOptions options;
         options.mode = mode;
-        const Mesh one = simplify(welded, 1200, options);
-        const Mesh other = simplify(separate(welded), 1200, options);
+        const Mesh one = simplify_mesh(welded, 1200, options);
+        const Mesh other = simplify_mesh(separate(welded), 1200, options);
         EXPECT_EQ(corners_of(one), corners_of(other)) << static_cast<int>(mode);
     }
 }
@@ -134,7 +134,7 @@ TEST(Fit, RoundThingsAreNotSeenLarger) {
     constexpr std::pair<size_t, double> kMost[] = {
         {128, 3.0}, {2000, 2.0}, {4000, 1.5}, {10000, 0.58}};
     for (const auto& [target, most] : kMost) {
-        const Mesh level = simplify(ball, target, options);
+        const Mesh level = simplify_mesh(ball, target, options);
         double out = 0;
         for (const glm::vec3& p : level.positions)
             out += glm::length(p) - 1;
@@ -162,7 +162,7 @@ TEST(Fit, BricksOfFewTrianglesStayFlat) {
         for (const Triangle& t : brick.triangles)
             wall.triangles.push_back({t.x + first, t.y + first, t.z + first});
     }
-    const Mesh coarse = simplify(separate(wall), 150, {});
+    const Mesh coarse = simplify_mesh(separate(wall), 150, {});
     ASSERT_GE(coarse.triangles.size(), 100u);
     double seen = 0;
     double tilted = 0;

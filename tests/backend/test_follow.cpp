@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards following: one collapse for all frames, its levels on the surface of every frame.
-#include "approximate/bind.h"
 #include "backend/grids.h"
 #include "backend/with_rays.h"
 #include "base/clock.h"
+#include "deform/level_binding.h"
 #include "measure/deviation.h"
 #include "ray/scene.h"
 
@@ -13,8 +13,8 @@
 #include <limits>
 
 using namespace lodestone;
-using approximate::BoundLevel;
-using approximate::PoseSurface;
+using deform::BoundLevel;
+using deform::PoseSurface;
 
 namespace {
 
@@ -44,9 +44,9 @@ std::vector<BoundLevel> bound(const Mesh& mesh, const std::vector<size_t>& targe
         positions.push_back(pose_of(mesh, bend).points);
     const Pose pose = pose_of(mesh);
     const PoseSurface surface(pose);
-    const approximate::Binder binder(mesh, surface);
+    const deform::Binder binder(mesh, surface);
     std::vector<BoundLevel> levels;
-    for (approximate::TracedLevel& level : approximate::simplify_traced(mesh, positions, targets)) {
+    for (simplify::TracedLevel& level : simplify::simplify_traced(mesh, positions, targets)) {
         auto made = binder.bind(std::move(level));
         EXPECT_TRUE(made);
         if (made)
@@ -95,15 +95,15 @@ TEST_F(Follow, NothingIsMadeOfNothing) {
     const Pose pose;
     const PoseSurface surface(pose);
     const BoundLevel level;
-    ASSERT_TRUE(approximate::follow(level, surface));
-    EXPECT_TRUE(approximate::follow(level, surface)->empty());
+    ASSERT_TRUE(deform::follow(level, surface));
+    EXPECT_TRUE(deform::follow(level, surface)->empty());
 }
 
 TEST_F(Follow, TracedLevelsAreThoseOfTheOrdinaryChain) {
     const Mesh mesh = shapes::fine_cube(12);
     const std::vector<size_t> targets{800, 200, 12};
-    const std::vector<Mesh> chain = approximate::simplify_chain(mesh, targets);
-    const auto traced = approximate::simplify_traced(mesh, {}, targets);
+    const std::vector<Mesh> chain = simplify::simplify_chain(mesh, targets);
+    const auto traced = simplify::simplify_traced(mesh, {}, targets);
     ASSERT_EQ(traced.size(), chain.size());
     for (size_t i = 0; i < chain.size(); ++i) {
         EXPECT_EQ(hash_of(traced[i].mesh), hash_of(chain[i]));
@@ -118,7 +118,7 @@ TEST_F(Follow, EveryVertexOfAClosedMeshEndsInExactlyOnePlace) {
     for (uint32_t v = 0; v < welded.size(); ++v)
         vertices += welded[v] == v;
     const std::vector<size_t> targets{400, 40};
-    for (const auto& level : approximate::simplify_traced(mesh, {}, targets)) {
+    for (const auto& level : simplify::simplify_traced(mesh, {}, targets)) {
         std::vector<int> times(mesh.positions.size(), 0);
         for (const auto& [place, vertex] : level.origins)
             ++times[vertex];
@@ -137,7 +137,7 @@ TEST_F(Follow, InThePoseItWasBoundInALevelIsItself) {
     const Pose pose = pose_of(mesh);
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {800, 100, 20})) {
-        const auto same = approximate::follow(level, surface);
+        const auto same = deform::follow(level, surface);
         ASSERT_TRUE(same);
         EXPECT_LT(largest_move(*same, level.mesh), 2e-6);
         EXPECT_EQ(same->uvs, level.mesh.uvs);
@@ -154,7 +154,7 @@ TEST_F(Follow, AMovedTurnedAndScaledSurfaceTakesItsLevelsAlong) {
     const Pose pose = pose_of(mesh, bend);
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {500, 60, 12})) {
-        const auto moved = approximate::follow(level, surface);
+        const auto moved = deform::follow(level, surface);
         ASSERT_TRUE(moved);
         for (size_t i = 0; i < moved->positions.size(); ++i) {
             const glm::dvec3 wanted = bend(glm::dvec3(level.mesh.positions[i]));
@@ -176,7 +176,7 @@ TEST_F(Follow, SeamsStayClosedAndFacesFlatWhereTheSurfaceBends) {
     });
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {600, 100})) {
-        const auto moved = approximate::follow(level, surface);
+        const auto moved = deform::follow(level, surface);
         ASSERT_TRUE(moved);
         EXPECT_EQ(closed(*moved), closed(level.mesh));
         for (size_t i = 0; i < moved->triangles.size(); ++i) {
@@ -196,10 +196,10 @@ TEST_F(Follow, ABentRodHasLevelsNotMuchWorseThanItsOwn) {
     const PoseSurface surface(pose);
     const std::vector<size_t> targets{4000, 1000, 250};
     const std::vector<BoundLevel> levels = bound(mesh, targets, {curl});
-    const std::vector<Mesh> own = approximate::simplify_chain(bent, targets);
+    const std::vector<Mesh> own = simplify::simplify_chain(bent, targets);
     ASSERT_EQ(levels.size(), own.size());
     for (size_t i = 0; i < levels.size(); ++i) {
-        const auto moved = approximate::follow(levels[i], surface);
+        const auto moved = deform::follow(levels[i], surface);
         ASSERT_TRUE(moved);
         EXPECT_LT(deviation(bent, *moved), 4 * deviation(bent, own[i])) << targets[i];
     }
@@ -211,7 +211,7 @@ TEST_F(Follow, AFlatFlagThatWavesLaterKeepsTrianglesForItsWaves) {
     const Mesh waving = posed(mesh, pose);
     const PoseSurface surface(pose);
     const auto error = [&](const std::vector<Bend>& others) {
-        const auto moved = approximate::follow(bound(mesh, {600}, others).at(0), surface);
+        const auto moved = deform::follow(bound(mesh, {600}, others).at(0), surface);
         EXPECT_TRUE(moved);
         return moved ? deviation(waving, *moved) : 1.0;
     };
@@ -236,7 +236,7 @@ TEST_F(Follow, ALevelStaysOnItsOwnSheetThoughAnotherLiesNearer) {
         pose.points[i].z += 2;
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {300, 60})) {
-        const auto moved = approximate::follow(level, surface);
+        const auto moved = deform::follow(level, surface);
         ASSERT_TRUE(moved);
         for (const glm::vec3& p : moved->positions)
             EXPECT_TRUE(p.z < 0.1f || p.z > 1.8f) << p.z;
@@ -250,8 +250,8 @@ TEST_F(Follow, WhatIsKnownOfTheErrorIsWhatMeasuringFinds) {
         const Mesh bent = posed(mesh, pose);
         const PoseSurface surface(pose);
         for (const BoundLevel& level : bound(mesh, {4000, 1000, 250, 60}, {curl})) {
-            const Mesh moved = *approximate::follow(level, surface);
-            const approximate::Strayed strayed = approximate::strayed(level, moved, surface);
+            const Mesh moved = *deform::follow(level, surface);
+            const deform::Strayed strayed = deform::strayed(level, moved, surface);
             const double measured = deviation(bent, moved);
             EXPECT_GT(strayed.error, 0.8 * measured);
             EXPECT_LT(strayed.error, 1.5 * measured);
@@ -270,14 +270,14 @@ TEST_F(Follow, AFoldThatOpensCountsInTheFrameWhereItIsOpen) {
     const BoundLevel level = bound(book, {60}).at(0);
     const Pose shut = pose_of(book);
     const PoseSurface surface(shut);
-    const double before = approximate::strayed(level, level.mesh, surface).error;
+    const double before = deform::strayed(level, level.mesh, surface).error;
     const Pose open = pose_of(shapes::grid(24), [](const glm::dvec3& p) {
         return glm::dvec3(p.x, p.y, 0.2 * std::sin(12 * p.y));
     });
     const PoseSurface opened(open);
-    const Mesh moved = *approximate::follow(level, opened);
+    const Mesh moved = *deform::follow(level, opened);
     EXPECT_LT(before, 0.05);
-    EXPECT_GT(approximate::strayed(level, moved, opened).error, 0.1);
+    EXPECT_GT(deform::strayed(level, moved, opened).error, 0.1);
     EXPECT_GT(deviation(posed(book, open), moved), 0.1);
 }
 
@@ -288,8 +288,8 @@ TEST_F(Follow, SurfacesThatSlideInThemselvesAreNotApart) {
     });
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {600, 100})) {
-        const Mesh moved = *approximate::follow(level, surface);
-        EXPECT_LT(approximate::strayed(level, moved, surface).error, 0.002);
+        const Mesh moved = *deform::follow(level, surface);
+        EXPECT_LT(deform::strayed(level, moved, surface).error, 0.002);
     }
 }
 
@@ -298,8 +298,7 @@ TEST_F(Follow, GrowthIsThatOfLengths) {
     const Pose pose = pose_of(mesh, [](const glm::dvec3& p) { return 3.0 * p; });
     const PoseSurface surface(pose);
     const BoundLevel level = bound(mesh, {100}).at(0);
-    EXPECT_NEAR(approximate::strayed(level, *approximate::follow(level, surface), surface).growth,
-                3, 1e-5);
+    EXPECT_NEAR(deform::strayed(level, *deform::follow(level, surface), surface).growth, 3, 1e-5);
 }
 
 TEST_F(Follow, PolygonsCutTheOtherWayInThisFrameMakeNoDifference) {
@@ -317,8 +316,8 @@ TEST_F(Follow, PolygonsCutTheOtherWayInThisFrameMakeNoDifference) {
     }
     const PoseSurface after(cut);
     for (const BoundLevel& level : bound(mesh, {200})) {
-        const auto a = approximate::follow(level, before);
-        const auto b = approximate::follow(level, after);
+        const auto a = deform::follow(level, before);
+        const auto b = deform::follow(level, after);
         ASSERT_TRUE(a && b);
         EXPECT_LT(largest_move(*a, *b), 0.01);
     }
@@ -332,7 +331,7 @@ TEST_F(Follow, SurfacesThatCollapseToAPointOrALineStayFinite) {
         const Pose pose = pose_of(mesh, bend);
         const PoseSurface surface(pose);
         for (const BoundLevel& level : bound(mesh, {300, 20})) {
-            const auto moved = approximate::follow(level, surface);
+            const auto moved = deform::follow(level, surface);
             ASSERT_TRUE(moved);
             EXPECT_NO_THROW(check(*moved));
             for (const glm::vec3& p : moved->positions)
@@ -349,7 +348,7 @@ TEST_F(Follow, DegenerateTrianglesInTheBindPoseAreBoundAllTheSame) {
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {100, 10})) {
         EXPECT_NO_THROW(check(level));
-        EXPECT_TRUE(approximate::follow(level, surface));
+        EXPECT_TRUE(deform::follow(level, surface));
     }
 }
 
@@ -359,15 +358,15 @@ TEST_F(Follow, WhatHangsOnPointsThatAreNoNumbersOrNotThereIsNotDrawn) {
     Pose pose = pose_of(mesh);
     for (glm::vec3& p : pose.points)
         p.y = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_FALSE(approximate::follow(levels.at(0), PoseSurface(pose)));
+    EXPECT_FALSE(deform::follow(levels.at(0), PoseSurface(pose)));
     pose = pose_of(mesh);
     pose.points.resize(3);
     pose.triangles = {{0, 1, 2}};
-    EXPECT_FALSE(approximate::follow(levels.at(0), PoseSurface(pose)));
+    EXPECT_FALSE(deform::follow(levels.at(0), PoseSurface(pose)));
     pose.triangles = {{0, 1, 3}};
     EXPECT_THROW(PoseSurface{pose}, Error);
-    EXPECT_THROW(approximate::simplify_traced(mesh, std::vector<std::vector<glm::vec3>>(1),
-                                              std::vector<size_t>{10}),
+    EXPECT_THROW(simplify::simplify_traced(mesh, std::vector<std::vector<glm::vec3>>(1),
+                                           std::vector<size_t>{10}),
                  Error);
 }
 
@@ -375,9 +374,9 @@ TEST_F(Follow, MeshThatThePoseIsNotOfIsNotBound) {
     const Mesh mesh = shapes::sphere(1, 3);
     const Pose other = pose_of(shapes::sphere(2, 3));
     const std::vector<size_t> targets{100};
-    auto traced = approximate::simplify_traced(mesh, {}, targets);
+    auto traced = simplify::simplify_traced(mesh, {}, targets);
     const PoseSurface surface(other);
-    EXPECT_FALSE(approximate::Binder(mesh, surface).bind(std::move(traced.at(0))));
+    EXPECT_FALSE(deform::Binder(mesh, surface).bind(std::move(traced.at(0))));
 }
 
 TEST_F(Follow, AHubOfManyTrianglesTakesNoLongerThanOtherMeshes) {
@@ -393,9 +392,9 @@ TEST_F(Follow, AHubOfManyTrianglesTakesNoLongerThanOtherMeshes) {
     const Pose pose = pose_of(disk, [](const glm::dvec3& p) { return 2.0 * p; });
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(disk, {40000, 2000, 100})) {
-        const auto moved = approximate::follow(level, surface);
+        const auto moved = deform::follow(level, surface);
         ASSERT_TRUE(moved);
-        EXPECT_LT(approximate::strayed(level, *moved, surface).error, 0.1);
+        EXPECT_LT(deform::strayed(level, *moved, surface).error, 0.1);
     }
     EXPECT_LT(cpu_seconds() - start, 20);
 }

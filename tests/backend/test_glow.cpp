@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards lamps: what glows in the midst of something else stays there, and stays as bright.
-#include "approximate/simplify.h"
 #include "backend/built.h"
 #include "backend/lamps.h"
 #include "backend/models.h"
@@ -8,6 +7,7 @@
 #include "build/glow.h"
 #include "measure/agreement.h"
 #include "measure/deviation.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ double error_of(const Mesh& stand_in, std::span<const Material> own) {
 TEST_F(Glow, WithoutLampsLevelsAreThoseOfSimplification) {
     const Mesh ball = shapes::sphere(1, 3);
     const std::vector<size_t> targets{200, 20};
-    const std::vector<Mesh> plain = approximate::simplify_chain(ball, targets);
+    const std::vector<Mesh> plain = simplify::simplify_chain(ball, targets);
     const std::vector<Mesh> levels = build::simplify_with_lamps(ball, {}, targets, {});
     ASSERT_EQ(levels.size(), plain.size());
     for (size_t i = 0; i < levels.size(); ++i)
@@ -77,7 +77,7 @@ TEST_F(Glow, WhatGlowsAllOverIsNoLampAmongOtherThings) {
         material.emission = {0.1, 0.1, 0.1};
     const std::vector<size_t> targets{100};
     EXPECT_EQ(build::simplify_with_lamps(lamp(), all, targets, {})[0].positions,
-              approximate::simplify_chain(lamp(), targets)[0].positions);
+              simplify::simplify_chain(lamp(), targets)[0].positions);
 }
 
 TEST_F(Glow, ALampThatIsGoneIsMissedHoweverNearItsGlobeIs) {

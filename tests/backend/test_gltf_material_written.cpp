@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards materials in our own glTF files: they come back bit for bit, strangers see the same
 // surface, pictures are there once.
-#include "approximate/simplify.h"
 #include "base/error.h"
 #include "format/format.h"
 #include "gltf_textured.h"
 #include "mutate.h"
 #include "scratch.h"
+#include "simplify/simplify.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -295,7 +295,7 @@ TEST(GltfMaterialWritten, SimplifiedModelsKeepTheirPictures) {
     Problems problems;
     Model read_back = read_model(folder() / "ball.glb", problems);
     Representation& finest = read_back.objects[0].representations[0];
-    finest.payload = std::make_shared<const Mesh>(approximate::simplify(finest.mesh(), 200));
+    finest.payload = std::make_shared<const Mesh>(simplify::simplify_mesh(finest.mesh(), 200));
     summarize(finest, read_back);
     write_model(folder() / "small.glb", read_back);
     const Model small = read_model(folder() / "small.glb", problems);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards height fields on a regular grid: which meshes are some, and that sub-sampling fits them.
-#include "approximate/grid.h"
 #include "backend/shapes.h"
+#include "simplify/height_field.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@
 #include <numeric>
 
 using namespace lodestone;
-using approximate::find_grid;
-using approximate::HeightGrid;
-using approximate::subsample;
+using simplify::find_grid;
+using simplify::HeightGrid;
+using simplify::subsample;
 using namespace lodestone::shapes;
 
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards insertion: what is farthest from the original comes back, and nothing else changes.
-#include "approximate/fit.h"
-#include "approximate/insert.h"
-#include "approximate/pass.h"
-#include "approximate/strays.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "simplify/collapse/collapse_pass.h"
+#include "simplify/fit/distance_outliers.h"
+#include "simplify/fit/surface_fit.h"
+#include "simplify/fit/vertex_insertion.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 #include <memory>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::simplify;
 
 namespace {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the step that makes solids show what is wanted: exact where nothing hides anything, as
 // little as possible, never into the ground.
-#include "approximate/least_change.h"
-#include "approximate/standing.h"
-#include "approximate/visible_solids.h"
+#include "solids/keep_on_floor.h"
+#include "solids/matching_step.h"
+#include "solids/visible_solids.h"
 
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using approximate::Missing;
-using approximate::VisibleSolids;
+using solids::Missing;
+using solids::VisibleSolids;
 
 namespace {
 
@@ -39,12 +39,12 @@ double missed(Composite& composite, const Attributes& wanted, double floor, int 
     double off = 0;
     for (int i = 0; i <= steps; ++i) {
         const measure::SurfaceInertia now = visible.of(composite, 1, {}, &each);
-        const Missing missing = approximate::missing_of(now, wanted, size);
+        const Missing missing = solids::missing_of(now, wanted, size);
         off = std::abs(missing.area) + glm::length(missing.centroid);
         for (int axis = 0; axis < 3; ++axis)
             off += glm::length(missing.variances[axis]);
         if (i < steps)
-            approximate::make_up(composite, now, each, missing, size, floor);
+            solids::make_up(composite, now, each, missing, size, floor);
     }
     return off;
 }
@@ -62,7 +62,7 @@ Composite four() {
 
 TEST(LeastChange, OfNothingNothingIsMade) {
     Composite none;
-    approximate::make_up(none, {}, {}, {}, true, 0);
+    solids::make_up(none, {}, {}, {}, true, 0);
     EXPECT_TRUE(none.solids.empty());
 }
 
@@ -105,7 +105,7 @@ TEST(LeastChange, WhatWouldSinkIntoTheGroundStandsThereAndTheOthersDoMore) {
     wanted.centroid.z -= 0.3;
     EXPECT_LT(missed(composite, wanted, 0, 8), 0.005);
     for (const Solid& solid : composite.solids)
-        EXPECT_GE(approximate::reach_of(solid.primitive, solid.box).low, -1e-6);
+        EXPECT_GE(solids::reach_of(solid.primitive, solid.box).low, -1e-6);
 }
 
 TEST(LeastChange, ScaleAndPlaceOfTheWholeDoNotMatter) {

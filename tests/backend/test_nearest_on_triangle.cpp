@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that four triangles looked at together give what one after the other does.
-#include "approximate/nearest_on_triangle.h"
+#include "geometry/closest_on_triangle.h"
 
 #include <bit>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::geometry;
 
 namespace {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards painted boxes: as few colors as tell the sides apart, and as much light as was asked for.
-#include "approximate/painted_box.h"
 #include "backend/models.h"
+#include "solids/painted_box.h"
 
 #include <gtest/gtest.h>
 #include <set>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::solids;
 
 namespace {
 

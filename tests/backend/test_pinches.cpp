@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how fans that share an edge are told apart.
-#include "approximate/pinches.h"
-#include "approximate/simplify.h"
+#include "simplify/collapse/mesh_tunnels.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <map>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::simplify;
 
 namespace {
 
@@ -174,7 +174,7 @@ TEST(Pinches, PlatesFullOfHolesGetNoEdgesOfMoreThanTwoTriangles) {
     }
     ASSERT_EQ(edges_by_uses(open(mesh, {})).size(), 1u);
     for (const size_t part : {10, 20, 50}) {
-        const Mesh level = simplify(mesh, mesh.triangles.size() / part);
+        const Mesh level = simplify_mesh(mesh, mesh.triangles.size() / part);
         for (const auto& [uses, count] : edges_by_uses(level))
             EXPECT_EQ(uses, 2) << count << " edges at " << level.triangles.size();
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards distances to boxes and ellipsoids against the nearest of many triangles and closed forms.
 #include "base/random.h"
-#include "model/primitive_distance.h"
+#include "geometry/primitive_distance.h"
 #include "ray/scene.h"
 
 #include <cmath>

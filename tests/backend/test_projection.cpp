@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards projected texture coordinates: Blender's formulas, seams and poles.
-#include "model/projection.h"
+#include "geometry/uv_projection.h"
 
 #include <algorithm>
 #include <cmath>

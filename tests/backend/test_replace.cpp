@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards replacement: boxes and ellipsoids keep area, centroid and variances, or are refused; by
 // closed forms, and measured again by rays as what they stand for was.
-#include "approximate/replace.h"
-#include "approximate/stand_in_material.h"
 #include "backend/shapes.h"
 #include "base/random.h"
 #include "measure/visible.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <limits>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::solids;
 
 namespace {
 
@@ -411,16 +411,15 @@ TEST(Replace, ClearShellSettlesByItsOpacity) {
     Attributes sure = rough;
     sure.visible_area = 1.02;
     sure.centroid = {0.1, 0, 0};
-    const approximate::Clear clear{{{1, 2, 3}, glm::dmat3(1.0), {1, 2, 3}}, 0.5};
-    const approximate::Clear now = approximate::settled(clear, rough, sure);
+    const solids::Clear clear{{{1, 2, 3}, glm::dmat3(1.0), {1, 2, 3}}, 0.5};
+    const solids::Clear now = solids::settled(clear, rough, sure);
     EXPECT_NEAR(now.opacity, 0.51, 1e-12);
     EXPECT_NEAR(glm::length(now.primitive.center - glm::dvec3(1.1, 2, 3)), 0, 1e-12);
     EXPECT_EQ(now.primitive.half_size, clear.primitive.half_size);
     // A solid has nothing but its size.
-    EXPECT_NEAR(approximate::settled(clear.primitive, rough, sure).half_size.x, std::sqrt(1.02),
-                1e-12);
+    EXPECT_NEAR(solids::settled(clear.primitive, rough, sure).half_size.x, std::sqrt(1.02), 1e-12);
     // Nobody knows better by what sees nothing.
-    EXPECT_EQ(approximate::settled(clear, rough, Attributes{}).opacity, 0.5);
+    EXPECT_EQ(solids::settled(clear, rough, Attributes{}).opacity, 0.5);
 }
 
 TEST(Replace, FourthMomentTellsBoxesFromBalls) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards simplification: targets met, shape, borders, seams and shading kept, any input survived.
-#include "approximate/simplify.h"
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/random.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@
 #include <map>
 
 using namespace lodestone;
-using approximate::simplify;
-using approximate::simplify_chain;
-using approximate::SimplifyOptions;
+using simplify::simplify_mesh;
+using simplify::simplify_chain;
+using simplify::SimplifyOptions;
 using namespace lodestone::shapes;
 
 namespace {
@@ -58,7 +58,7 @@ double thread_seconds() {
 }  // namespace
 
 TEST(Simplify, NothingStaysNothing) {
-    EXPECT_TRUE(simplify(Mesh{}, 10).empty());
+    EXPECT_TRUE(simplify_mesh(Mesh{}, 10).empty());
     EXPECT_TRUE(simplify_chain(shapes::cube(), {}).empty());
 }
 
@@ -69,32 +69,32 @@ TEST(Simplify, TargetsThatDoNotFallAndBadOptionsAreRefused) {
     EXPECT_THROW(simplify_chain(shapes::cube(), zero), Error);
     SimplifyOptions options;
     options.max_turn = 90;
-    EXPECT_THROW(simplify(shapes::cube(), 4, options), Error);
+    EXPECT_THROW(simplify_mesh(shapes::cube(), 4, options), Error);
     options = {};
     options.seam_weight = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(simplify(shapes::cube(), 4, options), Error);
+    EXPECT_THROW(simplify_mesh(shapes::cube(), 4, options), Error);
 }
 
 TEST(Simplify, OneTriangleStaysOneTriangle) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}};
-    EXPECT_EQ(hash_of(simplify(mesh, 1)), hash_of(mesh));
-    EXPECT_EQ(simplify(shapes::quad(1, 1), 1).triangles.size(), 1u);
+    EXPECT_EQ(hash_of(simplify_mesh(mesh, 1)), hash_of(mesh));
+    EXPECT_EQ(simplify_mesh(shapes::quad(1, 1), 1).triangles.size(), 1u);
 }
 
 TEST(Simplify, TetrahedronNeverVanishes) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    const Mesh least = simplify(mesh, 1);
+    const Mesh least = simplify_mesh(mesh, 1);
     EXPECT_GE(least.triangles.size(), 1u);
     EXPECT_LE(least.triangles.size(), 4u);
     expect_sound(least, mesh);
 }
 
 TEST(Simplify, CubeAtTwelveTrianglesIsThatCubeAndNeverVanishes) {
-    EXPECT_EQ(hash_of(simplify(shapes::cube(), 12)), hash_of(shapes::cube()));
+    EXPECT_EQ(hash_of(simplify_mesh(shapes::cube(), 12)), hash_of(shapes::cube()));
     const size_t targets[] = {12, 8, 4, 1};
     for (const Mesh& level : simplify_chain(shapes::cube(), targets)) {
         EXPECT_GE(level.triangles.size(), 1u);
@@ -104,7 +104,7 @@ TEST(Simplify, CubeAtTwelveTrianglesIsThatCubeAndNeverVanishes) {
 
 TEST(Simplify, FlatGridEndsAsTwoTrianglesWithItsOutline) {
     const Mesh mesh = grid(50);
-    const Mesh least = simplify(mesh, 2);
+    const Mesh least = simplify_mesh(mesh, 2);
     EXPECT_EQ(least.triangles.size(), 2u);
     EXPECT_NEAR(surface_area(least), 1, 1e-6);
     for (const glm::vec3& p : least.positions) {
@@ -116,7 +116,7 @@ TEST(Simplify, FlatGridEndsAsTwoTrianglesWithItsOutline) {
 
 TEST(Simplify, FineSharpCubeBecomesTheCubeWithSharpNormals) {
     const Mesh mesh = fine_cube(20);
-    const Mesh level = simplify(mesh, 12);
+    const Mesh level = simplify_mesh(mesh, 12);
     ASSERT_EQ(level.triangles.size(), 12u);
     EXPECT_TRUE(closed(level));
     EXPECT_NEAR(surface_area(level), 6, 1e-6);
@@ -133,7 +133,7 @@ TEST(Simplify, FineSharpCubeBecomesTheCubeWithSharpNormals) {
 TEST(Simplify, SphereAtATenthKeepsRadiusVolumeClosednessAndSmoothNormals) {
     const Mesh mesh = shapes::sphere(1, 4);
     ASSERT_EQ(mesh.triangles.size(), 5120u);
-    const Mesh level = simplify(mesh, 512);
+    const Mesh level = simplify_mesh(mesh, 512);
     expect_hit(level, 512);
     expect_sound(level, mesh);
     EXPECT_TRUE(closed(level));
@@ -165,7 +165,7 @@ TEST(Simplify, FlatShadedSphereStaysFlatShaded) {
         const auto first = static_cast<uint32_t>(3 * i);
         mesh.triangles.emplace_back(first, first + 1, first + 2);
     }
-    const Mesh level = simplify(mesh, 128);
+    const Mesh level = simplify_mesh(mesh, 128);
     expect_hit(level, 128);
     expect_sound(level, mesh);
     for (size_t i = 0; i < level.triangles.size(); ++i)
@@ -176,7 +176,7 @@ TEST(Simplify, FlatShadedSphereStaysFlatShaded) {
 
 TEST(Simplify, OpenTerrainKeepsItsBorder) {
     const Mesh mesh = shapes::terrain(60);
-    const Mesh level = simplify(mesh, 360);
+    const Mesh level = simplify_mesh(mesh, 360);
     expect_hit(level, 360);
     // The border lies in four planes; seen from above the terrain is still the unit square.
     double covered = 0;
@@ -195,7 +195,7 @@ TEST(Simplify, BorderOfTwoMaterialsStaysStraight) {
     Mesh mesh = grid(40);
     for (const Triangle& t : mesh.triangles)
         mesh.slots.push_back(middle(mesh, t).x < 0.5 ? 3 : 7);
-    const Mesh level = simplify(mesh, 8);
+    const Mesh level = simplify_mesh(mesh, 8);
     expect_hit(level, 8);
     expect_sound(level, mesh);
     double left = 0;
@@ -216,7 +216,7 @@ TEST(Simplify, BorderOfTwoMaterialsStaysStraight) {
 
 TEST(Simplify, TextureSeamOfACylinderDoesNotSmear) {
     const Mesh mesh = seamed_cylinder(64, 32);
-    const Mesh level = simplify(mesh, 400);
+    const Mesh level = simplify_mesh(mesh, 400);
     expect_hit(level, 400);
     expect_sound(level, mesh);
     double worst = 0;
@@ -248,14 +248,14 @@ TEST(Simplify, ChainsHitEveryTarget) {
 
 TEST(Simplify, SmallPartsGoWholeBeforeLargeOnesLoseTheirShape) {
     const Mesh mesh = boxes(300);
-    const Mesh level = simplify(mesh, 100);
+    const Mesh level = simplify_mesh(mesh, 100);
     EXPECT_LE(level.triangles.size(), 113u);
     EXPECT_GE(level.triangles.size(), 80u);
     expect_sound(level, mesh);
     Mesh scene = shapes::sphere(30, 4);
     scene.normals.clear();
     append(scene, mesh, Affine{});
-    const Mesh few = simplify(scene, 200);
+    const Mesh few = simplify_mesh(scene, 200);
     expect_hit(few, 200);
     double reach = 0;
     for (const glm::vec3& p : few.positions)
@@ -266,7 +266,7 @@ TEST(Simplify, SmallPartsGoWholeBeforeLargeOnesLoseTheirShape) {
 TEST(Simplify, FarFromTheOriginTheShapeIsTheSame) {
     const glm::dvec3 far(1e5, -1e5, 1e5);
     Mesh mesh = moved(shapes::sphere(100, 4), far);
-    const Mesh level = simplify(mesh, 512);
+    const Mesh level = simplify_mesh(mesh, 512);
     expect_hit(level, 512);
     EXPECT_TRUE(closed(level));
     for (const glm::vec3& p : level.positions)
@@ -274,9 +274,9 @@ TEST(Simplify, FarFromTheOriginTheShapeIsTheSame) {
 }
 
 TEST(Simplify, TinyAndHugeScalesGiveTheSameTriangles) {
-    const Mesh unit = simplify(shapes::sphere(1, 3), 200);
+    const Mesh unit = simplify_mesh(shapes::sphere(1, 3), 200);
     for (const double scale : {0x1p-40, 0x1p40}) {
-        const Mesh other = simplify(shapes::sphere(scale, 3), 200);
+        const Mesh other = simplify_mesh(shapes::sphere(scale, 3), 200);
         ASSERT_EQ(other.triangles.size(), unit.triangles.size());
         EXPECT_EQ(other.triangles, unit.triangles);
     }
@@ -352,7 +352,7 @@ TEST(Simplify, NonManifoldAndDegenerateInputIsAccepted) {
         for (const size_t target : {count / 2, count / 8, size_t{4}, size_t{1}}) {
             if (target == 0)
                 continue;
-            const Mesh level = simplify(mesh, target);
+            const Mesh level = simplify_mesh(mesh, target);
             EXPECT_GE(level.triangles.size(), 1u);
             EXPECT_LE(static_cast<double>(level.triangles.size()),
                       1.05 * static_cast<double>(target) + 8);
@@ -385,7 +385,7 @@ TEST(Simplify, ConesThatShareTheirTipKeepIt) {
             }
         }
     }
-    const Mesh level = simplify(mesh, 96);
+    const Mesh level = simplify_mesh(mesh, 96);
     expect_hit(level, 96);
     expect_sound(level, mesh);
     double tip = 1;
@@ -399,7 +399,7 @@ TEST(Simplify, TwoSidedCardsAreSimplifiedOnBothSides) {
     const std::vector<Triangle> front = mesh.triangles;
     for (const Triangle& t : front)
         mesh.triangles.emplace_back(t.x, t.z, t.y);
-    const Mesh level = simplify(mesh, 400);
+    const Mesh level = simplify_mesh(mesh, 400);
     expect_hit(level, 400);
     double up = 0;
     double down = 0;
@@ -417,7 +417,7 @@ TEST(Simplify, RandomSoupNeverLosesEverything) {
     for (int i = 0; i < 3000; ++i)
         mesh.triangles.emplace_back(random.next() % 200, random.next() % 200, random.next() % 200);
     for (const size_t target : {1500u, 300u, 30u}) {
-        const Mesh level = simplify(mesh, target);
+        const Mesh level = simplify_mesh(mesh, target);
         EXPECT_GE(level.triangles.size(), 1u);
         EXPECT_LE(static_cast<double>(level.triangles.size()),
                   1.05 * static_cast<double>(target) + 8);
@@ -428,13 +428,13 @@ TEST(Simplify, RandomSoupNeverLosesEverything) {
 TEST(Simplify, CancellingStopsIt) {
     const volatile int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
-    EXPECT_THROW(simplify(shapes::terrain(20), 10, {}, job), Error);
+    EXPECT_THROW(simplify_mesh(shapes::terrain(20), 10, {}, job), Error);
 }
 
 TEST(Simplify, LargeTerrainIsQuick) {
     const Mesh mesh = shapes::terrain(316);
     const double start = thread_seconds();
-    const Mesh level = simplify(mesh, mesh.triangles.size() / 10);
+    const Mesh level = simplify_mesh(mesh, mesh.triangles.size() / 10);
     const double seconds = thread_seconds() - start;
     expect_hit(level, mesh.triangles.size() / 10);
     std::cout << mesh.triangles.size() << " -> " << level.triangles.size() << " triangles in "

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards vertex colors in simplification: ramps and paint stay where they are.
-#include "approximate/simplify.h"
 #include "backend/grids.h"
+#include "simplify/simplify.h"
 
 #include <gtest/gtest.h>
 #include <limits>
 
 using namespace lodestone;
-using approximate::simplify;
+using simplify::simplify_mesh;
 using namespace lodestone::shapes;
 
 TEST(SimplifyColors, SmoothColorsStayWhereTheyAre) {
     Mesh mesh = shapes::terrain(60);
     for (const glm::vec3& p : mesh.positions)
         mesh.colors.emplace_back(p.x, p.y, 1 - p.x, 0.5f);
-    const Mesh level = simplify(mesh, 360);
+    const Mesh level = simplify_mesh(mesh, 360);
     ASSERT_LE(level.triangles.size(), 360u);
     ASSERT_NO_THROW(check(level));
     ASSERT_FALSE(level.colors.empty());
@@ -36,7 +36,7 @@ TEST(SimplifyColors, SplitColorsKeepTheirBorder) {
                            half == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1));
         append(mesh, side, Affine{});
     }
-    const Mesh level = simplify(mesh, 40);
+    const Mesh level = simplify_mesh(mesh, 40);
     ASSERT_LE(level.triangles.size(), 40u);
     ASSERT_NO_THROW(check(level));
     ASSERT_FALSE(level.colors.empty());
@@ -71,7 +71,7 @@ TEST(SimplifyColors, PaintOnAPlaneKeepsItsOutline) {
         }
         return sum;
     };
-    const Mesh level = simplify(mesh, 460);
+    const Mesh level = simplify_mesh(mesh, 460);
     ASSERT_LE(level.triangles.size(), 460u);
     EXPECT_NEAR(white(level) / white(mesh), 1, 0.03);
     // Far from the outline nothing is left but white or black.
@@ -87,6 +87,6 @@ TEST(SimplifyColors, PaintOnAPlaneKeepsItsOutline) {
 TEST(SimplifyColors, NoNumbersBecomeWhite) {
     Mesh mesh = grid(10);
     mesh.colors.assign(mesh.positions.size(), glm::vec4(std::numeric_limits<float>::quiet_NaN()));
-    for (const glm::vec4& color : simplify(mesh, 20).colors)
+    for (const glm::vec4& color : simplify_mesh(mesh, 20).colors)
         EXPECT_EQ(color, glm::vec4(1));
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards simplification of what has thousands of parts: which of them go, and when.
-#include "approximate/simplify.h"
+#include "simplify/simplify.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using approximate::simplify;
-using approximate::simplify_chain;
+using simplify::simplify_mesh;
+using simplify::simplify_chain;
 
 TEST(SimplifyParts, ThousandsOfTilesGoBeforeThePlatesTheyLieOnLoseTheirShape) {
     Mesh mesh;
@@ -75,6 +75,6 @@ TEST(SimplifyParts, ThousandsOfLeavesAreCoarserBeforeTheFirstOfThemGoes) {
         return sum;
     };
     // Five triangles for each leaf: none has to go (a twelfth of them went).
-    const Mesh out = simplify(mesh, mesh.triangles.size() / 10);
+    const Mesh out = simplify_mesh(mesh, mesh.triangles.size() / 10);
     EXPECT_NEAR(area(out) / area(mesh), 1, 0.03);
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards standing stand-ins: at the floor, same top and area, never below.
-#include "approximate/replace.h"
-#include "approximate/standing.h"
 #include "base/random.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using namespace lodestone::approximate;
+using namespace lodestone::solids;
 
 namespace {
 

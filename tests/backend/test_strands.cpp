@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards hair: tubes that are closed, as wide as their strands, and never more than is needed.
-#include "model/strands.h"
+#include "geometry/strand_tubes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what simplification does to holes, handles and parts, with and without keeping topology.
-#include "approximate/flips.h"
-#include "approximate/simplify.h"
 #include "backend/shapes.h"
+#include "simplify/fit/edge_flips.h"
+#include "simplify/simplify.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <set>
 
 using namespace lodestone;
-using approximate::simplify;
-using approximate::SimplifyMode;
-using approximate::SimplifyOptions;
+using simplify::simplify_mesh;
+using simplify::SimplifyMode;
+using simplify::SimplifyOptions;
 
 namespace {
 
@@ -106,7 +106,7 @@ TEST(Topology, TorusKeepsItsHandleHoweverFewTrianglesAreWanted) {
     const Mesh ring = shapes::torus(48, 24);
     for (const SimplifyMode mode : {SimplifyMode::Fast, SimplifyMode::Best}) {
         for (const size_t target : {200u, 1u}) {
-            const Mesh out = simplify(ring, target, keeping(mode));
+            const Mesh out = simplify_mesh(ring, target, keeping(mode));
             const Topology found = topology_of(out);
             EXPECT_EQ(found.euler, 0) << target;
             EXPECT_EQ(found.open, 0u) << target;
@@ -123,7 +123,7 @@ TEST(Topology, TunnelsThatCloseMakeNoEdgeNonManifold) {
         for (const size_t target : {1000u, 600u, 300u, 100u}) {
             SimplifyOptions options;
             options.mode = mode;
-            const Mesh out = simplify(plate, target, options);
+            const Mesh out = simplify_mesh(plate, target, options);
             EXPECT_LE(out.triangles.size(), target);
             const Topology found = topology_of(welded(out));
             EXPECT_EQ(found.open, 0u) << target;
@@ -136,12 +136,12 @@ TEST(Topology, DrilledPlateKeepsEveryTunnelOrReachesTheTarget) {
     const Mesh plate = drilled_plate(9);
     ASSERT_EQ(topology_of(plate).euler, 2 - 2 * 16);
     ASSERT_EQ(topology_of(plate).open, 0u);
-    const Mesh kept = simplify(plate, 8, keeping(SimplifyMode::Fast));
+    const Mesh kept = simplify_mesh(plate, 8, keeping(SimplifyMode::Fast));
     EXPECT_EQ(topology_of(kept).euler, 2 - 2 * 16);
     EXPECT_EQ(topology_of(kept).open, 0u);
     EXPECT_EQ(topology_of(kept).non_manifold, 0u);
     EXPECT_LT(kept.triangles.size(), plate.triangles.size() / 2);
-    EXPECT_LE(simplify(plate, 8).triangles.size(), 8u);
+    EXPECT_LE(simplify_mesh(plate, 8).triangles.size(), 8u);
 }
 
 TEST(Topology, HoleInASheetStaysAHole) {
@@ -156,7 +156,7 @@ TEST(Topology, HoleInASheetStaysAHole) {
             sheet.triangles.emplace_back(a, a + 5, a + 4);
         }
     }
-    const Mesh out = simplify(sheet, 1, keeping(SimplifyMode::Fast));
+    const Mesh out = simplify_mesh(sheet, 1, keeping(SimplifyMode::Fast));
     EXPECT_EQ(topology_of(out).euler, 0) << "a ring";
     EXPECT_EQ(topology_of(out).non_manifold, 0u);
 }
@@ -175,8 +175,8 @@ TEST(Topology, PartsStayWithTheOptionAndGoWithoutIt) {
             most = std::max(most, p.x);
         return most;
     };
-    EXPECT_GT(reach(simplify(two, 60, keeping(SimplifyMode::Fast))), 4);
-    EXPECT_LT(reach(simplify(two, 60)), 4);
+    EXPECT_GT(reach(simplify_mesh(two, 60, keeping(SimplifyMode::Fast))), 4);
+    EXPECT_LT(reach(simplify_mesh(two, 60)), 4);
 }
 
 TEST(Topology, EdgeAcrossAFoldFlipsOntoIt) {
@@ -195,7 +195,7 @@ TEST(Topology, EdgeAcrossAFoldFlipsOntoIt) {
             sheet.triangles.emplace_back(a, a + kSide + 1, a + kSide);
         }
     }
-    approximate::CollapseMesh mesh = approximate::open(sheet, {});
+    simplify::CollapseMesh mesh = simplify::open(sheet, {});
     const std::vector<glm::dvec3> points = mesh.points;
     const uint32_t corners[4] = {0, kSide - 1, kSide * kSide - 1, kSide * (kSide - 1)};
     for (uint32_t v = 0; v < mesh.merged.size(); ++v)
@@ -211,14 +211,14 @@ TEST(Topology, EdgeAcrossAFoldFlipsOntoIt) {
     mesh.live = 2;
     mesh.wedges.clear();
 
-    approximate::Adjacency adjacency;
+    simplify::Adjacency adjacency;
     adjacency.build(mesh);
-    approximate::FitPlaces places(mesh, sheet);
+    simplify::FitPlaces places(mesh, sheet);
     const auto flips = [&] {
-        approximate::FitSamples samples;
-        approximate::sample_surface(places, adjacency, 1000, 0, {}, samples);
+        simplify::FitSamples samples;
+        simplify::sample_surface(places, adjacency, 1000, 0, {}, samples);
         EXPECT_GT(samples.size(), 100u);
-        const size_t flipped = approximate::flip_edges(places, adjacency, {}, samples);
+        const size_t flipped = simplify::flip_edges(places, adjacency, {}, samples);
         adjacency.build(mesh);
         return flipped;
     };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is seen of boxes and ellipsoids that hide parts of each other, found without
 // triangles.
-#include "approximate/visible_solids.h"
 #include "backend/with_rays.h"
 #include "measure/visible.h"
+#include "solids/visible_solids.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
 
 using namespace lodestone;
-using approximate::VisibleSolids;
+using solids::VisibleSolids;
 
 namespace {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards posts that are thinner than a pixel: from afar they are clear boxes as wide as one.
-#include "approximate/simplify.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/widened.h"
 #include "backend/built.h"
 #include "backend/lamps.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "build/widen.h"
 #include "measure/visible.h"
+#include "simplify/simplify.h"
+#include "solids/stand_in_material.h"
+#include "solids/widened_boxes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -60,19 +60,19 @@ std::vector<build::Candidate> widened(const Mesh& finest, const std::vector<Mate
 TEST_F(Widen, APostBecomesABoxOfItsLengthAndOfTheSameAreaTimesOpacity) {
     const Mesh post = shapes::box({-0.05, -0.05, 0}, {0.05, 0.05, 3});
     const Attributes attributes = attributes_of(post);
-    const auto thin = approximate::thin_of(post, attributes);
+    const auto thin = solids::thin_of(post, attributes);
     ASSERT_TRUE(thin);
     EXPECT_NEAR(thin->thickness(), 0.1, 0.01);
-    const approximate::Clear clear = approximate::widened(*thin, 0.5, 0);
+    const solids::Clear clear = solids::widened(*thin, 0.5, 0);
     EXPECT_NEAR(clear.primitive.half_size.x, 1.5, 1e-6);
     EXPECT_EQ(clear.primitive.half_size.y, 0.25);
     EXPECT_EQ(clear.primitive.half_size.z, 0.25);
     EXPECT_NEAR(std::abs(clear.primitive.axes[0].z), 1, 1e-3);
     EXPECT_NEAR(clear.primitive.center.z, 1.5, 1e-3);
-    EXPECT_NEAR(clear.opacity * approximate::box_shell(clear.primitive.half_size).area,
+    EXPECT_NEAR(clear.opacity * solids::box_shell(clear.primitive.half_size).area,
                 attributes.visible_area, 1e-9);
     EXPECT_NEAR(0.5 * clear.opacity, 0.1, 0.01);
-    const Material material = approximate::clear_material({}, clear.opacity);
+    const Material material = solids::clear_material({}, clear.opacity);
     EXPECT_EQ(material.alpha_mode, AlphaMode::Blend);
     EXPECT_NEAR((1 - material.alpha) * (1 - material.alpha), 1 - clear.opacity, 1e-12)
         << "its surface is crossed twice";
@@ -80,17 +80,17 @@ TEST_F(Widen, APostBecomesABoxOfItsLengthAndOfTheSameAreaTimesOpacity) {
 
 TEST_F(Widen, OnlyWhatIsLongAndThinBothWaysIsThin) {
     const Mesh cube = shapes::cube();
-    EXPECT_FALSE(approximate::thin_of(cube, attributes_of(cube)));
+    EXPECT_FALSE(solids::thin_of(cube, attributes_of(cube)));
     const Mesh board = shapes::box({0, 0, 0}, {0.02, 1, 3});
-    EXPECT_FALSE(approximate::thin_of(board, attributes_of(board)));
-    EXPECT_FALSE(approximate::thin_of(Mesh{}, {}));
+    EXPECT_FALSE(solids::thin_of(board, attributes_of(board)));
+    EXPECT_FALSE(solids::thin_of(Mesh{}, {}));
     const Mesh line = shapes::box({0, 0, 0}, {0, 0, 3});
-    EXPECT_FALSE(approximate::thin_of(line, attributes_of(line)));
+    EXPECT_FALSE(solids::thin_of(line, attributes_of(line)));
 }
 
 TEST_F(Widen, AnOpaquePostOfALevelIsDrawnAsWideAsTheErrorAndAsClear) {
     const std::vector<size_t> targets{60};
-    const Mesh level = approximate::simplify_chain(lamp(), targets)[0];
+    const Mesh level = simplify::simplify_chain(lamp(), targets)[0];
     const auto made = widened(lamp(), materials(), level, 0.25);
     ASSERT_EQ(made.size(), 2u) << "two widths";
     for (size_t i = 0; i < made.size(); ++i) {
@@ -120,7 +120,7 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
     build::Judge judge(finest, own, texels, {}, false, 1, 0, {});
     judge.measure_finest(finest, {});
     const std::vector<size_t> targets{90, 60, 40};
-    const std::vector<Mesh> levels = approximate::simplify_chain(finest, targets);
+    const std::vector<Mesh> levels = simplify::simplify_chain(finest, targets);
     std::vector<build::Candidate> kept{level_of(levels[0], own, 0.05),
                                        level_of(levels[1], own, 0.2),
                                        level_of(levels[2], own, 1.5)};
@@ -136,11 +136,11 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
 
 TEST_F(Widen, ARailNearTheGroundDoesNotSinkIntoIt) {
     const Mesh rail = shapes::box({-2, -0.02, 0.1}, {2, 0.02, 0.14});
-    const auto thin = approximate::thin_of(rail, attributes_of(rail));
+    const auto thin = solids::thin_of(rail, attributes_of(rail));
     ASSERT_TRUE(thin);
-    const approximate::Clear clear = approximate::widened(*thin, 0.6, 0);
+    const solids::Clear clear = solids::widened(*thin, 0.6, 0);
     EXPECT_GE(bound_of_box(clear.primitive).box.low.z, -1e-6);
-    EXPECT_NEAR(clear.opacity * approximate::box_shell(clear.primitive.half_size).area,
+    EXPECT_NEAR(clear.opacity * solids::box_shell(clear.primitive.half_size).area,
                 thin->visible_area, 1e-9);
 }
 
@@ -158,7 +158,7 @@ TEST_F(Widen, WhatHasNoThinPartsKeepsItsLevels) {
     std::vector<Material> glass = materials();
     glass[kPost].transmission = 1;
     std::vector<Material> clear = materials();
-    clear[kPost] = approximate::clear_material(clear[kPost], 0.5);
+    clear[kPost] = solids::clear_material(clear[kPost], 0.5);
     for (const std::vector<Material>& own : {glowing, glass, clear}) {
         const auto made = widened(lamp(), own, lamp(), 0.25);
         ASSERT_EQ(made.size(), 1u);

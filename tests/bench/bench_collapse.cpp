@@ -4,13 +4,13 @@
 // TARGET: a part of the triangles. MILLIONS of triangles: every triangle of the file is cut into
 // four until there are as many, with a little noise; 0 takes it as it is. Wall and CPU seconds of
 // every round (the first one with fresh memory) and the most memory beside input, bytes a triangle.
-#include "approximate/cluster.h"
-#include "approximate/simplify.h"
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "format/ply.h"
+#include "simplify/cluster/vertex_clustering.h"
+#include "simplify/simplify.h"
 
 #include <atomic>
 #include <chrono>
@@ -139,11 +139,11 @@ int main(int count, char** words) {
             most_held = before;
             const double cpu = cpu_seconds();
             const auto start = std::chrono::steady_clock::now();
-            approximate::SimplifyOptions options;
+            simplify::SimplifyOptions options;
             if (mode == "best")
-                options.mode = approximate::SimplifyMode::Best;
-            const Mesh out = mode == "cluster" ? approximate::cluster(mesh, target)
-                                               : approximate::simplify(mesh, target, options);
+                options.mode = simplify::SimplifyMode::Best;
+            const Mesh out = mode == "cluster" ? simplify::cluster(mesh, target)
+                                               : simplify::simplify_mesh(mesh, target, options);
             const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
             std::printf(
                 "{\"mode\":\"%s\",\"file\":\"%s\",\"triangles\":%.0f,\"got\":%zu,"

@@ -3,11 +3,6 @@
 // Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes,
 // how far off area, centroid and tensor of solids and composites are, in percent, by a million
 // other rays from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
-#include "approximate/composite.h"
-#include "approximate/replace.h"
-#include "approximate/simplify.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/standing.h"
 #include "backend/rematched.h"
 #include "base/files.h"
 #include "build/settings.h"
@@ -15,6 +10,11 @@
 #include "measure/deviation.h"
 #include "measure/visible.h"
 #include "model/representation.h"
+#include "simplify/simplify.h"
+#include "solids/composite_replacement.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <algorithm>
 #include <array>
@@ -124,7 +124,7 @@ void measure_again(Found& found, const std::string& name, const Mesh& drawn, dou
     options.rays = kRays;
     options.seed = 99;
     const bool clear = opacity < 1;
-    const std::vector<Material> materials{approximate::clear_material({}, opacity)};
+    const std::vector<Material> materials{solids::clear_material({}, opacity)};
     image::TexelCache texels;
     const auto skin = std::make_shared<const ray::Skin>(materials, texels);
     const ray::Scene scene(drawn, skin);
@@ -152,8 +152,8 @@ void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const At
         many.settled = settled;
         return measure::measure_visible(mesh, {}, many).attributes;
     };
-    const Attributes sure = surely(approximate::kRaysOfSolid, approximate::kSettled);
-    const Attributes surer = surely(approximate::kRaysOfClear, 0);
+    const Attributes sure = surely(solids::kRaysOfSolid, solids::kSettled);
+    const Attributes surer = surely(solids::kRaysOfClear, 0);
     const auto add = [&](const std::string& name, bool box, const Primitive& primitive,
                          double opacity) {
         const auto drawn = [&](const Primitive& one) {
@@ -161,25 +161,24 @@ void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const At
         };
         measure_again(found, name, drawn(primitive), opacity, truth);
         measure_again(found, name + ", standing",
-                      drawn(approximate::kept_above(primitive, box, bound.box.low.z)), opacity,
-                      truth);
+                      drawn(solids::kept_above(primitive, box, bound.box.low.z)), opacity, truth);
     };
     const auto solid = [&](const std::string& name, bool box, const Primitive& fitted) {
-        add(name, box, approximate::settled(fitted, wanted, sure), 1);
+        add(name, box, solids::settled(fitted, wanted, sure), 1);
     };
-    const auto clear = [&](const std::string& name, bool box, const approximate::Clear& fitted) {
-        const approximate::Clear now = approximate::settled(fitted, wanted, surer);
+    const auto clear = [&](const std::string& name, bool box, const solids::Clear& fitted) {
+        const solids::Clear now = solids::settled(fitted, wanted, surer);
         add(name, box, now.primitive, now.opacity);
     };
     const double radius = std::sqrt(wanted.visible_area / (4 * std::numbers::pi));
     solid("sphere", false, {wanted.centroid, glm::dmat3(1.0), glm::dvec3(radius)});
-    if (const auto box = approximate::fit_box(wanted, bound))
+    if (const auto box = solids::fit_box(wanted, bound))
         solid("box", true, *box);
-    if (const auto ellipsoid = approximate::fit_ellipsoid(wanted, bound))
+    if (const auto ellipsoid = solids::fit_ellipsoid(wanted, bound))
         solid("ellipsoid", false, *ellipsoid);
-    if (const auto box = approximate::fit_clear_box(wanted, bound))
+    if (const auto box = solids::fit_clear_box(wanted, bound))
         clear("clear box", true, *box);
-    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(wanted, bound))
+    if (const auto ellipsoid = solids::fit_clear_ellipsoid(wanted, bound))
         clear("clear ellipsoid", false, *ellipsoid);
 }
 
@@ -197,8 +196,8 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     stand_ins["sphere"] = ball(std::sqrt(attributes.visible_area / (4 * std::numbers::pi)));
     stand_ins["bounding box"] = tessellate_box(bounding(mesh, glm::dmat3(1.0)));
     stand_ins["oriented bound"] = tessellate_box(bounding(mesh, attributes.axes));
-    const auto box = approximate::fit_box(attributes, bound);
-    const auto ellipsoid = approximate::fit_ellipsoid(attributes, bound);
+    const auto box = solids::fit_box(attributes, bound);
+    const auto ellipsoid = solids::fit_ellipsoid(attributes, bound);
     if (box)
         stand_ins["box"] = tessellate_box(*box);
     if (ellipsoid)
@@ -213,7 +212,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         const double off_box = reference.of(stand_ins["box"]).error;
         const double off_ellipsoid = reference.of(stand_ins["ellipsoid"]).error;
         found["ours, by error"] = found[off_box < off_ellipsoid ? "box" : "ellipsoid"];
-        found["ours, by moment"] = found[approximate::boxlike(attributes) ? "box" : "ellipsoid"];
+        found["ours, by moment"] = found[solids::boxlike(attributes) ? "box" : "ellipsoid"];
         found["oracle"] = std::max(found["box"], found["ellipsoid"]);
     } else if (box || ellipsoid) {
         const double only = found[box ? "box" : "ellipsoid"];
@@ -226,7 +225,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
             targets.push_back(static_cast<size_t>(target));
     }
     const std::vector<Mesh> levels =
-        targets.empty() ? std::vector<Mesh>{} : approximate::simplify_chain(mesh, targets);
+        targets.empty() ? std::vector<Mesh>{} : simplify::simplify_chain(mesh, targets);
     std::vector<double> errors;
     errors.reserve(levels.size());
     for (const Mesh& level : levels)
@@ -235,8 +234,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     options.seed = 98;
     const Attributes known = measure::measure_visible(mesh, {}, options).attributes;
     measure_solids(found, mesh, bound, known);
-    for (const approximate::Clustered& level :
-         approximate::composites(mesh, nullptr, attributes, {})) {
+    for (const solids::Clustered& level : solids::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
         const Mesh solid = tessellate(level.composite, 3);
         const std::string name = "composite " + std::to_string(count);

@@ -65,10 +65,10 @@ class TheCheck(unittest.TestCase):
             ("image", "OpenEXR/ImfRgbaFile.h"),
             ("image", "ImfRgbaFile.h"),
             ("format", "tiny_gltf.h"),
-            ("approximate", "OpenMesh/Core/IO/MeshIO.hh"),
+            ("geometry", "OpenMesh/Core/IO/MeshIO.hh"),
         ):
             with self.subTest(header):
-                name = "simplify.cpp" if folder == "approximate" else "a.cpp"
+                name = "repair.cpp" if folder == "geometry" else "a.cpp"
                 self.assert_right(f"backend/src/{folder}/{name}", f"#include <{header}>")
                 self.assert_wrong("backend/src/base/a.cpp", f"#include <{header}>", "may not see")
                 self.assert_wrong(

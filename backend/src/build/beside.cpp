@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/beside.h"
 
-#include "approximate/composite.h"
-#include "approximate/replace.h"
-#include "approximate/simplify.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/standing.h"
 #include "measure/visible.h"
+#include "simplify/simplify.h"
+#include "solids/composite_replacement.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <algorithm>
 #include <limits>
@@ -26,11 +26,11 @@ struct Beside {
 std::vector<Beside> singles(const Attributes& attributes, const Bound& bound) {
     std::vector<Beside> out;
     for (const bool box : {true, false}) {
-        const auto found = box ? approximate::fit_box(attributes, bound)
-                               : approximate::fit_ellipsoid(attributes, bound);
+        const auto found =
+            box ? solids::fit_box(attributes, bound) : solids::fit_ellipsoid(attributes, bound);
         if (!found)
             continue;
-        const Primitive standing = approximate::kept_above(*found, box, bound.box.low.z);
+        const Primitive standing = solids::kept_above(*found, box, bound.box.low.z);
         out.push_back({{{{box, standing, 0}}}, {attributes}});
     }
     return out;
@@ -59,13 +59,12 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
     if (attributes.empty())
         return;
     std::vector<Beside> all = singles(attributes, bound_of(rest.positions));
-    approximate::CompositeOptions rough{seed};
+    solids::CompositeOptions rough{seed};
     rough.shape = false;
     rough.rounds = 0;
     rough.rays = static_cast<uint32_t>(settings.rays / 4);
     rough.most = kMostBeside;
-    for (approximate::Clustered& level :
-         approximate::composites(rest, judge.skin(), attributes, rough, job))
+    for (solids::Clustered& level : solids::composites(rest, judge.skin(), attributes, rough, job))
         all.push_back({std::move(level.composite), std::move(level.attributes)});
     for (const Beside& beside : all) {
         job.check();
@@ -73,7 +72,7 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
             return;
         const Mesh solids = tessellate(beside.composite, kBesideSubdivisions);
         Mesh both = around.triangles.size() > solids.triangles.size()
-                        ? approximate::simplify(around, solids.triangles.size(), {}, job)
+                        ? simplify::simplify_mesh(around, solids.triangles.size(), {}, job)
                         : around;
         both.slots.resize(both.triangles.size(), 0);
         append(both, solids, {}, static_cast<uint16_t>(materials.size()));
@@ -82,7 +81,7 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
         candidate.unproven = true;
         candidate.materials = materials;
         for (const Attributes& own : beside.attributes)
-            candidate.materials.push_back(approximate::mean_material(own));
+            candidate.materials.push_back(solids::mean_material(own));
         judge.measure_mesh(candidate, job);
         candidates.push_back(std::move(candidate));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/candidate.h"
 
-#include "approximate/replace.h"
+#include "solids/solid_replacement.h"
 
 #include <algorithm>
 #include <limits>
@@ -27,8 +27,8 @@ double tracing_of(const Candidate& candidate) {
         const Material& material = candidate.materials[slot];
         if (material.alpha_mode != AlphaMode::Blend || !(material.alpha < 1))
             return 0.0;
-        return (box ? approximate::box_shell(primitive.half_size)
-                    : approximate::ellipsoid_shell(primitive.half_size))
+        return (box ? solids::box_shell(primitive.half_size)
+                    : solids::ellipsoid_shell(primitive.half_size))
             .area;
     };
     double area = 0;

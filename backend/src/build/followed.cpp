@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/followed.h"
 
-#include "approximate/bind.h"
-#include "approximate/simplify.h"
 #include "build/judge.h"
 #include "build/levels.h"
+#include "deform/level_binding.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <optional>
@@ -62,7 +62,7 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
     if (judge.attributes().empty())
         return out;
     std::vector<std::vector<glm::vec3>> others;
-    const std::vector<uint32_t> points = approximate::points_of(*mesh, *bind.object->pose);
+    const std::vector<uint32_t> points = deform::points_of(*mesh, *bind.object->pose);
     for (const Pose* pose : bind.others) {
         std::vector<glm::vec3>& positions = others.emplace_back();
         for (const uint32_t point : points)
@@ -70,17 +70,17 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
     }
     Mesh plain;
     const Mesh& visible = without_unseen_colors(*mesh, materials, plain);
-    const approximate::PoseSurface surface(*bind.object->pose);
-    const approximate::Binder binder(visible, surface);
+    const deform::PoseSurface surface(*bind.object->pose);
+    const deform::Binder binder(visible, surface);
     const LookError look_error(visible, materials, settings, bind.hash, job);
-    for (approximate::TracedLevel& level :
-         approximate::simplify_traced(visible, others, targets, {}, job)) {
+    for (simplify::TracedLevel& level :
+         simplify::simplify_traced(visible, others, targets, {}, job)) {
         if (level.mesh.empty())
             continue;
         judge.repaint(level.mesh, job);
         if (!judge.shows_as_much(level.mesh, job))
             continue;
-        std::optional<approximate::BoundLevel> bound = binder.bind(std::move(level));
+        std::optional<deform::BoundLevel> bound = binder.bind(std::move(level));
         if (!bound)
             continue;
         bound->look_error = look_error.of(bound->mesh, materials, judge, job);
@@ -98,16 +98,16 @@ std::vector<Candidate> followed_levels(const Model& model, const Object& object,
     if (levels.empty() || object.pose == nullptr)
         return out;
     const std::vector<Material> materials = materials_of(model, finest);
-    const approximate::PoseSurface surface(*object.pose);
+    const deform::PoseSurface surface(*object.pose);
     const auto counted = [&](double error) {
         return counted_error(error, object.role == Role::Environment, finest.summary.bound.radius);
     };
-    for (const approximate::BoundLevel& level : levels) {
+    for (const deform::BoundLevel& level : levels) {
         job.check();
-        std::optional<Mesh> followed = approximate::follow(level, surface);
+        std::optional<Mesh> followed = deform::follow(level, surface);
         if (!followed || followed->triangles.size() >= finest.summary.cost.triangles)
             continue;
-        const approximate::Strayed strayed = approximate::strayed(level, *followed, surface);
+        const deform::Strayed strayed = deform::strayed(level, *followed, surface);
         Candidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(*followed));
         candidate.materials = materials;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/glow.h"
 
-#include "approximate/simplify.h"
 #include "group/surfaces.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 
@@ -71,7 +71,7 @@ std::vector<Mesh> levels_of(const Mesh& mesh, const std::vector<size_t>& counts,
     }
     std::vector<Mesh> levels;
     if (!targets.empty())
-        levels = approximate::simplify_chain(mesh, targets, {}, job);
+        levels = simplify::simplify_chain(mesh, targets, {}, job);
     std::vector<Mesh> out;
     for (const size_t count : counts) {
         const Mesh* best = &mesh;
@@ -117,7 +117,7 @@ std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material
                                       std::span<const size_t> targets, const Job& job) {
     const Lamps lamps = lamps_in(mesh, materials);
     if (lamps.parts == 0)
-        return approximate::simplify_chain(mesh, targets, {}, job);
+        return simplify::simplify_chain(mesh, targets, {}, job);
     std::vector<size_t> of_lamps;
     std::vector<size_t> of_rest;
     const size_t least = lamps.parts * kTrianglesOfLamp;

@@ -18,7 +18,7 @@ void emit_more(Material& material, const glm::dvec3& factor);
 /// What is left of a material where nothing is lit.
 Material unlit(const Material& material);
 
-/// approximate::simplify_chain(), but loose parts that glow in the midst of others (a bulb in its
+/// simplify::simplify_chain(), but loose parts that glow in the midst of others (a bulb in its
 /// globe) are simplified by themselves, to a twelfth of the triangles or more: as small as they are
 /// they would vanish first, and with them what lights the thing.
 std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material> materials,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/judge.h"
 
-#include "approximate/painted_box.h"
-#include "approximate/replace.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/standing.h"
-#include "approximate/whole.h"
 #include "build/glow.h"
 #include "measure/opacity.h"
+#include "solids/keep_on_floor.h"
+#include "solids/match_solids.h"
+#include "solids/painted_box.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <glm/common.hpp>
 
@@ -221,11 +221,10 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
         return;
     if (candidate.kind == Kind::Composite) {
         // The same rays for all (7 MB): making them takes as long as asking them once.
-        static const approximate::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
+        static const solids::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
         Composite composite = *candidate.composite;
-        approximate::settle_whole(composite,
-                                  sure(finest, kRaysOfMany, approximate::kSettledWhole, job), floor,
-                                  kVisible, job);
+        solids::settle_whole(composite, sure(finest, kRaysOfMany, solids::kSettledWhole, job),
+                             floor, kVisible, job);
         candidate.composite = std::make_shared<const Composite>(std::move(composite));
         return;
     }
@@ -234,21 +233,21 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
     const bool box = candidate.kind == Kind::Box;
     const bool clear = candidate.materials[0].alpha_mode == AlphaMode::Blend;
     Primitive& primitive = candidate.primitive;
-    const bool stands = approximate::reach_of(primitive, box).low <= floor + kStands * size_;
+    const bool stands = solids::reach_of(primitive, box).low <= floor + kStands * size_;
     if (clear) {
         Material& material = candidate.materials[0];
         const double through = 1 - material.alpha;
         const auto now =
-            approximate::settled(approximate::Clear{primitive, 1 - through * through}, attributes_,
-                                 sure(finest, approximate::kRaysOfClear * rays_, 0, job));
+            solids::settled(solids::Clear{primitive, 1 - through * through}, attributes_,
+                            sure(finest, solids::kRaysOfClear * rays_, 0, job));
         primitive = now.primitive;
-        material.alpha = approximate::surface_alpha(now.opacity);
+        material.alpha = solids::surface_alpha(now.opacity);
     } else {
-        primitive = approximate::settled(
-            primitive, attributes_,
-            sure(finest, approximate::kRaysOfSolid * rays_, approximate::kSettled, job));
+        primitive =
+            solids::settled(primitive, attributes_,
+                            sure(finest, solids::kRaysOfSolid * rays_, solids::kSettled, job));
     }
-    const double low = approximate::reach_of(primitive, box).low;
+    const double low = solids::reach_of(primitive, box).low;
     if (stands || low < floor)
         primitive.center.z += floor - low;
 }
@@ -318,7 +317,7 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
             // Light that is scattered once is in proportion to the color.
             for (const uint16_t slot : slots) {
                 if (slot < all.size())
-                    approximate::brighten(candidate.materials[slot], light);
+                    solids::brighten(candidate.materials[slot], light);
             }
             current = skin_of(candidate.materials);
         }
@@ -357,8 +356,8 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
         for (Material& material : candidate.materials) {
             // The color of glass is that of what is seen through it.
             if (!(material.transmission * (1 - material.metallic) > 0.5))
-                approximate::brighten(material,
-                                      glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
+                solids::brighten(material,
+                                 glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
         }
         current = skin_of(candidate.materials);
     }
@@ -378,7 +377,7 @@ void Judge::paint(Candidate& candidate) const {
     if (candidate.kind != Kind::Box || candidate.pictured || !patches_ ||
         candidate.materials[0].alpha_mode != AlphaMode::Opaque || emits(candidate.materials[0]))
         return;
-    std::optional<approximate::PaintedBox> painted = approximate::painted_box(
+    std::optional<solids::PaintedBox> painted = solids::painted_box(
         candidate.primitive, candidate.materials[0],
         patches_->paint_of(tessellate_box(candidate.primitive), finest_scene()));
     if (!painted)

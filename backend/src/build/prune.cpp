@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/prune.h"
 
-#include "approximate/simplify.h"
 #include "build/levels.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace lodestone::build {
 namespace {
 
-using approximate::Crowd;
+using prune::Crowd;
 
 constexpr size_t kFewestParts = 8;
 // Parts of more triangles than this are simplified as well as thinned.
@@ -53,7 +53,7 @@ std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<Step>& steps, con
     }
     std::vector<Mesh> levels;
     if (!targets.empty())
-        levels = approximate::simplify_chain(rest, targets, {}, job);
+        levels = simplify::simplify_chain(rest, targets, {}, job);
     std::vector<Mesh> out;
     for (const Step& step : steps) {
         const Mesh* best = &rest;
@@ -86,7 +86,7 @@ std::vector<Material> contrasted(const std::vector<Material>& materials, const C
     for (const uint16_t slot : crowd.slots) {
         Material& material = out[slot];
         if (rest_slots.count(slot) == 0 && !material.base_color_texture && !material.other)
-            material.base_color = approximate::with_contrast(material.base_color, mean, variance);
+            material.base_color = prune::with_contrast(material.base_color, mean, variance);
     }
     return out;
 }
@@ -100,7 +100,7 @@ public:
         std::vector<uint32_t> tags(mesh.triangles.size(), 0);
         for (size_t i = 0; i < keep.size(); ++i) {
             const uint32_t part = crowd.part_of[i];
-            if (part != approximate::kNoPart) {
+            if (part != prune::kNoPart) {
                 tags[i] = 1 + crowd.parts[part].kind;
                 continue;
             }
@@ -129,8 +129,7 @@ public:
         std::vector<double> growth = first_growth(order, step.parts);
         Candidate out;
         for (int i = 0;; ++i) {
-            approximate::Pruned crowd =
-                approximate::pruned(mesh_, crowd_, order, step.parts, growth);
+            prune::Pruned crowd = prune::pruned(mesh_, crowd_, order, step.parts, growth);
             if (crowd_.triangles > kPlainPart * crowd_.parts.size() &&
                 step.crowd_triangles < crowd.mesh.triangles.size())
                 simplify(crowd, step.crowd_triangles);
@@ -182,13 +181,13 @@ private:
     }
 
     /// Kinds are told by slots, which simplification keeps.
-    void simplify(approximate::Pruned& crowd, size_t triangles) const {
+    void simplify(prune::Pruned& crowd, size_t triangles) const {
         std::vector<uint32_t> kind_of_slot;
         for (size_t kind = 0; kind < crowd_.slots.size(); ++kind) {
             kind_of_slot.resize(std::max<size_t>(kind_of_slot.size(), crowd_.slots[kind] + 1u), 0);
             kind_of_slot[crowd_.slots[kind]] = static_cast<uint32_t>(kind);
         }
-        Mesh level = approximate::simplify(crowd.mesh, triangles, {}, job_);
+        Mesh level = simplify::simplify_mesh(crowd.mesh, triangles, {}, job_);
         if (level.empty())
             return;
         crowd.mesh = std::move(level);
@@ -220,11 +219,11 @@ void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
     const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
     const std::vector<uint16_t> own = thinner.own_slots();
     const Bound bound = bound_of(mesh.positions);
-    std::vector<approximate::PruneOrder> orders{approximate::PruneOrder::Random};
+    std::vector<prune::PruneOrder> orders{prune::PruneOrder::Random};
     if (crowd.sizes_differ())
-        orders.push_back(approximate::PruneOrder::Largest);
-    for (const approximate::PruneOrder kind : orders) {
-        const std::vector<uint32_t> order = approximate::prune_order(crowd, kind, seed);
+        orders.push_back(prune::PruneOrder::Largest);
+    for (const prune::PruneOrder kind : orders) {
+        const std::vector<uint32_t> order = prune::prune_order(crowd, kind, seed);
         for (size_t i = 0; i < steps.size(); ++i) {
             job.check();
             if (steps[i].crowd_triangles + rests[i].triangles.size() > most)

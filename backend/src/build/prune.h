@@ -2,8 +2,8 @@
 // Pruned levels: foliage, fences and crowds with fewer and larger parts.
 #pragma once
 
-#include "approximate/crowd.h"
 #include "build/judge.h"
+#include "prune/part_pruning.h"
 
 namespace lodestone::build {
 
@@ -11,7 +11,7 @@ namespace lodestone::build {
 /// much as in the mesh; of the rest as many triangles in proportion; none of more than about `most`
 /// triangles. Judged by pictures, which the judge must have taken of the same mesh.
 void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
-                       const std::vector<Material>& materials, const approximate::Crowd& crowd,
+                       const std::vector<Material>& materials, const prune::Crowd& crowd,
                        double level_ratio, size_t most, uint64_t seed, Judge& judge,
                        const Job& job);
 

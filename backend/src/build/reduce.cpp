@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/reduce.h"
 
-#include "approximate/cluster.h"
-#include "approximate/grid.h"
-#include "approximate/simplify.h"
 #include "base/clock.h"
 #include "build/levels.h"
 #include "measure/deviation.h"
+#include "simplify/cluster/vertex_clustering.h"
+#include "simplify/height_field.h"
+#include "simplify/simplify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,10 +47,10 @@ private:
     double start_;
 };
 
-approximate::SimplifyOptions options_of(const Reduction& wanted) {
-    approximate::SimplifyOptions options;
-    options.mode = wanted.mode == ReductionMode::Best ? approximate::SimplifyMode::Best
-                                                      : approximate::SimplifyMode::Fast;
+simplify::SimplifyOptions options_of(const Reduction& wanted) {
+    simplify::SimplifyOptions options;
+    options.mode = wanted.mode == ReductionMode::Best ? simplify::SimplifyMode::Best
+                                                      : simplify::SimplifyMode::Fast;
     options.keep_topology = wanted.keep_topology;
     return options;
 }
@@ -62,10 +62,10 @@ constexpr double kLeastOfGrid = 0.08;
 Mesh clustered(const Mesh& mesh, size_t count, const Job& job) {
     const auto triangles = static_cast<double>(mesh.triangles.size());
     if (count >= 2 && static_cast<double>(count) >= kLeastOfGrid * triangles) {
-        if (const auto grid = approximate::find_grid(mesh))
-            return approximate::subsample(mesh, *grid, count, job);
+        if (const auto grid = simplify::find_grid(mesh))
+            return simplify::subsample(mesh, *grid, count, job);
     }
-    return approximate::cluster(mesh, count, job);
+    return simplify::cluster(mesh, count, job);
 }
 
 Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const Reduction& wanted,
@@ -76,7 +76,7 @@ Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const
         out.mesh = std::make_shared<Mesh>(
             wanted.mode == ReductionMode::Cluster
                 ? clustered(mesh, count, job)
-                : approximate::simplify(mesh, count, options_of(wanted), job));
+                : simplify::simplify_mesh(mesh, count, options_of(wanted), job));
     }
     if (wanted.measure)
         out.deviation = deviation_of(reference_of(mesh, skin, wanted, job), *out.mesh, skin, job);
@@ -97,7 +97,7 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const
     std::vector<Mesh> levels;
     if (!targets.empty() && wanted.mode != ReductionMode::Cluster) {
         const Stopwatch watch(cpu_s);
-        levels = approximate::simplify_chain(mesh, targets, options_of(wanted), job);
+        levels = simplify::simplify_chain(mesh, targets, options_of(wanted), job);
     }
     const measure::DeviationReference reference = reference_of(mesh, skin, wanted, job);
     Reduced best{std::make_shared<Mesh>(mesh), measure::Deviation{0, 0}};

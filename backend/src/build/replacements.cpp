@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/replacements.h"
 
-#include "approximate/composite.h"
-#include "approximate/replace.h"
-#include "approximate/stand_in_material.h"
-#include "approximate/standing.h"
 #include "build/prune.h"
+#include "solids/composite_replacement.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@ namespace lodestone::build {
 namespace {
 
 /// Many parts of a few triangles each: how far their points are from those of fewer tells little.
-bool is_foliage(const approximate::Crowd& crowd) {
+bool is_foliage(const prune::Crowd& crowd) {
     constexpr size_t kFewestLeaves = 256;
     constexpr size_t kTriangles = 8;  // of a leaf, in the mean
     return crowd.parts.size() >= kFewestLeaves &&
@@ -26,12 +26,12 @@ bool is_foliage(const approximate::Crowd& crowd) {
 /// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
 void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
                     Judge& judge, const Job& job) {
-    const Material material = approximate::mean_material(judge.attributes());
+    const Material material = solids::mean_material(judge.attributes());
     const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
         Candidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
-        candidate.materials = {approximate::clear_material(material, opacity)};
+        candidate.materials = {solids::clear_material(material, opacity)};
         candidate.unproven = !by_pictures;
         candidate.unsettled = true;
         if (by_pictures)
@@ -45,22 +45,22 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
     const double floor = bound.box.low.z;
     const auto add_standing = [&](Kind kind, const Primitive& primitive) {
         const bool is_box = kind == Kind::Box;
-        const approximate::Reach reach = approximate::reach_of(primitive, is_box);
-        add(kind, approximate::kept_above(primitive, is_box, floor), 1);
+        const solids::Reach reach = solids::reach_of(primitive, is_box);
+        add(kind, solids::kept_above(primitive, is_box, floor), 1);
         constexpr double kStands = 0.01;  // over its height
         if (reach.low - floor > kStands * (reach.high - reach.low))
-            add(kind, approximate::standing_on(primitive, is_box, floor), 1);
+            add(kind, solids::standing_on(primitive, is_box, floor), 1);
     };
-    if (const auto box = approximate::fit_box(judge.attributes(), bound))
+    if (const auto box = solids::fit_box(judge.attributes(), bound))
         add_standing(Kind::Box, *box);
-    if (const auto ellipsoid = approximate::fit_ellipsoid(judge.attributes(), bound))
+    if (const auto ellipsoid = solids::fit_ellipsoid(judge.attributes(), bound))
         add_standing(Kind::Ellipsoid, *ellipsoid);
     if (!by_pictures)
         return;
-    if (const auto box = approximate::fit_clear_box(judge.attributes(), bound))
-        add(Kind::Box, approximate::kept_above(box->primitive, true, floor), box->opacity);
-    if (const auto ellipsoid = approximate::fit_clear_ellipsoid(judge.attributes(), bound))
-        add(Kind::Ellipsoid, approximate::kept_above(ellipsoid->primitive, false, floor),
+    if (const auto box = solids::fit_clear_box(judge.attributes(), bound))
+        add(Kind::Box, solids::kept_above(box->primitive, true, floor), box->opacity);
+    if (const auto ellipsoid = solids::fit_clear_ellipsoid(judge.attributes(), bound))
+        add(Kind::Ellipsoid, solids::kept_above(ellipsoid->primitive, false, floor),
             ellipsoid->opacity);
 }
 
@@ -85,13 +85,13 @@ size_t most_solids(const std::vector<Candidate>& candidates, const Whole& whole)
     return out;
 }
 
-Candidate candidate_of(const approximate::Clustered& level) {
+Candidate candidate_of(const solids::Clustered& level) {
     Candidate out;
     out.kind = Kind::Composite;
     out.composite = std::make_shared<const Composite>(level.composite);
     for (size_t i = 0; i < level.attributes.size(); ++i)
-        out.materials.push_back(approximate::clear_material(
-            approximate::mean_material(level.attributes[i]), level.opacities[i]));
+        out.materials.push_back(
+            solids::clear_material(solids::mean_material(level.attributes[i]), level.opacities[i]));
     return out;
 }
 
@@ -115,7 +115,7 @@ bool would_pay(const Candidate& composite, double error, const std::vector<Candi
 
 /// `airy`: clear ones too, of these parts, of at most so many solids.
 void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
-                    const approximate::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
+                    const prune::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
                     const Whole& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
     // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
@@ -126,20 +126,20 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     constexpr uint32_t kFewRays = 1024;
     constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
-    approximate::CompositeOptions options{seed};
+    solids::CompositeOptions options{seed};
     options.shape = !airy;
     options.most = most;
-    approximate::CompositeOptions few = options;
+    solids::CompositeOptions few = options;
     few.shape = false;
     few.rounds = 0;
     few.rays = kFewRays;
     few.samples = kFewSamples;
-    approximate::CompositeOptions exact = options;
+    solids::CompositeOptions exact = options;
     exact.settled = 0;  // those that are kept are
     exact.least = exact.most = 0;
     std::vector<Candidate> rough;  // fewest solids first
-    for (const approximate::Clustered& level :
-         approximate::composites(mesh, judge.skin(), judge.attributes(), few, job))
+    for (const solids::Clustered& level :
+         solids::composites(mesh, judge.skin(), judge.attributes(), few, job))
         rough.push_back(candidate_of(level));
     for (bool more = true; more && !rough.empty(); rough.pop_back()) {
         judge.compare_pictures(rough.back(), {}, job);
@@ -155,15 +155,15 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
                 return would_pay(other, kFewerNearer * error, candidates, whole);
             });
     }
-    std::vector<approximate::Clustered> levels;
+    std::vector<solids::Clustered> levels;
     if (exact.most > 0)
-        levels = approximate::composites(mesh, judge.skin(), judge.attributes(), exact, job);
+        levels = solids::composites(mesh, judge.skin(), judge.attributes(), exact, job);
     if (airy) {
-        for (approximate::Clustered& level : approximate::clear_composites(
-                 mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
+        for (solids::Clustered& level : solids::clear_composites(mesh, judge.skin(), crowd.part_of,
+                                                                 judge.attributes(), options, job))
             levels.push_back(std::move(level));
     }
-    for (const approximate::Clustered& level : levels) {
+    for (const solids::Clustered& level : levels) {
         Candidate candidate = candidate_of(level);
         candidate.unsettled = options.shape;
         judge.compare_pictures(candidate, {}, job);
@@ -173,8 +173,7 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
 
 }  // namespace
 
-Replacements::Replacements(const Mesh& mesh,
-                           const std::function<approximate::Crowd()>& crowd_in_mesh,
+Replacements::Replacements(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
                            const Whole& whole, Judge& judge, const Job& job)
     : mesh_(mesh), whole_(whole), judge_(judge) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
@@ -221,8 +220,8 @@ void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Mat
         bytes_within(candidates, kOff * radius, whole_.uses) > dearer) {
         if (!by_pictures)
             judge_.take_pictures(mesh_, true, job);
-        add_composites(candidates, mesh_, by_pictures, thinned ? crowd_ : approximate::Crowd{},
-                       most, seed, judge_, whole_, job);
+        add_composites(candidates, mesh_, by_pictures, thinned ? crowd_ : prune::Crowd{}, most,
+                       seed, judge_, whole_, job);
     }
 }
 

@@ -2,10 +2,10 @@
 // Replacements: pruned meshes, primitives and composites of one mesh.
 #pragma once
 
-#include "approximate/crowd.h"
 #include "build/candidate.h"
 #include "build/judge.h"
 #include "build/settings.h"
+#include "prune/part_pruning.h"
 
 #include <functional>
 
@@ -36,7 +36,7 @@ struct Whole {
 class Replacements {
 public:
     /// Measures what costs little: a box and an ellipsoid, by distance, where that tells enough.
-    Replacements(const Mesh& mesh, const std::function<approximate::Crowd()>& crowd_in_mesh,
+    Replacements(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
                  const Whole& whole, Judge& judge, const Job& job);
 
     /// The error of the nearest of them, which cost less than any level; infinite without one.
@@ -50,7 +50,7 @@ private:
     const Mesh& mesh_;
     const Whole& whole_;
     Judge& judge_;
-    approximate::Crowd crowd_;
+    prune::Crowd crowd_;
     bool by_pictures_ = false;  // whatever the levels are like
     std::vector<Candidate> solids_;
 };

@@ -84,13 +84,13 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
 }
 
 /// Of a group: leaves and the like where that is what its children are made of, else the children.
-approximate::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
+prune::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
     constexpr size_t kPartsOfFoliage = 16;  // of an occurrence, in the mean
-    approximate::Crowd parts = approximate::crowd_of(mesh);
+    prune::Crowd parts = prune::crowd_of(mesh);
     const std::set<uint32_t> drawn(occurrence.begin(), occurrence.end());
     if (parts.parts.size() >= kPartsOfFoliage * drawn.size())
         return parts;
-    return approximate::crowd_of(mesh, occurrence);
+    return prune::crowd_of(mesh, occurrence);
 }
 
 /// Whether one flat thing lies under most of a group, as a road lies under its markings; a town of
@@ -166,7 +166,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     std::optional<Replacements> replacements;
     if (object.role != Role::Environment) {
         replacements.emplace(
-            *mesh, [&] { return approximate::crowd_of(*mesh); }, whole, judge, job);
+            *mesh, [&] { return prune::crowd_of(*mesh); }, whole, judge, job);
         wanted.solid = replacements->nearest_solid();
         wanted.told = kOff * whole.bound.radius;
     }

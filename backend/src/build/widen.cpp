@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/widen.h"
 
-#include "approximate/stand_in_material.h"
-#include "approximate/widened.h"
 #include "build/glow.h"
 #include "group/surfaces.h"
 #include "measure/agreement.h"
 #include "measure/visible.h"
+#include "solids/stand_in_material.h"
+#include "solids/widened_boxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ constexpr uint64_t kRaysOfPart = 4096;
 
 /// The thin parts of a mesh.
 struct ThinParts {
-    std::vector<approximate::Thin> parts;
+    std::vector<solids::Thin> parts;
     std::vector<Attributes> attributes;
     std::vector<uint8_t> is_thin;  // by triangle
     double thickness = 0;          // the largest
@@ -103,8 +103,8 @@ ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
         const Attributes attributes =
             measure::measure_visible(part, ray::Scene(part, skin), skin, options, {}, job)
                 .attributes;
-        const std::optional<approximate::Thin> thin =
-            attributes.empty() ? std::nullopt : approximate::thin_of(part, attributes);
+        const std::optional<solids::Thin> thin =
+            attributes.empty() ? std::nullopt : solids::thin_of(part, attributes);
         if (!thin)
             continue;
         out.parts.push_back(*thin);
@@ -155,12 +155,12 @@ Candidate widened_level(const Candidate& level, const Mesh& others, const ThinPa
     Composite boxes;
     out.clear_area = 0;
     for (size_t i = 0; i < thin.parts.size(); ++i) {
-        const approximate::Clear clear = approximate::widened(thin.parts[i], width, floor);
+        const solids::Clear clear = solids::widened(thin.parts[i], width, floor);
         boxes.solids.push_back(
             {true, clear.primitive, static_cast<uint16_t>(out.materials.size())});
-        out.materials.push_back(approximate::clear_material(
-            approximate::mean_material(thin.attributes[i]), clear.opacity));
-        out.clear_area += approximate::box_shell(clear.primitive.half_size).area;
+        out.materials.push_back(
+            solids::clear_material(solids::mean_material(thin.attributes[i]), clear.opacity));
+        out.clear_area += solids::box_shell(clear.primitive.half_size).area;
     }
     Mesh mesh = others;
     append(mesh, tessellate(boxes), Affine());

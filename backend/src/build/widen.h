@@ -12,7 +12,7 @@ namespace lodestone::build {
 
 /// Where much of a mesh is few long and thin loose parts (posts, wires, rails) that are opaque and
 /// do not glow: replaces its levels that are off by more than these are thick by *widened* ones, in
-/// which each such part is a clear box as wide as the error (approximate/widened) and everything
+/// which each such part is a clear box as wide as the error (solids/widened_boxes) and everything
 /// else is what it was; the last of them by several of rising widths. Of a pixel of which an opaque
 /// part covers p one sample is off by 2 p (1 - p), whatever the level; of one that is as wide as
 /// the pixel and has alpha p by about p / 2. So no opaque level of more error is left.

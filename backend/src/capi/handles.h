@@ -5,7 +5,7 @@
 #include "lodestone/lodestone.h"
 
 #include "build/settings.h"
-#include "model/faces.h"
+#include "geometry/polygon_mesh.h"
 #include "quality/batches.h"
 #include "quality/budget.h"
 #include "quality/ray_cut.h"

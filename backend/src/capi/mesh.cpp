@@ -2,7 +2,7 @@
 // Meshes' part of the C interface: what is made of one before it is added.
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "model/projection.h"
+#include "geometry/uv_projection.h"
 
 #include <glm/geometric.hpp>
 

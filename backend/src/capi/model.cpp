@@ -4,7 +4,7 @@
 #include "capi/handles.h"
 #include "capi/pose.h"
 #include "format/format.h"
-#include "model/strands.h"
+#include "geometry/strand_tubes.h"
 
 #include <algorithm>
 #include <cmath>

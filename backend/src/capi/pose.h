@@ -4,7 +4,7 @@
 
 #include "lodestone/lodestone.h"
 
-#include "model/faces.h"
+#include "geometry/polygon_mesh.h"
 #include "model/pose.h"
 
 #include <memory>

@@ -2,10 +2,10 @@
 #include "measure/deviation.h"
 
 #include "base/parallel.h"
+#include "geometry/primitive_distance.h"
 #include "measure/sample_errors.h"
 #include "measure/seen_from_outside.h"
 #include "measure/visible_looks.h"
-#include "model/primitive_distance.h"
 
 #include <algorithm>
 #include <atomic>

@@ -10,9 +10,9 @@ namespace {
 // The number changes with the layout; a machine of the other byte order reads another one.
 constexpr uint64_t kMagic = 0x33646e756f42644cu;
 
-using approximate::Anchor;
-using approximate::BoundLevel;
-using approximate::Witness;
+using deform::Anchor;
+using deform::BoundLevel;
+using deform::Witness;
 
 /// Visits every array of a level in the order they lie in the file.
 template <typename Level, typename Visit>
@@ -114,7 +114,7 @@ BoundLevels bound_levels_of(const std::string& bytes) {
         const uint64_t look_error = reader.number();
         std::memcpy(&level.look_error, &look_error, sizeof look_error);
         try {
-            approximate::check(level);
+            deform::check(level);
         } catch (const Error& error) {
             fail(Status::BadFile, "bound levels cannot be used: ", error.what());
         }

@@ -2,7 +2,7 @@
 // Bound levels as bytes: a computed cache of one machine, in its byte order, checked when read.
 #pragma once
 
-#include "approximate/follow.h"
+#include "deform/level_following.h"
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace lodestone::segment {
 
 /// Fine to coarse.
-using BoundLevels = std::vector<approximate::BoundLevel>;
+using BoundLevels = std::vector<deform::BoundLevel>;
 
 std::string bytes_of(const BoundLevels& levels);
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Following: one simplified level for all frames, carried along by the surface it was made from.
+#pragma once
+
+#include "deform/pose_error_samples.h"
+#include "model/pose.h"
+#include "simplify/simplify.h"
+
+#include <optional>
+
+namespace lodestone::deform {
+
+/// A place of a level, tied to a triangle of the source's vertices: the point
+/// (1-u-v) a + u b + v c, and from there `offset` along the surface's own axes (tangent, bitangent,
+/// normal), in parts of `size`.
+struct Anchor {
+    Triangle corners{0, 0, 0};
+    float u = 0;
+    float v = 0;
+    glm::vec3 offset{0.0f};
+};
+
+/// A level with what it takes to put it into another pose. Texture coordinates, colors and slots
+/// are the mesh's in every pose.
+struct BoundLevel {
+    Mesh mesh;                       // in the pose it was bound in
+    std::vector<uint32_t> places;    // of each vertex, into anchors: split vertices stay together
+    std::vector<Anchor> anchors;     // by place
+    std::vector<glm::vec3> normals;  // empty, or of each vertex: along its anchor's axes; zero
+                                     // where it is that of its flat triangles, made anew
+    Witnesses witnesses;
+    /// Metres: its error in the pose it was bound in, if that is one of materials; else 0.
+    double look_error = 0;
+};
+
+/// Throws Error(InvalidArgument) unless every index is in range and every number finite. Files are
+/// checked by it.
+void check(const BoundLevel& level);
+
+/// What levels follow in one pose, worked out once for all of them: smooth normals and the area
+/// around every vertex.
+class PoseSurface {
+public:
+    /// Keeps a reference to the pose. Throws Error(InvalidArgument) for an index out of range.
+    explicit PoseSurface(const Pose& pose);
+
+    const Pose& pose() const { return pose_; }
+    /// The sum of the area vectors around a vertex, and a third of their lengths' sum.
+    const glm::dvec3& normal(uint32_t vertex) const { return normals_[vertex]; }
+    double area(uint32_t vertex) const { return areas_[vertex]; }
+    /// Of the pose's triangles, by point.
+    const geometry::Rings& rings() const { return rings_; }
+
+private:
+    const Pose& pose_;
+    std::vector<glm::dvec3> normals_;
+    std::vector<double> areas_;
+    geometry::Rings rings_;
+};
+
+/// Where an anchor is on a surface: the point, the surface's axes there (columns; those that it
+/// does not have are zero) and the length that offsets are parts of.
+struct Footing {
+    glm::dvec3 point{0.0};
+    glm::dmat3 axes{0.0};
+    double size = 0;
+};
+Footing footing_of(const PoseSurface& surface, const Anchor& anchor);
+
+/// Of each vertex: the sum of its triangles' area vectors, and 1 where its normal is that of all of
+/// them, or the mesh has no normals.
+struct Facing {
+    std::vector<glm::dvec3> sums;
+    std::vector<uint8_t> flat;
+};
+Facing facing_of(const Mesh& mesh);
+
+/// How far a level is from a surface where it follows it: `followed` is follow()'s.
+Strayed strayed(const BoundLevel& level, const Mesh& followed, const PoseSurface& surface);
+
+/// The level in another pose. Nothing when that has fewer points, or where one that the level
+/// hangs on is not finite.
+std::optional<Mesh> follow(const BoundLevel& level, const PoseSurface& surface);
+
+}  // namespace lodestone::deform

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deform/pose_error_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::deform {
+namespace {
+
+constexpr double kErrorShare = 0.999;  // as in measure/deviation
+constexpr double kGrowthShare = 0.99;
+// Of a walk: farther than so many triangles, surfaces that slide along each other seem to be apart.
+constexpr int kSearchSteps = 24;
+
+struct Weighted {
+    double value;
+    double weight;
+};
+
+/// The least value that so large a share of the weight does not exceed; 0 of nothing.
+double quantile(std::vector<Weighted>& values, double share) {
+    double sum = 0;
+    for (const Weighted& one : values)
+        sum += one.weight;
+    std::sort(values.begin(), values.end(),
+              [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+    double below = 0;
+    for (const Weighted& one : values) {
+        below += one.weight;
+        if (below >= share * sum)
+            return one.value;
+    }
+    return values.empty() ? 0 : values.back().value;
+}
+
+/// Of three corners in one pose.
+struct Corners {
+    glm::dvec3 a, b, c;
+
+    Corners(const std::vector<glm::vec3>& points, const Triangle& t)
+        : a(points[t.x]), b(points[t.y]), c(points[t.z]) {}
+    glm::dvec3 at(double u, double v) const { return (1 - u - v) * a + u * b + v * c; }
+    double area() const { return 0.5 * glm::length(glm::cross(b - a, c - a)); }
+    double longest() const {
+        return std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+    }
+};
+
+}  // namespace
+
+Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
+    constexpr double kFar = std::numeric_limits<double>::max();
+    const std::vector<glm::vec3>& points = what.pose.points;
+    const std::vector<glm::vec3>& positions = what.level.positions;
+    Strayed out;
+    std::vector<Weighted> distances;
+    std::vector<Weighted> growths;
+    // It stands for as much more of the surface as that has grown.
+    const auto add = [&](const Witness& witness, const Corners& source, double distance) {
+        if (!std::isfinite(distance))
+            distance = kFar;
+        const double grown = witness.facet > 0 ? source.area() / witness.facet : 1;
+        distances.push_back({distance, std::isfinite(grown) ? witness.area * grown : witness.area});
+        out.max = std::max(out.max, distance);
+    };
+    const auto point_of = [](uint32_t point) { return point; };
+    const auto place_of = [&](uint32_t vertex) { return what.places[vertex]; };
+    for (const Witness& witness : witnesses.of_source) {
+        const Corners source(points, witness.source);
+        geometry::Nearest nearest(positions, what.level.triangles,
+                                  source.at(witness.source_u, witness.source_v));
+        nearest.visit(witness.level);
+        nearest.walk(what.level_rings, place_of, kSearchSteps);
+        add(witness, source, std::sqrt(nearest.square()));
+        if (witness.longest > 0) {
+            const double growth = source.longest() / witness.longest;
+            growths.push_back({std::isfinite(growth) ? growth : 1, witness.area});
+        }
+    }
+    out.error = quantile(distances, kErrorShare);
+    distances.clear();
+    for (const Witness& witness : witnesses.of_level) {
+        const Corners source(points, witness.source);
+        const Corners level(positions, what.level.triangles[witness.level]);
+        geometry::Nearest nearest(points, what.pose.triangles,
+                                  level.at(witness.level_u, witness.level_v));
+        nearest.start(what.pose_rings, point_of, witness.source);
+        nearest.walk(what.pose_rings, point_of, kSearchSteps);
+        add(witness, source, std::sqrt(nearest.square()));
+    }
+    out.error = std::max(out.error, quantile(distances, kErrorShare));
+    out.growth = quantile(growths, kGrowthShare);
+    return out;
+}
+
+}  // namespace lodestone::deform

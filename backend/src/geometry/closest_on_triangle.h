@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nearest on triangle: the place of a triangle that is nearest to a point.
+#pragma once
+
+#include "base/maths.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace lodestone::geometry {
+
+/// No triangle was found.
+inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
+
+using TrianglePoints = std::array<glm::vec3, 3>;
+
+/// A place on a triangle.
+struct Spot {
+    float square = 1e30f;  // of the distance
+    uint32_t triangle = kNoTriangle;
+    glm::vec3 weights{0.0f};
+};
+
+/// Barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
+/// Real-Time Collision Detection, 5.1.5.
+template <typename Number>
+glm::vec<3, Number> nearest_weights(const glm::vec<3, Number>& a, const glm::vec<3, Number>& b,
+                                    const glm::vec<3, Number>& c) {
+    const glm::vec<3, Number> ab = b - a;
+    const glm::vec<3, Number> ac = c - a;
+    const Number d1 = -glm::dot(ab, a);
+    const Number d2 = -glm::dot(ac, a);
+    if (d1 <= 0 && d2 <= 0)
+        return {1, 0, 0};
+    const Number d3 = -glm::dot(ab, b);
+    const Number d4 = -glm::dot(ac, b);
+    if (d3 >= 0 && d4 <= d3)
+        return {0, 1, 0};
+    const Number vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        const Number t = d1 / (d1 - d3);
+        return {1 - t, t, 0};
+    }
+    const Number d5 = -glm::dot(ab, c);
+    const Number d6 = -glm::dot(ac, c);
+    if (d6 >= 0 && d5 <= d6)
+        return {0, 0, 1};
+    const Number vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        const Number t = d2 / (d2 - d6);
+        return {1 - t, 0, t};
+    }
+    const Number va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const Number t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1 - t, t};
+    }
+    const Number sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
+
+/// The place of a triangle nearest to a point.
+Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point);
+
+/// Places of four triangles nearest to a point: the same bits as nearest_on().
+struct FourSpots {
+    static constexpr size_t kSize = 4;
+    std::array<float, kSize> squares;
+    std::array<std::array<float, kSize>, 3> weights;  // of each corner
+};
+void nearest_on_four(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
+                     const glm::vec3& point, FourSpots& spots);
+
+/// The nearest place of several triangles, the first of those that are equally near, if it is
+/// nearer than `best`. `corners(t)` are those of triangle t.
+template <typename Corners>
+void look_on(std::span<const uint32_t> triangles, const glm::vec3& point, const Corners& corners,
+             Spot& best) {
+    constexpr size_t kSize = FourSpots::kSize;
+    for (size_t first = 0; first < triangles.size(); first += kSize) {
+        const size_t count = std::min(kSize, triangles.size() - first);
+        std::array<TrianglePoints, kSize> four;
+        for (size_t i = 0; i < kSize; ++i)
+            four[i] = corners(triangles[first + std::min(i, count - 1)]);
+        FourSpots spots;
+        nearest_on_four(four, point, spots);
+        for (size_t i = 0; i < count; ++i) {
+            if (spots.squares[i] < best.square)
+                best = {spots.squares[i],
+                        triangles[first + i],
+                        {spots.weights[0][i], spots.weights[1][i], spots.weights[2][i]}};
+        }
+    }
+}
+
+}  // namespace lodestone::geometry

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/cluster/cell_grid.h"
+
+#include "simplify/cluster/cell_numbers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace lodestone::simplify {
+namespace {
+
+// A vertex may move along its surface, but not for nothing: this share of its planes' weight holds
+// it in all directions. Less follows creases better, more keeps flat faces' cells regular.
+constexpr float kHold = 1e-4f;
+// Open borders and those between material slots are held this much of the planes' weight.
+constexpr float kBorder = 0.3f;
+// A cell without area has at least some weight (in a frame of unit extent).
+constexpr float kLeastWeight = 1e-20f;
+constexpr Four kNothing{0, 0, 0, 0};
+
+/// Neighboring slots count differently in `open`, so that their border does not close.
+float side_of(uint16_t slot) {
+    return 1 + 0.37f * static_cast<float>(slot % 7u);
+}
+
+/// A vertex, and what the triangles around it tell about it: half a line of the processor's cache.
+struct alignas(32) CellVertex {
+    glm::vec3 at;   // in the frame
+    uint32_t cell;  // the one it lies in
+    Four open;      // from the first neighbor to the last: nothing where the fan closes; the weight
+
+    Four point() const {
+        using Bits = uint32_t __attribute__((vector_size(16)));
+        Bits bits;
+        std::memcpy(&bits, this, sizeof(bits));
+        return (Four)(bits & Bits{~0u, ~0u, ~0u, 0});
+    }
+    /// Of its planes: twice the area around it.
+    float weight() const { return open[3]; }
+    bool is_open() const { return dot_three(open, open) > 1e-4f * weight(); }
+};
+
+/// A cell's quadric has its origin where its first vertex is.
+ScratchVector<CellVertex> vertices_of(Cells& cells, const Mesh& mesh, const CellFrame& frame) {
+    constexpr float kUnset = -1;
+    cells.quadrics.assign(cells.split.size(),
+                          CellQuadric{kNothing, kNothing, kNothing, {kUnset, 0, 0, 0}});
+    ScratchVector<CellVertex> vertices(mesh.positions.size());
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        const Four point = frame(mesh.positions[i]);
+        const uint32_t cell = cells.cell[i];
+        vertices[i] = {first_three(point), cell, kNothing};
+        Four& origin = cells.quadrics[cell].at;
+        if (origin[0] == kUnset)
+            origin = point;
+    }
+    return vertices;
+}
+
+/// The planes of all triangles to the cells of their corners, what lies around each vertex, and the
+/// cells' triangles between three of them.
+void add_triangles(Cells& cells, const Mesh& mesh, ScratchVector<CellVertex>& vertices,
+                   const Job& job) {
+    constexpr size_t kAhead = 12;  // triangles whose vertices are asked for
+    constexpr size_t kBlock = 4096;
+    // Plain pointers: what is written must not make it look for the vectors again.
+    CellVertex* const around = vertices.data();
+    CellQuadric* const quadrics = cells.quadrics.data();
+    const uint16_t* const slots = mesh.slots.empty() ? nullptr : mesh.slots.data();
+    const std::span<const Triangle> triangles = mesh.triangles;
+    size_t kept = 0;
+    for (size_t begin = 0; begin < triangles.size(); begin += kBlock) {
+        job.check();
+        const size_t end = std::min(triangles.size(), begin + kBlock);
+        if (cells.triangles.size() < kept + kBlock) {
+            // As many as a surface has, or more: what is left over would be a page of memory.
+            const size_t room = std::max(4 * cells.split.size(), 2 * kept) + kBlock;
+            cells.triangles.resize(std::min(triangles.size() + kBlock, room));
+            cells.sources.resize(cells.triangles.size());
+        }
+        Triangle* const into = cells.triangles.data();
+        uint32_t* const sources = cells.sources.data();
+        for (size_t i = begin; i < end; ++i) {
+            const Triangle& coming = triangles[std::min(i + kAhead, triangles.size() - 1)];
+            __builtin_prefetch(around + coming.x, 1);
+            __builtin_prefetch(around + coming.y, 1);
+            __builtin_prefetch(around + coming.z, 1);
+            CellVertex& first = around[triangles[i].x];
+            CellVertex& second = around[triangles[i].y];
+            CellVertex& third = around[triangles[i].z];
+            const uint32_t x = first.cell;
+            const uint32_t y = second.cell;
+            const uint32_t z = third.cell;
+            // Without a branch: nobody can predict it.
+            into[kept].x = x;
+            into[kept].y = y;
+            into[kept].z = z;
+            sources[kept] = static_cast<uint32_t>(i);
+            kept += (x != y) & (y != z) & (z != x);
+            const Four a = first.point();
+            const Four b = second.point();
+            const Four c = third.point();
+            const Four n = cross(b - a, c - a);
+            const float square = dot_three(n, n);
+            if (!(square > 0))
+                continue;
+            const float weight = std::sqrt(square);
+            const Four normal = n * (1 / std::sqrt(weight));
+            const Four planes_a = __builtin_shufflevector(normal, normal, 0, 0, 0, 1) *
+                                  __builtin_shufflevector(normal, normal, 0, 1, 2, 1);
+            const Four planes_b = __builtin_shufflevector(normal, normal, 1, 2, 3, 3) * normal[2];
+            CellQuadric& of = quadrics[x];
+            if (x == y && y == z) {
+                of.add_plane(normal * std::sqrt(3.0f), planes_a * 3, planes_b * 3, a - of.at);
+            } else {
+                CellQuadric& of_second = quadrics[y];
+                CellQuadric& of_third = quadrics[z];
+                of.add_plane(normal, planes_a, planes_b, a - of.at);
+                of_second.add_plane(normal, planes_a, planes_b, b - of_second.at);
+                of_third.add_plane(normal, planes_a, planes_b, c - of_third.at);
+            }
+            Four past_first = c - b;
+            Four past_second = a - c;
+            Four past_third = b - a;
+            if (slots != nullptr) {
+                const float side = side_of(slots[i]);
+                past_first *= side;
+                past_second *= side;
+                past_third *= side;
+            }
+            const Four more = Four{0, 0, 0, 1} * weight;
+            first.open += past_first + more;
+            second.open += past_second + more;
+            third.open += past_third + more;
+        }
+    }
+    cells.triangles.resize(kept);
+    cells.sources.resize(kept);
+}
+
+/// Of vertices at one position (split ones) the first is given what the others have.
+void join_open(ScratchVector<CellVertex>& vertices, const ScratchVector<uint32_t>& open) {
+    size_t size = 64;
+    while (size < 2 * open.size())
+        size *= 2;
+    ScratchVector<uint32_t> table(size, kNoCell);
+    for (const uint32_t v : open) {
+        const glm::vec3 point = vertices[v].at;
+        std::array<uint32_t, 3> bits{};
+        std::memcpy(bits.data(), &point, sizeof(point));
+        uint32_t key = bits[0] * 0x9e3779b1u ^ bits[1] * 0x85ebca6bu ^ bits[2] * 0xc2b2ae35u;
+        key ^= key >> 15u;
+        for (size_t at = key & (size - 1);; at = (at + 1) & (size - 1)) {
+            if (table[at] == kNoCell) {
+                table[at] = v;
+                break;
+            }
+            CellVertex& first = vertices[table[at]];
+            if (first.at == point) {
+                first.open += vertices[v].open;
+                vertices[v].open = kNothing;
+                break;
+            }
+        }
+    }
+}
+
+/// All vertices are held a little, and borders at the lines along them.
+void add_vertices(Cells& cells, ScratchVector<CellVertex>& vertices) {
+    ScratchVector<uint32_t> open;
+    open.reserve(vertices.size());
+    for (CellQuadric& quadric : cells.quadrics) {
+        // The planes of a cell weigh as much as its vertices.
+        const float all = quadric.trace() * kHold + kLeastWeight;
+        quadric.planes_a += Four{all, 0, 0, all};
+        quadric.planes_b += Four{0, all, 0, 0};
+    }
+    for (uint32_t v = 0; v < vertices.size(); ++v) {
+        const CellVertex& vertex = vertices[v];
+        CellQuadric& quadric = cells.quadrics[vertex.cell];
+        const Four away = vertex.point() - quadric.at;
+        quadric.pull +=
+            (away + Four{0, 0, 0, 1} * dot_three(away, away)) * (kHold * vertex.weight());
+        if (vertex.is_open())
+            open.push_back(v);
+    }
+    join_open(vertices, open);
+    for (const uint32_t v : open) {
+        const CellVertex& vertex = vertices[v];
+        if (!vertex.is_open())
+            continue;
+        // The line along the border: everything but what lies in its direction.
+        const float all = kBorder * vertex.weight();
+        const Four o = vertex.open;
+        const Four along = o * (all / dot_three(o, o));
+        const Four planes_a{all - along[0] * o[0], -along[0] * o[1], -along[0] * o[2],
+                            all - along[1] * o[1]};
+        const Four planes_b{-along[1] * o[2], all - along[2] * o[2], 0, 0};
+        CellQuadric& quadric = cells.quadrics[vertex.cell];
+        quadric.add_planes(planes_a, planes_b, vertex.point() - quadric.at);
+    }
+}
+
+}  // namespace
+
+Extent extent_of(std::span<const glm::vec3> points) {
+    if (points.empty())
+        return {};
+    Four low = four(points[0]);
+    Four high = low;
+    Four sum = kNothing;  // without a branch: only what is not finite gives anything but 0
+    for (const glm::vec3& p : points) {
+        const Four point = four(p);
+        low = least_of(point, low);
+        high = most_of(point, high);
+        sum += point - point;
+    }
+    return {first_three(low), first_three(high), first_three(sum) == glm::vec3(0.0f)};
+}
+
+Cells divide(const Mesh& mesh, const Extent& extent, size_t least, const Job& job) {
+    Cells cells;
+    if (mesh.triangles.empty())
+        return cells;
+    cells.low = glm::dvec3(extent.low);
+    const glm::dvec3 size = glm::dvec3(extent.high) - cells.low;
+    cells.unit = std::max({size.x, size.y, size.z});
+    const double scale = 1 / cells.unit;
+    if (!(scale < 0.25 * std::numeric_limits<float>::max())) {
+        cells.unit = 0;
+        return cells;
+    }
+    const CellFrame frame(extent.low, scale);
+    job.check();
+    number_cells(cells, mesh.positions, frame, least);
+    job.check();
+    ScratchVector<CellVertex> vertices = vertices_of(cells, mesh, frame);
+    add_triangles(cells, mesh, vertices, job);
+    add_vertices(cells, vertices);
+    return cells;
+}
+
+}  // namespace lodestone::simplify

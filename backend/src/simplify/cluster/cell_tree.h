@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cell tree: which boxes of cells are joined at a given number of cells; adaptive in detail.
+#pragma once
+
+#include "simplify/cluster/cell_grid.h"
+
+#include <span>
+
+namespace lodestone::simplify {
+
+/// A binary tree over the cells, a node being a box of the grid halved along one axis in turn.
+/// Joining what costs least first leaves small cells where the surface bends and large ones where
+/// it is flat. source: Schaefer & Warren 2003 (adaptive vertex clustering using octrees), with the
+/// plane quadrics of Lindstrom 2000 (out-of-core simplification).
+class CellTree {
+public:
+    explicit CellTree(const Cells& cells);
+
+    /// Joins nodes until `count` cells (from 1 to all) are left; returns the node each cell is in
+    /// now. Cells that stay alone have numbers below cells.count(); valid until the next call.
+    std::span<const uint32_t> joined(size_t count);
+
+    size_t nodes() const { return parent_.size(); }
+
+private:
+    ScratchVector<uint32_t> parent_;  // of each cell, then of each node above
+    ScratchVector<float> cost_;       // of joining a node above, never less than of those below it
+    ScratchVector<float> order_;      // the same, partly sorted
+    ScratchVector<size_t> asked_;     // places in that with smaller ones before and larger behind
+    ScratchVector<uint32_t> node_;    // where each node is now
+    size_t cells_;
+};
+
+}  // namespace lodestone::simplify

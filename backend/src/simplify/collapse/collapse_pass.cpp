@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/collapse/collapse_pass.h"
+
+#include "base/parallel.h"
+#include "simplify/collapse/edge_costs.h"
+#include "simplify/collapse/mesh_tunnels.h"
+#include "simplify/collapse/split_touching.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+namespace lodestone::simplify {
+namespace {
+
+/// A pass that takes less than this share of what is wanted is worth trying harder.
+constexpr double kSlow = 0.02;
+constexpr int kMostSlowPasses = 64;
+/// Triangles a pass may look at for each one there is; ordinary meshes need 18 at most.
+constexpr size_t kWork = 40;
+
+/// Small passes choose with fresher costs, large ones take less time. (More than .35 ruins plates
+/// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
+constexpr Pace kFast{0.35, 2.0, 1.0 / 3, 6};
+constexpr Pace kBest{0.12, 1.0, 0.5, 1};
+/// Far from the target, that is with so many times more triangles, a pass may cost more: triangles
+/// twice as large cost eight times as much, so all of it is little beside what is to come.
+constexpr double kFar = 4;
+double slack_far(double times, double most) {
+    return std::clamp(std::pow(times / kFar, 1.5), 1.0, most);
+}
+/// A last pass for less than this share of the triangles is given so many times more candidates:
+/// the few it wants could all be impossible, and another pass asks every edge again.
+constexpr double kRest = 0.05;
+constexpr double kRestReach = 4;
+/// Chunks go through their candidates at the same time, in so many rounds of steps of costs: that
+/// the dearest do not go in one chunk before cheaper ones in another. In one round, which spares
+/// memory going through all chunks again, where a pass is going to run out of candidates anyway:
+/// of each less than so many triangles go.
+constexpr size_t kRounds = 4;
+constexpr double kGone = 0.8;
+/// A pass that takes less than this share of what it is to take was given too few candidates.
+constexpr double kPoor = 0.35;
+/// Candidates that a chunk holds for each of its vertices, the cheapest: with all that are within
+/// the limit, where the surface is plain its chunks go before dearer ones do. Enough for any share
+/// as long as most of them can be collapsed; where they cannot, more.
+constexpr double kHeld = 1.15;
+constexpr double kMostHeld = 2;
+/// So many edges ahead memory is asked for what they need.
+constexpr size_t kLists = 12;
+constexpr size_t kTriangles = 4;
+
+bool is_slow(size_t gone, size_t wanted) {
+    return static_cast<double>(gone) < kSlow * static_cast<double>(wanted);
+}
+
+uint32_t step_of(const Candidate& candidate) {
+    return candidate.key >> kKeyShift;
+}
+
+/// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
+/// Parts up to the limit count too: a round begins with the removal of those that are cheaper than
+/// all it has.
+std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
+                                const std::vector<Part>& removable, uint32_t limit, size_t want) {
+    std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
+    size_t all = 0;
+    for (const Part& part : removable) {
+        const uint32_t key = key_of_cost(static_cast<float>(part.cost));
+        if (key > limit)
+            break;
+        ++counts[key >> kKeyShift];
+        ++all;
+    }
+    for (const Chunk& chunk : chunks) {
+        for (const Candidate& candidate : chunk.candidates)
+            ++counts[step_of(candidate)];
+        all += chunk.candidates.size();
+    }
+    const bool all_go = kGone * static_cast<double>(all) < static_cast<double>(want);
+    const size_t rounds = chunks.size() > 1 && !all_go ? kRounds : 1;
+    std::vector<uint32_t> ends;
+    size_t sum = 0;
+    for (uint32_t step = 0; step < counts.size(); ++step) {
+        sum += counts[step];
+        if (sum > 0 && sum * rounds >= all * (ends.size() + 1) && counts[step] > 0)
+            ends.push_back(step + 1);
+    }
+    return ends;
+}
+
+}  // namespace
+
+Reducer::Reducer(CollapseMesh& mesh, const SimplifyOptions& options)
+    : mesh_(mesh), options_(options), pace_(options.mode == SimplifyMode::Best ? kBest : kFast) {}
+
+/// One batch of collapses.
+class Reducer::Batch {
+public:
+    Batch(Reducer& reducer, Effort effort, size_t start, size_t want, uint32_t limit)
+        : r_(reducer),
+          effort_(effort),
+          limit_(limit),
+          want_(want),
+          work_(kWork * start + 100000),
+          removable_(reducer.parts_.removable()),
+          doomed_(removable_.empty() ? 0 : reducer.mesh_.part_count, 0),
+          taken_(doomed_.size(), 0),
+          whole_(reducer.mesh_, reducer.adjacency_, reducer.edges_, effort,
+                 reducer.options_.max_turn) {
+        r_.used_.assign(r_.mesh_.points.size(), 0);
+    }
+
+    void run(const Job& job) {
+        const std::vector<Chunk>& chunks = r_.edges_.chunks();
+        std::vector<size_t> next(chunks.size(), 0);  // candidate of each chunk
+        std::vector<size_t> last(chunks.size(), 0);  // that the round goes up to
+        std::vector<std::vector<uint32_t>> left(chunks.size());
+        std::vector<size_t> gone(chunks.size(), 0);
+        uint32_t begin = 0;
+        const std::vector<uint32_t> rounds = rounds_of(chunks, removable_, limit_, want_);
+        for (const uint32_t end : rounds) {
+            if (gone_ >= want_)
+                break;
+            remove_parts_below(begin << kKeyShift);
+            begin = end;
+            size_t all = 0;
+            for (size_t i = 0; i < chunks.size(); ++i) {
+                const std::vector<Candidate>& candidates = chunks[i].candidates;
+                last[i] = next[i];
+                while (last[i] < candidates.size() && step_of(candidates[last[i]]) < end)
+                    ++last[i];
+                all += last[i] - next[i];
+            }
+            const size_t rest = want_ - std::min(want_, gone_);
+            if (chunks.size() == 1) {
+                for (uint32_t k = 0; k < last[0]; ++k)
+                    left[0].push_back(k);
+            } else {
+                parallel_for(chunks.size(), [&](size_t i) {
+                    job.check();
+                    left[i].clear();
+                    const double part = static_cast<double>(last[i] - next[i]) /
+                                        static_cast<double>(std::max<size_t>(all, 1));
+                    const auto share = [&](size_t whole) {
+                        return static_cast<size_t>(part * static_cast<double>(whole));
+                    };
+                    gone[i] = within(chunks[i], next[i], last[i], share(rest),
+                                     share(work_ / rounds.size()), left[i]);
+                });
+                for (const size_t each : gone) {
+                    gone_ += each;
+                    collapsed_ += each;
+                }
+            }
+            across(chunks, left, job);
+            next = last;
+        }
+        if (effort_ == Effort::Careful && gone_ == 0) {
+            // No edge within the limit can be collapsed: parts go before dearer ones do.
+            limit_ = kImpossible - 1;
+            const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
+            if (all.size() > 1)
+                remove_parts_below(all[all.size() - 2] << kKeyShift);
+        }
+        if (effort_ >= Effort::Topology && is_slow(gone_, want_)) {
+            while (gone_ < want_ && next_part_ < removable_.size())
+                remove_next_part();
+        }
+        r_.mesh_.live -= collapsed_;
+        if (next_part_ > 0)
+            r_.parts_.remove(r_.mesh_, doomed_);
+    }
+
+private:
+    void remove_next_part() {
+        const Part& part = removable_[next_part_++];
+        doomed_[part.part] = 1;
+        gone_ += part.triangles - taken_[part.part];
+    }
+    void remove_parts_below(uint32_t key) {
+        const auto cost = static_cast<double>(std::bit_cast<float>(std::min(key, limit_)));
+        while (next_part_ < removable_.size() && removable_[next_part_].cost < cost &&
+               gone_ < want_)
+            remove_next_part();
+    }
+    size_t collapse(Collapser& collapser, const Candidate& candidate) {
+        const uint32_t part = r_.mesh_.parts[candidate.a];
+        if (!doomed_.empty() && doomed_[part])
+            return 0;
+        const size_t went = collapser.collapse(candidate);
+        if (went == 0 || went == Collapser::kOutside)
+            return went;
+        r_.used_[candidate.a] = r_.used_[candidate.b] = 1;
+        if (!taken_.empty())
+            std::atomic_ref(taken_[part]).fetch_add(went, std::memory_order_relaxed);
+        return went;
+    }
+
+    /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most`
+    /// triangles at most; `left` gets the others.
+    size_t within(const Chunk& chunk, size_t next, size_t last, size_t most, size_t work,
+                  std::vector<uint32_t>& left) {
+        if (next == last)
+            return 0;
+        Collapser collapser(r_.mesh_, r_.adjacency_, r_.edges_, effort_, r_.options_.max_turn,
+                            &chunk);
+        size_t gone = 0;
+        for (size_t k = next; k < last; ++k) {
+            const Candidate& candidate = chunk.candidates[k];
+            if (k + kLists < last)
+                collapser.expect_lists(chunk.candidates[k + kLists]);
+            if (k + kTriangles < last) {
+                const Candidate& coming = chunk.candidates[k + kTriangles];
+                if (!r_.used_[coming.a])
+                    collapser.expect_triangles(coming);
+            }
+            if (r_.used_[candidate.a])
+                continue;
+            if (!chunk.has(candidate.b) || gone + 2 > most || collapser.work() > work) {
+                left.push_back(static_cast<uint32_t>(k));
+                continue;
+            }
+            if (r_.used_[candidate.b])
+                continue;
+            const size_t went = collapse(collapser, candidate);
+            if (went == Collapser::kOutside)
+                left.push_back(static_cast<uint32_t>(k));
+            else
+                gone += went;
+        }
+        return gone;
+    }
+
+    /// What the chunks left, one after the other.
+    void across(const std::vector<Chunk>& chunks, const std::vector<std::vector<uint32_t>>& left,
+                const Job& job) {
+        for (size_t i = 0; i < chunks.size(); ++i) {
+            for (size_t n = 0; n < left[i].size(); ++n) {
+                if ((n & 0xfffu) == 0)
+                    job.check();
+                const std::vector<Candidate>& candidates = chunks[i].candidates;
+                const Candidate& candidate = candidates[left[i][n]];
+                if (n + kLists < left[i].size())
+                    whole_.expect_lists(candidates[left[i][n + kLists]]);
+                if (n + kTriangles < left[i].size())
+                    whole_.expect_triangles(candidates[left[i][n + kTriangles]]);
+                if (r_.used_[candidate.a] || r_.used_[candidate.b])
+                    continue;
+                remove_parts_below(candidate.key);
+                if (gone_ >= want_ || whole_.work() > work_)
+                    return;
+                const size_t went = collapse(whole_, candidate);
+                gone_ += went;
+                collapsed_ += went;
+            }
+        }
+    }
+
+    Reducer& r_;
+    Effort effort_;
+    uint32_t limit_;  // of parts: keys that none exceeds
+    size_t want_;
+    size_t work_;  // triangles it may look at
+    const std::vector<Part>& removable_;
+    std::vector<uint8_t> doomed_;
+    std::vector<size_t> taken_;
+    Collapser whole_;
+    size_t next_part_ = 0;
+    size_t gone_ = 0;       // triangles, with those of parts
+    size_t collapsed_ = 0;  // without
+};
+
+size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
+    const size_t before = mesh_.live;
+    if (effort == Effort::Anything)
+        drop_copies(mesh_);
+    if (begun_ || effort == Effort::Anything)
+        compact(mesh_, &adjacency_);
+    if (mesh_.live <= target)
+        return before - mesh_.live;
+    edges_.build(mesh_, adjacency_, options_, !begun_, job);
+    if (!begun_) {
+        for (const Chunk& chunk : edges_.chunks()) {
+            for (const auto& [a, b] : chunk.borders)
+                mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
+        }
+    }
+    if (!options_.keep_topology) {
+        if (cut_)
+            find_parts(mesh_);
+        if (measured_ && !cut_)
+            parts_.count(mesh_);
+        else
+            parts_.measure(mesh_, options_.part_weight);
+        measured_ = true;
+        cut_ = false;
+    }
+    begun_ = true;
+
+    const size_t start = mesh_.live;
+    const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
+    const size_t want = std::min(start - target, std::max<size_t>(share, 64));
+    uint32_t limit = kImpossible - 1;
+    if (effort == Effort::Careful) {
+        const auto live = static_cast<double>(start);
+        const auto wanted = static_cast<double>(want);
+        const bool rest = want == start - target && wanted < kRest * live;
+        const double quantile = (rest ? kRestReach : 1) * reach_ * pace_.quantile;
+        const uint32_t key =
+            edges_.key_of(mesh_, adjacency_, effort, static_cast<size_t>(quantile * wanted));
+        const double slack =
+            pace_.slack * slack_far(live / static_cast<double>(target), pace_.most_slack);
+        limit = std::min(
+            limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
+    }
+    // Edges with more than two triangles are the input's, to stay, or all of its closing.
+    if (effort >= Effort::Topology && !asked_) {
+        asked_ = true;
+        loops_ = !has_pinches(mesh_, adjacency_);
+    }
+    const bool usual = effort == Effort::Careful && reach_ == 1;
+    edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
+    Batch(*this, effort, start, want, limit).run(job);
+    if (effort >= Effort::Topology)
+        cut_ = cut_pinches(mesh_, loops_);
+    // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
+    const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
+    reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);
+    return before - mesh_.live;
+}
+
+bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
+                     Adjacency& adjacency) {
+    const Effort last = options_.keep_topology ? Effort::Rough : Effort::Anything;
+    Effort effort = Effort::Careful;
+    int slow_passes = 0;
+    adjacency_ = std::move(adjacency);
+    measured_ = false;
+    while (mesh_.live > target) {
+        const size_t wanted = mesh_.live - target;
+        const size_t gone = pass(target, effort, job);
+        after_pass();
+        if (!is_slow(gone, wanted))
+            continue;
+        if (effort < last)
+            effort = static_cast<Effort>(static_cast<int>(effort) + 1);
+        else if (gone == 0 || ++slow_passes > kMostSlowPasses)
+            break;
+    }
+    edges_.clear();
+    used_ = {};
+    adjacency_ = {};
+    compact(mesh_, &adjacency);
+    shrink(mesh_);
+    return mesh_.live <= target;
+}
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wedges: normals, texture coordinates and colors of corners, carried through collapses.
+#pragma once
+
+#include "simplify/collapse/adjacency.h"
+
+namespace lodestone::simplify {
+
+/// Makes the wedges of `mesh`, whose wedges hold the source's vertices: corners of one vertex whose
+/// attributes agree (normals within 1 degree) share a wedge.
+void make_wedges(CollapseMesh& mesh, const Mesh& source);
+
+/// True when (almost) every triangle shows its own face normal and neighbors differ: flat shading
+/// written as split normals. Such normals are made anew, not carried.
+bool shows_faces(const CollapseMesh& mesh, const Mesh& source);
+
+/// What one collapse does to the wedges around the edge's two ends.
+class WedgeMerge {
+public:
+    /// Plans the collapse of a and b to `point`; call before anything is changed. Wedges joined by
+    /// a triangle on the edge become one; the new value is read off the old surface at the place
+    /// nearest to `point`. False: two wedges of one end would be joined, which smears a seam
+    /// (`join_seams` keeps them apart and allows it).
+    bool plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_t a, uint32_t b,
+              const glm::dvec3& point, bool join_seams);
+    /// Writes the planned values and gives the corners at `kept` their wedges. `triangle` must be
+    /// one of those around a or b, `corner` the one at a or b.
+    void apply(CollapseMesh& mesh);
+    uint32_t wedge_of(uint32_t old_wedge) const;
+
+private:
+    struct Member {
+        uint32_t wedge;
+        uint32_t group;  // index of the member that stands for it
+        bool at_a;
+    };
+    struct Value {
+        glm::dvec3 normal{0.0};
+        glm::dvec2 uv{0.0};
+        glm::dvec4 color{0.0};
+        double square = 0;
+    };
+    uint32_t find_or_add(uint32_t wedge, bool at_a);
+    std::vector<Member> members_;
+    std::vector<Value> values_;
+};
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled for AVX2, and called only where there is that.
+#ifdef LODESTONE_AVX2
+#define LODESTONE_LANES 8
+#include "simplify/collapse/edge_costs_lanes.h"
+
+namespace lodestone::simplify {
+
+void edge_costs_by_8(EdgeBlock& block, size_t count) {
+    costs_of(block, count);
+}
+
+}  // namespace lodestone::simplify
+#endif

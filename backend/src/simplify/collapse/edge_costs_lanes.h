@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Edge costs in vectors of LODESTONE_LANES numbers; for edge_costs*.cpp alone. Everything in here
+// is each one's own: what is compiled for other processors must not be shared.
+#pragma once
+
+#include "geometry/quadric.h"
+#include "simplify/collapse/edge_costs.h"
+
+#include <cstddef>
+#include <cstring>
+
+namespace lodestone::simplify {
+namespace {
+
+using Lanes = float __attribute__((vector_size(4 * LODESTONE_LANES)));
+inline constexpr size_t kLanes = LODESTONE_LANES;
+inline constexpr auto kPull = static_cast<float>(geometry::kEdgePull);
+inline constexpr auto kLength = static_cast<float>(geometry::kEdgeLength);
+inline constexpr Lanes kZero{};
+
+struct Vector {
+    Lanes x, y, z;
+};
+inline Vector operator+(const Vector& a, const Vector& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator*(const Lanes& s, const Vector& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+inline Lanes dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// A symmetric matrix.
+struct Form {
+    Lanes xx, xy, xz, yy, yz, zz;
+    Vector operator*(const Vector& v) const {
+        return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
+                xz * v.x + yz * v.y + zz * v.z};
+    }
+    /// v^T M v, which rounding does not make negative.
+    Lanes of(const Vector& v) const {
+        const Lanes value = dot(v, *this * v);
+        return value > kZero ? value : kZero;
+    }
+};
+
+/// L D L^T.
+struct Factors {
+    Lanes l10, l20, l21, d0, d1, d2;
+    explicit Factors(const Form& m) {
+        d0 = 1 / m.xx;
+        l10 = m.xy * d0;
+        l20 = m.xz * d0;
+        d1 = 1 / (m.yy - l10 * m.xy);
+        const Lanes t = m.yz - l10 * m.xz;
+        l21 = t * d1;
+        d2 = 1 / (m.zz - l20 * m.xz - l21 * t);
+    }
+    Vector solve(const Vector& b) const {
+        const Lanes y = b.y - l10 * b.x;
+        Vector x;
+        x.z = (b.z - l20 * b.x - l21 * y) * d2;
+        x.y = y * d1 - l21 * x.z;
+        x.x = b.x * d0 - l10 * x.y - l20 * x.z;
+        return x;
+    }
+};
+
+/// Numbers of a vertex, of two, and of an edge.
+inline constexpr size_t kOfVertex = sizeof(VertexAround) / sizeof(float);
+inline constexpr size_t kColumns = 2 * kOfVertex + 4;
+static_assert(kOfVertex % 4 == 0 && sizeof(VertexAround) == kOfVertex * sizeof(float));
+static_assert(offsetof(EdgeInput, held) == offsetof(EdgeInput, shared) + 3 * sizeof(float));
+static_assert(EdgeBlock::kSize % kLanes == 0);
+
+using Four = float __attribute__((vector_size(16)));
+
+/// Four numbers of an edge from number k on.
+inline Four four_of(const EdgeInput& edge, size_t k) {
+    const float* from = k < kOfVertex       ? &edge.a->point.x + k
+                        : k < 2 * kOfVertex ? &edge.b->point.x + (k - kOfVertex)
+                                            : &edge.shared.x;
+    Four four;
+    std::memcpy(&four, from, sizeof(four));
+    return four;
+}
+
+/// Rows of edges to columns, four numbers at a time: of vectors of eight each half is four edges.
+inline void transpose(const EdgeInput* rows, Lanes (&columns)[kColumns]) {
+    for (size_t k = 0; k < kColumns; k += 4) {
+        Lanes row[4];
+        for (size_t i = 0; i < 4; ++i) {
+#if LODESTONE_LANES == 8
+            row[i] = __builtin_shufflevector(four_of(rows[i], k), four_of(rows[i + 4], k), 0, 1, 2,
+                                             3, 4, 5, 6, 7);
+#else
+            row[i] = four_of(rows[i], k);
+#endif
+        }
+#if LODESTONE_LANES == 8
+        const Lanes low_01 = __builtin_shufflevector(row[0], row[1], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Lanes low_23 = __builtin_shufflevector(row[2], row[3], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Lanes high_01 = __builtin_shufflevector(row[0], row[1], 2, 10, 3, 11, 6, 14, 7, 15);
+        const Lanes high_23 = __builtin_shufflevector(row[2], row[3], 2, 10, 3, 11, 6, 14, 7, 15);
+        columns[k] = __builtin_shufflevector(low_01, low_23, 0, 1, 8, 9, 4, 5, 12, 13);
+        columns[k + 1] = __builtin_shufflevector(low_01, low_23, 2, 3, 10, 11, 6, 7, 14, 15);
+        columns[k + 2] = __builtin_shufflevector(high_01, high_23, 0, 1, 8, 9, 4, 5, 12, 13);
+        columns[k + 3] = __builtin_shufflevector(high_01, high_23, 2, 3, 10, 11, 6, 7, 14, 15);
+#else
+        const Lanes low_01 = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);
+        const Lanes low_23 = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
+        const Lanes high_01 = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7);
+        const Lanes high_23 = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+        columns[k] = __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5);
+        columns[k + 1] = __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7);
+        columns[k + 2] = __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5);
+        columns[k + 3] = __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7);
+#endif
+    }
+}
+
+/// Here a, there b.
+template <typename Mask>
+inline Vector choose(const Mask& mask, const Vector& a, const Vector& b) {
+    return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
+inline void costs_of(EdgeBlock& block, size_t count) {
+    for (size_t i = 0; i < count; i += kLanes) {
+        Lanes in[kColumns];
+        transpose(block.in + i, in);
+        const Vector d =
+            (kZero + 0.5f) * (Vector{in[12], in[13], in[14]} - Vector{in[0], in[1], in[2]});
+        const Vector facet_a{in[3], in[4], in[5]};
+        const Vector facet_b{in[15], in[16], in[17]};
+        const Form a{in[6], in[7], in[8], in[9], in[10], in[11]};
+        const Form b{in[18], in[19], in[20], in[21], in[22], in[23]};
+        const Lanes trace = (a.xx + b.xx) + (a.yy + b.yy) + (a.zz + b.zz);
+        const Lanes pull = kPull * trace;
+        const Factors factors(Form{a.xx + b.xx + pull, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy + pull,
+                                   a.yz + b.yz, a.zz + b.zz + pull});
+        const Vector linear = b * d - a * d;
+        Vector y = factors.solve(linear);
+        y = factors.solve(linear + pull * y);
+        const Vector facet = facet_b + facet_a - Vector{in[24], in[25], in[26]};
+        const Vector turned = factors.solve(facet);
+        const Lanes height = dot(facet_b - facet_a, d);
+        const Lanes way = (height - dot(facet, y)) / dot(facet, turned);
+        const Lanes square = dot(d, d);
+        const Lanes held_way = dot(facet, facet) > 0.01f * trace * trace ? way : kZero;
+        const Vector move = held_way * turned;
+        const Lanes step = dot(move, move) <= square ? held_way : kZero;
+        y = y + step * turned;
+        const Lanes best = a.of(y + d) + b.of(y - d);
+        const Vector edge = d + d;
+        const Lanes at_a = b.of(edge);
+        const Lanes at_b = a.of(edge);
+        const Lanes at_middle = a.of(d) + b.of(d);
+        const Lanes at_ends = at_b < at_a ? at_b : at_a;
+        const Lanes at_three = at_ends < at_middle ? at_ends : at_middle;
+        const auto near = dot(y, y) <= 9 * square;
+        const Lanes free = near ? best : at_three;
+        const Vector none{kZero, kZero, kZero};
+        const Vector at_best = choose(at_ends < at_middle, choose(at_b < at_a, edge, none), d);
+        const Vector offset = choose(near, y + d, at_best);
+        const Lanes end = in[27];
+        Lanes cost = end < kZero ? at_a : free;
+        cost = end > kZero ? at_b : cost;
+        cost = cost + 4 * kLength * square * trace;
+        cost = trace > 1e-37f ? cost : kZero;
+        std::memcpy(&block.cost[i], &cost, sizeof(cost));
+        const Vector from_a = choose(trace > 1e-37f, offset, d);
+        std::memcpy(&block.x[i], &from_a.x, sizeof(Lanes));
+        std::memcpy(&block.y[i], &from_a.y, sizeof(Lanes));
+        std::memcpy(&block.z[i], &from_a.z, sizeof(Lanes));
+    }
+}
+
+}  // namespace
+}  // namespace lodestone::simplify

@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/collapse/edge_queue.h"
+
+#include "base/parallel.h"
+#include "simplify/collapse/edge_neighbors.h"
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace lodestone::simplify {
+namespace {
+
+/// Of open borders, relative to those of paint: the surface ends there, and that is all one sees.
+/// (Held as much as paint they keep triangles that the surface beside them needs more: measured, on
+/// leaves, a car body and terrain.)
+constexpr double kOpen = 0.15;
+
+/// Edges that are held count as at least this share of the square of a typical one: the tip of an
+/// outline is as far away however short it is. Up to so many times what they are.
+constexpr double kLeastSquare = 0.3;
+constexpr double kMostRaised = 1e4;
+/// Triangles between those that tell how long edges are.
+constexpr size_t kMeasured = 16;
+
+/// Of the length of edges, were all triangles equilateral.
+double typical_square(const CollapseMesh& mesh) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < mesh.facets.size(); i += kMeasured, ++count)
+        sum += glm::length(glm::dvec3(mesh.facets[i]));
+    return count > 0 ? 4 / std::sqrt(3.0) * sum / static_cast<double>(count) : 0;
+}
+
+/// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
+/// `least` is added to the edge's square.
+void hold_edge(geometry::Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet,
+               double weight, double least) {
+    const double square = glm::dot(edge, edge);
+    const double area = glm::length(facet);
+    if (!(square > 0))
+        return;
+    weight *= std::min(1 + least / square, kMostRaised);
+    if (area > 1e-12 * square) {
+        const glm::dvec3 normal = glm::cross(edge, facet);
+        // |edge x facet|^2 = square area^2: the weight is that of a square on the edge.
+        quadric.add(normal, weight / (area * area));
+        return;
+    }
+    // No area, no plane: hold it in both directions across.
+    quadric.xx += weight * square;
+    quadric.yy += weight * square;
+    quadric.zz += weight * square;
+    quadric.add(edge, -weight);
+}
+
+/// By how much the colors on both sides of an edge miss being one linear ramp, where the nearer of
+/// the two opposite corners is: 0 inside a smooth ramp, up to 1 where paint ends. As a picture
+/// encodes colors, roughly.
+double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& w0,
+                  const Triangle& t1, const Triangle& w1, uint32_t a, uint32_t b) {
+    bool one = true;  // color: no kink
+    for (int corner = 0; corner < 3; ++corner)
+        one = one && mesh.colors[w0[corner]] == mesh.colors[w0.x] &&
+              mesh.colors[w1[corner]] == mesh.colors[w0.x];
+    if (one)
+        return 0;
+    const auto color = [&](uint32_t wedge) {
+        return glm::sqrt(glm::clamp(mesh.colors[wedge], 0.0f, 1.0f));
+    };
+    const glm::dvec3 edge = mesh.points[b] - mesh.points[a];
+    const double square = glm::dot(edge, edge);
+    if (!(square > 0))
+        return 0;
+    glm::vec4 slopes[2];
+    double heights[2] = {0, 0};
+    for (int side = 0; side < 2; ++side) {
+        const Triangle& t = side == 0 ? t0 : t1;
+        const Triangle& w = side == 0 ? w0 : w1;
+        const int at_a = corner_of(t, a);
+        const int at_b = corner_of(t, b);
+        const int opposite = 3 - at_a - at_b;
+        const glm::dvec3 arm = mesh.points[t[opposite]] - mesh.points[a];
+        const double along = glm::dot(arm, edge) / square;
+        heights[side] = glm::length(arm - along * edge);
+        const auto s = static_cast<float>(along);
+        slopes[side] = color(w[opposite]) - (1 - s) * color(w[at_a]) - s * color(w[at_b]);
+    }
+    const double least = std::min(heights[0], heights[1]);
+    if (!(least > 1e-9 * std::sqrt(square)))
+        return 0;
+    const glm::vec4 kink = glm::abs(slopes[0] * static_cast<float>(least / heights[0]) +
+                                    slopes[1] * static_cast<float>(least / heights[1]));
+    return std::min(1.0, static_cast<double>(std::max({kink.x, kink.y, kink.z, kink.w})));
+}
+
+geometry::Quadric quadric_of(const VertexAround& around) {
+    return {around.xx, around.xy, around.xz, around.yy, around.yz, around.zz};
+}
+
+void add(VertexAround& around, const geometry::Quadric& q) {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    around.xx += f(q.xx);
+    around.xy += f(q.xy);
+    around.xz += f(q.xz);
+    around.yy += f(q.yy);
+    around.yz += f(q.yz);
+    around.zz += f(q.zz);
+}
+
+using Lanes = float __attribute__((vector_size(16)));
+
+/// Of a vertex at `point`, as the planes of its triangles have it.
+VertexAround around_of(const glm::dvec3& point, const std::vector<glm::vec3>& facets,
+                       std::span<const uint32_t> ring) {
+    Lanes sum{};
+    Lanes squares{};   // xx, yy, zz
+    Lanes products{};  // xy, yz, zx
+    for (const uint32_t t : ring) {
+        const glm::vec3& facet = facets[t];
+        const float square = facet.x * facet.x + facet.y * facet.y + facet.z * facet.z;
+        const float weight = square > 1e-37f ? 1 / std::sqrt(square) : 0.0f;
+        const Lanes f{facet.x, facet.y, facet.z, 0};
+        const Lanes weighted = weight * f;
+        sum += f;
+        squares += f * weighted;
+        products += f * __builtin_shufflevector(weighted, weighted, 1, 2, 0, 3);
+    }
+    return {glm::vec3(point), glm::vec3(sum[0], sum[1], sum[2]),
+            squares[0],       products[0],
+            products[2],      squares[1],
+            products[1],      squares[2]};
+}
+
+constexpr uint32_t kChunk = 8192;
+/// Vertices whose edges are asked what they cost before all are.
+constexpr uint32_t kSampled = 512;
+constexpr uint32_t kRun = 8;  // of them in a row
+
+/// The bits by which candidates are ordered, and how many values these have.
+constexpr size_t kSteps = (kImpossible >> kKeyShift) + 1;
+
+}  // namespace
+
+void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
+                  uint32_t vertex, Neighbors& neighbors, Chunk* borders) {
+    const std::span<uint32_t> ring = adjacency.around(vertex);
+    for (const uint32_t t : adjacency.ahead(vertex)) {
+        __builtin_prefetch(&mesh.triangles[t]);
+        __builtin_prefetch(&mesh.facets[t]);
+    }
+    own_[vertex] = around_of(mesh.points[vertex], mesh.facets, ring);
+    for (size_t i = 0; i < others_.size(); ++i)
+        others_[i][vertex] = around_of(mesh.others[i].points[vertex], mesh.others[i].facets, ring);
+    const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, vertex);
+    const bool closed = fan == Neighbors::Fan::Closed;
+    const double least = kLeastSquare * typical_square_;
+    const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
+    if (closed && plain) {
+        kinds_[vertex] = neighbors.order(ring) ? VertexKind::FreeFan : VertexKind::Free;
+        return;
+    }
+    if (fan == Neighbors::Fan::Open && plain && others_.empty() && neighbors.order(ring)) {
+        geometry::Quadric quadric;
+        const auto border = [&](uint32_t neighbor, uint32_t triangle) {
+            if (neighbor > vertex && borders != nullptr)
+                borders->borders.emplace_back(vertex, neighbor);
+            hold_edge(quadric, mesh.points[neighbor] - mesh.points[vertex],
+                      glm::dvec3(mesh.facets[triangle]), kOpen * options.boundary_weight, least);
+        };
+        border(neighbors.first_corner(), ring.front());
+        border(neighbors.last_corner(), ring.back());
+        add(own_[vertex], quadric);
+        kinds_[vertex] = VertexKind::CurveFan;
+        return;
+    }
+    geometry::Quadric quadric;
+    std::vector<geometry::Quadric> quadrics(others_.size());
+    int open = 0;
+    bool holds = false;
+    for (const Neighbors::Neighbor& n : neighbors.find(mesh, ring, vertex, fan)) {
+        const bool two = n.uses == 2;
+        if (!two && n.vertex > vertex && borders != nullptr)
+            borders->borders.emplace_back(vertex, n.vertex);
+        open += !two;
+        double weight = two ? 0 : (n.uses == 1 ? kOpen : 1) * options.boundary_weight;
+        if (two && !mesh.slots.empty() && mesh.slots[n.t0] != mesh.slots[n.t1])
+            weight = options.boundary_weight;
+        if (two && weight <= 0) {
+            bool crease = n.leaving0 == n.leaving1;
+            if (!mesh.wedges.empty() && !crease) {
+                const Triangle& first = mesh.triangles[n.t0];
+                const Triangle& second = mesh.triangles[n.t1];
+                for (const uint32_t end : {vertex, n.vertex})
+                    crease |= mesh.wedges[n.t0][corner_of(first, end)] !=
+                              mesh.wedges[n.t1][corner_of(second, end)];
+            }
+            if (crease)
+                weight = options.seam_weight;
+        }
+        if (two && !mesh.colors.empty() && weight < options.boundary_weight) {
+            constexpr double kLeastKink = 0.1;
+            const double kink =
+                color_kink(mesh, mesh.triangles[n.t0], mesh.wedges[n.t0], mesh.triangles[n.t1],
+                           mesh.wedges[n.t1], vertex, n.vertex);
+            if (kink > kLeastKink)
+                weight = std::max(weight, kink * options.boundary_weight);
+        }
+        if (weight > 0) {
+            holds = true;
+            const auto hold = [&](const std::vector<glm::dvec3>& points,
+                                  const std::vector<glm::vec3>& facets, geometry::Quadric& held) {
+                const glm::dvec3 edge = points[n.vertex] - points[vertex];
+                hold_edge(held, edge, glm::dvec3(facets[n.t0]), weight, least);
+                if (n.t1 != kNone)
+                    hold_edge(held, edge, glm::dvec3(facets[n.t1]), weight, least);
+            };
+            hold(mesh.points, mesh.facets, quadric);
+            for (size_t i = 0; i < others_.size(); ++i)
+                hold(mesh.others[i].points, mesh.others[i].facets, quadrics[i]);
+        }
+    }
+    if (holds) {
+        add(own_[vertex], quadric);
+        for (size_t i = 0; i < others_.size(); ++i)
+            add(others_[i][vertex], quadrics[i]);
+    }
+    kinds_[vertex] = open == 0   ? VertexKind::Free
+                     : open == 2 ? VertexKind::Curve
+                                 : VertexKind::Fixed;
+    if (closed && neighbors.order(ring))
+        kinds_[vertex] = VertexKind::FreeFan;
+}
+
+void Edges::build(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
+                  bool borders, const Job& job) {
+    const size_t vertices = mesh.points.size();
+    own_.resize(vertices);
+    others_.resize(mesh.others.size());
+    for (std::vector<VertexAround>& other : others_)
+        other.resize(vertices);
+    kinds_.resize(vertices);
+    typical_square_ = typical_square(mesh);
+    chunks_.resize((vertices + kChunk - 1) / kChunk);
+    parallel_for(chunks_.size(), [&](size_t i) {
+        job.check();
+        Chunk& chunk = chunks_[i];
+        chunk.first = static_cast<uint32_t>(i * kChunk);
+        chunk.last = static_cast<uint32_t>(std::min(vertices, (i + 1) * kChunk));
+        chunk.borders.clear();
+        Neighbors neighbors;
+        for (uint32_t v = chunk.first; v < chunk.last; ++v)
+            visit(mesh, adjacency, options, v, neighbors, borders ? &chunk : nullptr);
+    });
+}
+
+void Edges::clear() {
+    chunks_ = {};
+    own_ = {};
+    others_ = {};
+    kinds_ = {};
+}
+
+/// What edges cost, a block of them at a time.
+class Edges::Pricing {
+public:
+    Pricing(const Edges& edges, const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort)
+        : edges_(edges), mesh_(mesh), adjacency_(adjacency), effort_(effort) {}
+
+    /// Calls take(candidate) for every edge of which `vertex` is the lower end and that may be
+    /// collapsed, at the latest in flush().
+    template <typename Take>
+    void price(uint32_t vertex, const Take& take) {
+        const std::span<const uint32_t> ring = adjacency_.around(vertex);
+        for (const uint32_t t : adjacency_.ahead(vertex))
+            __builtin_prefetch(&mesh_.triangles[t]);
+        if (count_ + ring.size() >= kWaiting)
+            flush(take);
+        const VertexKind kind = edges_.kinds_[vertex];
+        const bool curve = kind == VertexKind::CurveFan;
+        if ((kind != VertexKind::FreeFan && !curve) || !edges_.others_.empty()) {
+            for (const Neighbors::Neighbor& n :
+                 neighbors_.find(mesh_, ring, vertex, Neighbors::Fan::None)) {
+                if (n.vertex > vertex)
+                    price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
+            }
+            return;
+        }
+        // Fans have fewer triangles than there is room for edges: all of them find some. What they
+        // are priced by is only asked for: it has come when a block of edges is full.
+        uint32_t before = curve ? kNone : ring.back();
+        uint32_t last = 0;
+        for (const uint32_t t : ring) {
+            const Ends ends = ends_of(mesh_.triangles[t], vertex);
+            last = ends.last;
+            __builtin_prefetch(&edges_.own_[ends.next]);
+            __builtin_prefetch(&mesh_.facets[t]);
+            waiting_[count_] = {vertex, ends.next, t, before};
+            count_ += ends.next > vertex &&
+                      (!curve || edges_.allowed(vertex, ends.next, before == kNone, effort_));
+            before = t;
+        }
+        if (curve && last > vertex && edges_.allowed(vertex, last, true, effort_))
+            waiting_[count_++] = {vertex, last, ring.back(), kNone};
+    }
+
+    template <typename Take>
+    void flush(const Take& take) {
+        for (size_t begin = 0; begin < count_; begin += EdgeBlock::kSize) {
+            const size_t count = std::min(EdgeBlock::kSize, count_ - begin);
+            const Waiting* waiting = waiting_.data() + begin;
+            for (size_t i = 0; i < count; ++i)
+                block_.in[i] = input_of(waiting[i]);
+            for (size_t i = count; i % 8 != 0; ++i)
+                block_.in[i] = block_.in[0];
+            edge_costs(block_, count);
+            for (size_t i = 0; i < count; ++i)
+                take(Candidate{waiting[i].a, waiting[i].b, key_of_cost(block_.cost[i]),
+                               glm::vec3(block_.x[i], block_.y[i], block_.z[i])});
+        }
+        count_ = 0;
+    }
+
+private:
+    static constexpr size_t kWaiting = 2 * EdgeBlock::kSize;
+    struct Waiting {
+        uint32_t a, b, t0, t1;
+    };
+    /// t1: kNone where it is not shared by exactly two triangles.
+    template <typename Take>
+    void price(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1, const Take& take) {
+        if (!edges_.allowed(a, b, t1 == kNone, effort_))
+            return;
+        if (edges_.others_.empty()) {
+            if (count_ == kWaiting)
+                flush(take);
+            waiting_[count_++] = {a, b, t0, t1};
+            return;
+        }
+        const uint32_t shared[2] = {t0, t1};
+        const std::span<const uint32_t> on(shared, t1 == kNone ? 1 : 2);
+        const geometry::Optimum best = edges_.optimum(mesh_, a, b, on, effort_);
+        take(Candidate{a, b, key_of_cost(static_cast<float>(best.cost)),
+                       glm::vec3(best.point - mesh_.points[a])});
+    }
+
+    EdgeInput input_of(const Waiting& edge) const {
+        glm::vec3 shared = mesh_.facets[edge.t0];
+        if (edge.t1 != kNone)
+            shared += mesh_.facets[edge.t1];
+        return {&edges_.own_[edge.a], &edges_.own_[edge.b], shared,
+                static_cast<float>(edges_.held(edge.a, edge.b, effort_))};
+    }
+
+    const Edges& edges_;
+    const CollapseMesh& mesh_;
+    const Adjacency& adjacency_;
+    Effort effort_;
+    Neighbors neighbors_;
+    EdgeBlock block_{};
+    std::array<Waiting, kWaiting + 1> waiting_;
+    size_t count_ = 0;
+};
+
+uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
+                       size_t count) const {
+    const auto vertices = static_cast<uint32_t>(mesh.points.size());
+    const uint32_t step = std::max(vertices / kSampled, 1u) * kRun;
+    std::vector<uint32_t> keys;
+    keys.reserve(size_t{kSampled} * 4);
+    const auto take = [&](const Candidate& candidate) {
+        if (candidate.key < kImpossible)
+            keys.push_back(candidate.key);
+    };
+    Pricing pricing(*this, mesh, adjacency, effort);
+    uint32_t sampled = 0;
+    for (uint32_t first = 0; first < vertices; first += step) {
+        const uint32_t last = std::min(vertices, first + kRun);
+        for (uint32_t v = first; v < last; ++v)
+            pricing.price(v, take);
+        sampled += last - first;
+    }
+    pricing.flush(take);
+    const double part = static_cast<double>(sampled) / static_cast<double>(vertices);
+    const auto at = static_cast<size_t>(part * static_cast<double>(count));
+    if (at >= keys.size())
+        return kImpossible - 1;
+    const auto middle = keys.begin() + static_cast<std::ptrdiff_t>(at);
+    std::nth_element(keys.begin(), middle, keys.end());
+    return *middle;
+}
+
+void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
+                 uint32_t limit, double held, const Job& job) {
+    parallel_for(chunks_.size(), [&](size_t i) {
+        job.check();
+        Chunk& chunk = chunks_[i];
+        const uint32_t vertices = chunk.last - chunk.first;
+        const auto most = static_cast<size_t>(held * vertices);
+        std::vector<Candidate> taken(vertices + 1);
+        size_t count = 0;
+        const auto take = [&](const Candidate& candidate) {
+            taken[count] = candidate;
+            count += candidate.key <= limit;
+            if (count == taken.size())
+                taken.resize(2 * count);
+        };
+        Pricing pricing(*this, mesh, adjacency, effort);
+        for (uint32_t v = chunk.first; v < chunk.last; ++v)
+            pricing.price(v, take);
+        pricing.flush(take);
+        taken.resize(count);
+        std::vector<uint32_t> starts(kSteps + 1, 0);
+        for (const Candidate& candidate : taken)
+            ++starts[(candidate.key >> kKeyShift) + 1];
+        for (size_t k = 0; k < kSteps; ++k)
+            starts[k + 1] += starts[k];
+        chunk.candidates.resize(std::min(count, most));
+        for (const Candidate& candidate : taken) {
+            const uint32_t at = starts[candidate.key >> kKeyShift]++;
+            if (at < most)
+                chunk.candidates[at] = candidate;
+        }
+    });
+}
+
+bool Edges::allowed(uint32_t a, uint32_t b, bool border, Effort effort) const {
+    if (effort >= Effort::Topology)
+        return true;
+    if (kinds_[a] == VertexKind::Fixed && kinds_[b] == VertexKind::Fixed)
+        return false;
+    // An inner edge between two border points: collapsing it would pinch the surface.
+    return border || kinds_[a] <= VertexKind::Free || kinds_[b] <= VertexKind::Free;
+}
+
+geometry::Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
+                                    const std::vector<glm::vec3>& facets,
+                                    const std::vector<VertexAround>& around, uint32_t a, uint32_t b,
+                                    std::span<const uint32_t> shared, Effort effort) const {
+    const geometry::EdgeEnd end_a{points[a], quadric_of(around[a]), glm::dvec3(around[a].facet)};
+    const geometry::EdgeEnd end_b{points[b], quadric_of(around[b]), glm::dvec3(around[b].facet)};
+    if (const int end = held(a, b, effort); end != 0) {
+        const glm::dvec3& point = end < 0 ? end_a.point : end_b.point;
+        return {point, geometry::cost_at(end_a, end_b, point)};
+    }
+    glm::dvec3 both(0.0);
+    for (const uint32_t t : shared)
+        both += glm::dvec3(facets[t]);
+    return best_point(end_a, end_b, both);
+}
+
+geometry::Optimum Edges::optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                                 std::span<const uint32_t> shared, Effort effort) const {
+    geometry::Optimum best = optimum_in(mesh.points, mesh.facets, own_, a, b, shared, effort);
+    for (size_t i = 0; i < others_.size(); ++i) {
+        const OtherPose& pose = mesh.others[i];
+        best.cost += optimum_in(pose.points, pose.facets, others_[i], a, b, shared, effort).cost;
+    }
+    return best;
+}
+
+void Edges::other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                         std::span<const uint32_t> shared, Effort effort,
+                         std::vector<glm::dvec3>& points) const {
+    points.clear();
+    for (size_t i = 0; i < others_.size(); ++i) {
+        const OtherPose& pose = mesh.others[i];
+        points.push_back(
+            optimum_in(pose.points, pose.facets, others_[i], a, b, shared, effort).point);
+    }
+}
+
+}  // namespace lodestone::simplify

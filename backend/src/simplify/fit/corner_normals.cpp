@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/fit/corner_normals.h"
+
+#include "base/parallel.h"
+#include "simplify/fit/fit_samples.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace lodestone::simplify {
+namespace {
+
+/// Of the original's triangles, for each of the mesh; and their share at most.
+constexpr double kSourcesEach = 4;
+constexpr double kMostSources = 0.5;
+constexpr size_t kLeastSources = 1000;
+/// On a triangle: fewer do not tell its shading.
+constexpr size_t kSamplesToShade = 4;
+/// Mean square difference of normals above which a triangle is shaded anew (6 degrees), and the
+/// part of it that may then be left: noise of a scan is in both.
+constexpr float kLeastOff = 0.01f;
+constexpr float kLeft = 0.25f;
+/// Cosines: corners at one vertex that share a normal (26 degrees), and wedges that always did.
+constexpr float kAlike = 0.9f;
+constexpr float kOneWedge = 0.99985f;
+constexpr size_t kTrianglesAtOnce = 2048;
+
+bool shaded(const glm::vec3& normal) {
+    return normal != glm::vec3(0.0f);
+}
+
+/// The original's normal at a sample; zero where it has none.
+glm::vec3 normal_at(const Mesh& source, const FitSample& sample) {
+    const Triangle& t = source.triangles[sample.source];
+    const glm::vec3 sum = source.normals[t.x] + source.normals[t.y] + source.normals[t.z];
+    const float length = glm::length(sum);
+    return length > 1e-6f && std::isfinite(length) ? sum / length : glm::vec3(0.0f);
+}
+
+/// The linear function over one triangle that is nearest to the normals of samples on it, drawn to
+/// their mean by as much as one of them weighs.
+class TriangleShading {
+public:
+    void add(const FitSample& sample, const glm::vec3& normal) {
+        const glm::vec3 weights(sample.weights[0], sample.weights[1], sample.weights[2]);
+        for (int corner = 0; corner < 3; ++corner) {
+            squares_[corner] += sample.area * weights[corner] * weights;
+            sums_[corner] += sample.area * weights[corner] * normal;
+        }
+        area_ += sample.area;
+        ++count_;
+    }
+    size_t count() const { return count_; }
+    /// Of the three corners; false when samples cancel out.
+    bool solve(glm::vec3* corners) const {
+        const glm::vec3 mean = (sums_[0] + sums_[1] + sums_[2]) / area_;
+        const float pull = area_ / static_cast<float>(count_);
+        const glm::mat3 inverse = glm::inverse(squares_ + glm::mat3(pull));
+        for (int corner = 0; corner < 3; ++corner) {
+            glm::vec3 normal(0.0f);
+            for (int k = 0; k < 3; ++k)
+                normal += inverse[k][corner] * (sums_[k] + pull * mean);
+            const float length = glm::length(normal);
+            if (!(length > 0.1f) || !std::isfinite(length))
+                return false;
+            corners[corner] = normal / length;
+        }
+        return true;
+    }
+
+private:
+    glm::mat3 squares_{0.0f};
+    glm::vec3 sums_[3] = {glm::vec3(0.0f), glm::vec3(0.0f), glm::vec3(0.0f)};
+    float area_ = 0;
+    size_t count_ = 0;
+};
+
+/// Mean square difference between the normals of samples and those blended from the corners'.
+float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const PlacedSample> on,
+             const Mesh& source) {
+    float sum = 0;
+    float area = 0;
+    for (const PlacedSample& placed : on) {
+        const FitSample& s = samples[placed.index];
+        const glm::vec3 normal = normal_at(source, s);
+        const glm::vec3 blend =
+            s.weights[0] * corners[0] + s.weights[1] * corners[1] + s.weights[2] * corners[2];
+        const float length = glm::length(blend);
+        const glm::vec3 off = normal - (length > 0 ? blend / length : blend);
+        sum += s.area * glm::dot(off, off);
+        area += s.area;
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+/// Into `corners`; leaves them where the wedges' normals do.
+bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
+                std::span<const PlacedSample> on, const Mesh& source, glm::vec3* corners) {
+    if (on.size() < kSamplesToShade)
+        return false;
+    const Triangle& wedges = mesh.wedges[triangle];
+    const glm::vec3 carried[3] = {mesh.normals[wedges.x], mesh.normals[wedges.y],
+                                  mesh.normals[wedges.z]};
+    const float before = off_by(carried, samples, on, source);
+    if (!(before > kLeastOff))
+        return false;
+    TriangleShading shading;
+    for (const PlacedSample& placed : on) {
+        const FitSample& sample = samples[placed.index];
+        const glm::vec3 normal = normal_at(source, sample);
+        if (shaded(normal))
+            shading.add(sample, normal);
+    }
+    glm::vec3 found[3];
+    if (shading.count() < kSamplesToShade || !shading.solve(found) ||
+        !(off_by(found, samples, on, source) < kLeft * before))
+        return false;
+    std::copy(found, found + 3, corners);
+    return true;
+}
+
+/// Corners at `vertex` that come out alike, of wedges that were, get their mean.
+void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_t vertex,
+                   std::vector<glm::vec3>& normals) {
+    struct Shared {
+        glm::vec3 first;
+        glm::vec3 carried;
+        glm::vec3 sum;
+    };
+    std::vector<Shared> found;
+    std::vector<std::pair<uint32_t, uint32_t>> members;  // corner, index in found
+    for (const uint32_t t : adjacency.around(vertex)) {
+        for (uint32_t corner = 0; corner < 3; ++corner) {
+            const uint32_t at = 3 * t + corner;
+            if (mesh.triangles[t][static_cast<int>(corner)] != vertex || !shaded(normals[at]))
+                continue;
+            const glm::vec3 carried = mesh.normals[mesh.wedges[t][static_cast<int>(corner)]];
+            const auto alike = std::find_if(found.begin(), found.end(), [&](const Shared& one) {
+                return glm::dot(one.first, normals[at]) > kAlike &&
+                       glm::dot(one.carried, carried) > kOneWedge;
+            });
+            const auto index = static_cast<uint32_t>(alike - found.begin());
+            if (alike == found.end())
+                found.push_back({normals[at], carried, glm::vec3(0.0f)});
+            found[index].sum += glm::length(mesh.facets[t]) * normals[at];
+            members.emplace_back(at, index);
+        }
+    }
+    for (const auto& [at, index] : members) {
+        const float length = glm::length(found[index].sum);
+        if (length > 0)
+            normals[at] = found[index].sum / length;
+    }
+}
+
+}  // namespace
+
+std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
+                                      const Adjacency& adjacency, const Job& job) {
+    if (mesh.normals.empty() || mesh.live == 0 || mesh.ids.empty())
+        return {};
+    const FitPlaces places(mesh, source);
+    const double want = std::min(kSourcesEach * static_cast<double>(mesh.live),
+                                 kMostSources * static_cast<double>(source.triangles.size()));
+    FitSamples samples;
+    sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kLeastSources), 0, job,
+                   samples);
+    const size_t count = mesh.triangles.size();
+    const SamplesByTriangle by_triangle(places, samples);
+    std::vector<glm::vec3> normals(3 * count, glm::vec3(0.0f));
+    std::atomic<bool> any{false};
+    parallel_for((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](size_t chunk) {
+        job.check();
+        const size_t end = std::min(count, (chunk + 1) * kTrianglesAtOnce);
+        for (size_t t = chunk * kTrianglesAtOnce; t < end; ++t) {
+            const auto triangle = static_cast<uint32_t>(t);
+            if (shade_anew(mesh, triangle, samples, by_triangle.on(triangle), source,
+                           &normals[3 * t]))
+                any.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (!any.load())
+        return {};
+    for (uint32_t v = 0; v < mesh.points.size(); ++v)
+        share_normals(mesh, adjacency, v, normals);
+    return normals;
+}
+
+}  // namespace lodestone::simplify

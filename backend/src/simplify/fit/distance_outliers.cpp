@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/fit/distance_outliers.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace lodestone::simplify {
+namespace {
+
+constexpr int kMostSearched = 4;
+constexpr int kMostWalked = 8;
+/// Samples on a triangle from which walks begin.
+constexpr size_t kMostStarts = 8;
+constexpr size_t kSearched = 4096;  // vertices looked at on one thread
+constexpr size_t kLooked = 1024;    // triangles
+constexpr size_t kAhead = 8;        // of them, memory is asked for what they need
+/// A square distance that other ways find to be less than this times as large was none.
+constexpr float kConfirmed = 0.25f;
+
+int nearest_corner(const glm::vec3& w) {
+    return w.x >= w.y ? (w.x >= w.z ? 0 : 2) : (w.y >= w.z ? 1 : 2);
+}
+
+}  // namespace
+
+Strays::Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
+               const Job& job)
+    : places_(places),
+      mesh_(places.mesh()),
+      adjacency_(adjacency),
+      points_(places.points()),
+      by_triangle_(places, samples) {
+    find_rings();
+    look_from_original(job);
+}
+
+geometry::Spot Strays::find(const glm::vec3& point, uint32_t from) const {
+    geometry::Spot best;
+    uint32_t at = from;
+    for (int step = 0; step < kMostSearched; ++step) {
+        geometry::look_on(
+            ring(at), point, [&](uint32_t t) { return corners(t); }, best);
+        if (best.triangle == kNone)
+            return best;
+        const glm::vec3& w = best.weights;
+        const int corner = nearest_corner(w);
+        const uint32_t next = mesh_.triangles[best.triangle][corner];
+        if (next == at || (w.x > 0 && w.y > 0 && w.z > 0) || !known(next))
+            break;
+        at = next;
+    }
+    return best;
+}
+
+void Strays::find_rings() {
+    const Mesh& source = places_.source();
+    source_first_.assign(source.positions.size() + 2, 0);
+    for (const Triangle& t : source.triangles) {
+        for (int k = 0; k < 3; ++k)
+            ++source_first_[welded(t[k]) + 2];
+    }
+    for (size_t v = 2; v < source_first_.size(); ++v)
+        source_first_[v] += source_first_[v - 1];
+    source_order_.resize(source_first_.back());
+    for (uint32_t i = 0; i < source.triangles.size(); ++i) {
+        for (int k = 0; k < 3; ++k)
+            source_order_[source_first_[welded(source.triangles[i][k]) + 1]++] = i;
+    }
+}
+
+void Strays::look_from_original(const Job& job) {
+    const size_t count = places_.source().positions.size();
+    nearest_.assign(count, {0.0f, kNone});
+    parallel_for((count + kSearched - 1) / kSearched, [&](size_t chunk) {
+        job.check();
+        const size_t last = std::min(count, (chunk + 1) * kSearched);
+        for (size_t v = chunk * kSearched; v < last; ++v) {
+            const auto vertex = static_cast<uint32_t>(v);
+            const uint32_t from = places_.place(vertex);
+            if (from == kNone || welded(vertex) != vertex)
+                continue;
+            const geometry::Spot spot = find(places_.original(vertex), from);
+            nearest_[v] = {spot.square, spot.triangle};
+        }
+    });
+    first_.assign(mesh_.triangles.size() + 1, 0);
+    for (const auto& [square, triangle] : nearest_) {
+        if (triangle != kNone)
+            ++first_[triangle + 1];
+    }
+    for (size_t t = 1; t < first_.size(); ++t)
+        first_[t] += first_[t - 1];
+    order_.resize(first_.back());
+    std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+    for (uint32_t v = 0; v < count; ++v) {
+        const auto& [square, triangle] = nearest_[v];
+        if (triangle == kNone)
+            continue;
+        order_[next[triangle]++] = v;
+    }
+}
+
+geometry::Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
+    const auto corners_of = [&](uint32_t t) { return original(t); };
+    geometry::Spot best = geometry::nearest_on(original(from), point);
+    best.triangle = from;
+    for (int step = 0; step < kMostWalked; ++step) {
+        const float before = best.square;
+        const glm::vec3& w = best.weights;
+        const int corner = nearest_corner(w);
+        const uint32_t hub = welded(places_.source().triangles[best.triangle][corner]);
+        const size_t last =
+            std::min<size_t>(source_first_[hub + 1], source_first_[hub] + kMostRing);
+        geometry::look_on({source_order_.data() + source_first_[hub], source_order_.data() + last},
+                          point, corners_of, best);
+        if (!(best.square < before))
+            break;
+    }
+    return best;
+}
+
+/// How far a place of the mesh is from the original, beginning where a sample of that is nearest.
+/// What is below `least` or the worst so far is left as soon as it is known to be.
+void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
+                  std::span<const uint32_t> hubs, float least, Stray& worst) const {
+    const float enough = std::max(least, worst.square);
+    const std::span<const PlacedSample> own = by_triangle_.on(triangle);
+    for (const PlacedSample& sample : own.first(std::min(own.size(), kMostStarts))) {
+        if (geometry::nearest_on(original(sample.source), place).square < enough)
+            return;
+    }
+    float nearest = 1e30f;
+    const PlacedSample* from = nullptr;
+    for (const uint32_t hub : hubs) {
+        for (const uint32_t t : ring(hub)) {
+            for (const PlacedSample& sample : by_triangle_.on(t)) {
+                const glm::vec3 off = sample.place - place;
+                const float square = glm::dot(off, off);
+                if (square < nearest) {
+                    nearest = square;
+                    from = &sample;
+                }
+            }
+        }
+    }
+    if (from == nullptr)
+        return;
+    const geometry::Spot spot = walk(place, from->source);
+    if (!(spot.square > worst.square))
+        return;
+    const geometry::TrianglePoints c = original(spot.triangle);
+    const glm::vec3& w = spot.weights;
+    worst = {spot.square, triangle,     weights, w.x * c[0] + w.y * c[1] + w.z * c[2],
+             kNone,       spot.triangle};
+}
+
+void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job& job) const {
+    const size_t count = mesh_.triangles.size();
+    parallel_for((count + kLooked - 1) / kLooked, [&](size_t chunk) {
+        job.check();
+        const size_t last = std::min(count, (chunk + 1) * kLooked);
+        for (size_t i = chunk * kLooked; i < last; ++i) {
+            const auto t = static_cast<uint32_t>(i);
+            const auto coming = static_cast<uint32_t>(std::min(i + kAhead, count - 1));
+            if (const auto samples = by_triangle_.on(coming); !samples.empty())
+                __builtin_prefetch(&places_.source().triangles[samples.front().source]);
+            const Triangle& c = mesh_.triangles[t];
+            const geometry::TrianglePoints at = corners(t);
+            Stray& worst = worst_of[t];
+            const std::array<uint32_t, 3> all{c.x, c.y, c.z};
+            look((at[0] + at[1] + at[2]) * (1.0f / 3), t, glm::vec3(1.0f / 3), all, least, worst);
+            for (int k = 0; k < 3; ++k) {
+                const int next = (k + 1) % 3;
+                if (all[k] < all[next]) {
+                    const std::array<uint32_t, 2> ends{all[k], all[next]};
+                    glm::vec3 weights(0.0f);
+                    weights[k] = weights[next] = 0.5f;
+                    look(0.5f * (at[k] + at[next]), t, weights, ends, least, worst);
+                }
+                if (adjacency_.around(all[k]).front() == t) {
+                    glm::vec3 weights(0.0f);
+                    weights[k] = 1;
+                    look(at[k], t, weights, std::span(all).subspan(static_cast<size_t>(k), 1),
+                         least, worst);
+                }
+            }
+        }
+    });
+}
+
+void Strays::confirm_from_mesh(Stray& stray) const {
+    const geometry::TrianglePoints at = corners(stray.triangle);
+    const glm::vec3& w = stray.weights;
+    const glm::vec3 place = w.x * at[0] + w.y * at[1] + w.z * at[2];
+    const Triangle& hubs = mesh_.triangles[stray.triangle];
+    for (int k = 0; k < 3; ++k) {
+        if (!known(hubs[k]))
+            continue;
+        for (const uint32_t t : ring(hubs[k])) {
+            const std::span<const PlacedSample> on_it = by_triangle_.on(t);
+            for (const PlacedSample& sample : on_it.first(std::min(on_it.size(), kMostStarts))) {
+                const geometry::Spot spot = walk(place, sample.source);
+                if (!(spot.square < stray.square))
+                    continue;
+                const geometry::TrianglePoints c = original(spot.triangle);
+                const glm::vec3& v = spot.weights;
+                stray.square = spot.square;
+                stray.source = spot.triangle;
+                stray.point = v.x * c[0] + v.y * c[1] + v.z * c[2];
+            }
+        }
+    }
+}
+
+bool Strays::confirm(Stray& stray) const {
+    const float before = stray.square;
+    if (stray.vertex == kNone) {
+        confirm_from_mesh(stray);
+        return stray.square >= kConfirmed * before;
+    }
+    const uint32_t last = source_first_[stray.vertex + 1];
+    for (uint32_t i = source_first_[stray.vertex]; i < last; ++i) {
+        const Triangle& t = places_.source().triangles[source_order_[i]];
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t from = places_.place(t[k]);
+            if (from == kNone || !known(from))
+                continue;
+            const geometry::Spot spot = find(stray.point, from);
+            if (!(spot.square < stray.square))
+                continue;
+            stray.square = spot.square;
+            stray.triangle = spot.triangle;
+            stray.weights = spot.weights;
+        }
+    }
+    return stray.square >= kConfirmed * before;
+}
+
+std::vector<Stray> Strays::list(size_t most, const Job& job) const {
+    std::vector<Stray> worst(mesh_.triangles.size());
+    for (uint32_t t = 0; t < worst.size(); ++t) {
+        Stray& stray = worst[t];
+        for (const uint32_t v : on(t)) {
+            if (nearest_[v].first > stray.square) {
+                stray.square = nearest_[v].first;
+                stray.vertex = v;
+            }
+        }
+        if (stray.vertex == kNone)
+            continue;
+        stray.triangle = t;
+        stray.point = places_.original(stray.vertex);
+        stray.weights = geometry::nearest_on(corners(t), stray.point).weights;
+        stray.source = source_order_[source_first_[stray.vertex]];
+    }
+    float least = 0;  // as many are that far off already
+    if (most > 0 && most < worst.size()) {
+        std::vector<float> squares(worst.size());
+        std::transform(worst.begin(), worst.end(), squares.begin(),
+                       [](const Stray& stray) { return stray.square; });
+        const auto nth = squares.begin() + static_cast<std::ptrdiff_t>(most - 1);
+        std::nth_element(squares.begin(), nth, squares.end(), std::greater<>());
+        least = *nth;
+    }
+    look_from_mesh(worst, least, job);
+    std::erase_if(worst, [](const Stray& stray) { return stray.triangle == kNone; });
+    std::stable_sort(worst.begin(), worst.end(),
+                     [](const Stray& x, const Stray& y) { return x.square > y.square; });
+    return worst;
+}
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simplification: the same surface with fewer triangles, by collapsing edges.
+#pragma once
+
+#include "base/job.h"
+#include "model/mesh.h"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lodestone::simplify {
+
+/// Fast: large passes and one fit to the original. Best: more passes, each choosing with fresher
+/// costs, and a longer fit: a tenth less error for two to three times the time.
+enum class SimplifyMode : uint8_t { Fast, Best };
+
+/// The defaults are tuned on scans, CAD parts and terrain; most callers need none of these.
+struct SimplifyOptions {
+    SimplifyMode mode = SimplifyMode::Fast;
+    /// How much dearer it is to move the border between two material slots than the surface; for
+    /// open borders a seventh of it counts. Larger keeps outlines and paint lines longer and spends
+    /// the triangles there; 0 lets them shrink.
+    double boundary_weight = 8;
+    /// The same for texture seams and sharp (split-normal) edges. 0 lets textures slide at seams.
+    double seam_weight = 1;
+    /// A triangle may turn by at most this much in one collapse, degrees in (0, 90). Larger
+    /// reaches coarse targets with less error but may fold thin parts over.
+    double max_turn = 70;
+    /// Removing a separate part of the mesh costs this many times what squeezing it to a point
+    /// would. Larger keeps screws and leaves longer, at the cost of the large parts' shape.
+    double part_weight = 4;
+    /// Every part, hole, handle and border stays: no edge becomes non-manifold. Targets below what
+    /// that allows are missed. Otherwise the small ones close or vanish where a target needs it.
+    bool keep_topology = false;
+};
+
+/// Simplifies in one pass and returns the mesh at each of `targets` (triangle counts, strictly
+/// falling, > 0). A target not below the input's count returns the input itself; else a result has
+/// at most its target, and at least one triangle if the input has any. Fewer results come back when
+/// nothing more can be collapsed. Results keep slots, and have normals, uvs and colors if the input
+/// has. Separate parts too small for a target disappear whole, smallest first. Any input is
+/// accepted: non-manifold edges are kept as curves, triangles with non-finite vertices are left
+/// out. Throws Error(InvalidArgument) as check(mesh) does, or for targets not falling, or for
+/// options out of range. The same bits on any number of threads. 100 bytes a triangle above the
+/// input, more where little is taken away: the fit then has many samples. source: Lindstrom & Turk
+/// 1999 (memoryless quadrics, volume constraint), in batches; then Hoppe et al. 1993 (vertices
+/// fitted to the original).
+std::vector<Mesh> simplify_chain(const Mesh& mesh, std::span<const size_t> targets,
+                                 const SimplifyOptions& options = {}, const Job& job = {});
+
+/// A level that knows what became of its input's vertices.
+struct TracedLevel {
+    Mesh mesh;
+    std::vector<uint32_t> places;  // of each of its vertices: split ones share one
+    /// (place, input vertex) for each input vertex that ended up there, ascending; of vertices at
+    /// one position the lowest. What vanished with its part is in no place.
+    std::vector<std::pair<uint32_t, uint32_t>> origins;
+};
+
+/// The same for a mesh that deforms: the collapse that suits the mesh and `others` together, which
+/// are the positions of its vertices in other frames (each as many, finite). Levels are those of
+/// the mesh; of one without extent there are none. 60 bytes a triangle more for each of the others.
+/// source: Mohr & Gleicher 2003 (deformation sensitive decimation), with memoryless quadrics.
+std::vector<TracedLevel> simplify_traced(const Mesh& mesh,
+                                         std::span<const std::vector<glm::vec3>> others,
+                                         std::span<const size_t> targets,
+                                         const SimplifyOptions& options = {}, const Job& job = {});
+
+/// The mesh at one target; the coarsest that can be reached when that is still above it.
+Mesh simplify_mesh(const Mesh& mesh, size_t triangles, const SimplifyOptions& options = {},
+                   const Job& job = {});
+
+}  // namespace lodestone::simplify

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solids/solid_replacement.h"
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lodestone::solids {
+namespace {
+
+/// Variances below this share of the largest are zero but for rounding.
+constexpr double kFlatVariance = 1e-12;
+/// Least thickness relative to the next larger half axis: thin, but no two faces in one place.
+constexpr double kThickness = 1e-3;
+/// Visible area over that of the matched solid. Below, the group is mostly air.
+constexpr double kSparse = 0.1;
+/// A row (one axis this many times the next) is refused earlier: scaled to its area, the solid
+/// would be shorter than 0.6 of the row (square root of this).
+constexpr double kRow = 4;
+constexpr double kSparseRow = 0.36;
+/// Matched size over the extent of the bound. Things in two heaps ask for a solid that reaches past
+/// them: 1.44 (box) and 1.67 (ellipsoid) in the limit; a cube asks for an ellipsoid of 1.29.
+constexpr double kBoxReach = 1.2;
+constexpr double kEllipsoidReach = 1.4;
+/// What covers more than this of its shell is better shown as a solid of its area, and what covers
+/// less is hardly there.
+constexpr double kClear = 0.55;
+constexpr double kFaintest = 0.02;
+/// Half way from a sphere to a box.
+constexpr double kBoxMoment = 0.8;
+
+/// The frame the variances are matched in.
+glm::dmat3 axes_of(const Attributes& attributes) {
+    return attributes.axes;
+}
+
+glm::dvec3 variances_along(const Attributes& attributes, const glm::dmat3& axes) {
+    glm::dvec3 out;
+    for (int i = 0; i < 3; ++i)
+        out[i] = glm::dot(axes[i], attributes.moments * axes[i]) / attributes.visible_area;
+    const double floor = kFlatVariance * std::max({out.x, out.y, out.z});
+    return glm::max(out, glm::dvec3(floor));
+}
+
+bool usable(const Attributes& attributes) {
+    double sum = attributes.visible_area;
+    double trace = 0;
+    for (int i = 0; i < 3; ++i) {
+        sum += attributes.centroid[i];
+        trace += attributes.moments[i][i];
+        for (int j = 0; j < 3; ++j)
+            sum += attributes.moments[i][j];
+    }
+    return !attributes.empty() && std::isfinite(sum) && trace > 0 &&
+           std::isfinite(trace / attributes.visible_area) && trace / attributes.visible_area > 0;
+}
+
+/// Half axes of the box with the given variances: Newton on logarithms. The Jacobian's determinant
+/// stays within 5.1...8.0, so steps are always defined; 4 suffice.
+glm::dvec3 match_box(const glm::dvec3& variances) {
+    glm::dvec3 sides = glm::sqrt(12.0 * variances);
+    for (int step = 0; step < 50; ++step) {
+        glm::dvec3 miss;
+        glm::dmat3 slope;  // slope[column][row]
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3;
+            const int k = (i + 2) % 3;
+            const double ij = sides[i] * sides[j];
+            const double jk = sides[j] * sides[k];
+            const double ki = sides[k] * sides[i];
+            const double above = ij + 3 * jk + ki;  // A.14: alpha = above / below
+            const double below = ij + jk + ki;
+            miss[i] = std::log(above / below * sides[i] * sides[i] / 12 / variances[i]);
+            slope[i][i] = 2 + (ij + ki) / above - (ij + ki) / below;
+            slope[j][i] = (ij + 3 * jk) / above - (ij + jk) / below;
+            slope[k][i] = (ki + 3 * jk) / above - (ki + jk) / below;
+        }
+        sides *= glm::exp(-(glm::inverse(slope) * miss));
+        if (std::max({std::abs(miss.x), std::abs(miss.y), std::abs(miss.z)}) < 1e-14)
+            break;
+    }
+    return 0.5 * sides;
+}
+
+/// Each half axis follows its own variance; the others' influence is weak, so this contracts.
+glm::dvec3 match_ellipsoid(const glm::dvec3& variances) {
+    constexpr double kFaster = 0.55;  // 12 steps for 14 with a square root
+    constexpr double kSame = 1e-8;    // nobody measures the variances that well
+    glm::dvec3 half = glm::sqrt(3.0 * variances);
+    for (int step = 0; step < 200; ++step) {
+        const glm::dvec3 ratio = variances / ellipsoid_shell(half).variances;
+        half *= glm::pow(ratio, glm::dvec3(kFaster));
+        if (glm::length(ratio - 1.0) < kSame)
+            break;
+    }
+    return half;
+}
+
+double extent_along(const Bound& bound, const glm::dvec3& axis) {
+    return std::min(2 * bound.radius, glm::dot(glm::abs(axis), bound.box.size()));
+}
+
+void keep_thickness(glm::dvec3& half) {
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return half[i] > half[j]; });
+    for (int i = 1; i < 3; ++i)
+        half[order[i]] = std::max(half[order[i]], kThickness * half[order[i - 1]]);
+}
+
+/// The primitive whose variances are the object's, and how much of its area can be seen.
+struct Matched {
+    Primitive primitive;
+    double density = 0;
+};
+
+/// Nothing where the object has no extent to match, or is in two heaps.
+template <typename Match, typename Measure>
+std::optional<Matched> matched(const Attributes& attributes, const Bound& bound, Match match,
+                               Measure measure, double reach) {
+    if (!usable(attributes))
+        return std::nullopt;
+    Matched out;
+    Primitive& primitive = out.primitive;
+    primitive.center = attributes.centroid;
+    primitive.axes = axes_of(attributes);
+    primitive.half_size = match(variances_along(attributes, primitive.axes));
+    out.density = attributes.visible_area / measure(primitive.half_size).area;
+    const double longest =
+        std::max({primitive.half_size.x, primitive.half_size.y, primitive.half_size.z});
+    keep_thickness(primitive.half_size);
+    for (int i = 0; i < 3; ++i) {
+        const double half = primitive.half_size[i];
+        if (!std::isfinite(half) || !(half > 0))
+            return std::nullopt;
+        // What is flat along an axis has no extent there to compare with.
+        if (!bound.empty() && half > 2 * kThickness * longest &&
+            2 * half > reach * extent_along(bound, primitive.axes[i]))
+            return std::nullopt;
+    }
+    return out;
+}
+
+template <typename Match, typename Measure>
+std::optional<Primitive> fit(const Attributes& attributes, const Bound& bound, Match match,
+                             Measure measure, double reach) {
+    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+    if (!found)
+        return std::nullopt;
+    Primitive out = found->primitive;
+    glm::dvec3 sorted = out.half_size;
+    std::sort(&sorted[0], &sorted[0] + 3);
+    const bool row = sorted[2] > kRow * sorted[1];
+    if (!(found->density >= (row ? kSparseRow : kSparse)))
+        return std::nullopt;
+    // 4.33: scaled so that the visible area is the same; the ratios of the variances stay.
+    out.half_size *= std::sqrt(attributes.visible_area / measure(out.half_size).area);
+    for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(out.half_size[i]) || !(out.half_size[i] > 0))
+            return std::nullopt;
+    }
+    return out;
+}
+
+template <typename Match, typename Measure>
+std::optional<Clear> fit_clear(const Attributes& attributes, const Bound& bound, Match match,
+                               Measure measure, double reach) {
+    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+    if (!found || !(found->density >= kFaintest && found->density < kClear))
+        return std::nullopt;
+    return Clear{found->primitive, found->density};
+}
+
+/// 32 Gauss-Legendre nodes on 0...1.
+struct Gauss {
+    static constexpr int kCount = 32;
+    std::array<double, kCount> at;
+    std::array<double, kCount> weight;
+
+    Gauss() {
+        for (int i = 0; i < kCount; ++i) {
+            double x = std::cos(3.14159265358979323846 * (i + 0.75) / (kCount + 0.5));
+            double slope = 1;
+            for (int step = 0; step < 20; ++step) {
+                double now = x;
+                double before = 1;
+                for (int n = 2; n <= kCount; ++n) {
+                    const double next = ((2 * n - 1) * x * now - (n - 1) * before) / n;
+                    before = now;
+                    now = next;
+                }
+                slope = kCount * (x * now - before) / (x * x - 1);
+                x -= now / slope;
+            }
+            at[i] = 0.5 * (1 - x);
+            weight[i] = 1 / ((1 - x * x) * slope * slope);
+        }
+    }
+};
+
+}  // namespace
+
+Shell box_shell(const glm::dvec3& half_size) {
+    const glm::dvec3 side = 2.0 * half_size;
+    const glm::dvec3 faces(side.y * side.z, side.z * side.x, side.x * side.y);
+    Shell out;
+    out.area = 2 * (faces.x + faces.y + faces.z);
+    for (int i = 0; i < 3; ++i)
+        out.variances[i] = (1 + 4 * faces[i] / out.area) * side[i] * side[i] / 12;  // A.14
+    return out;
+}
+
+Shell ellipsoid_shell(const glm::dvec3& half_size) {
+    // One octant of the unit sphere u, dA = |u / h| hx hy hz dw. The shortest half axis is c (u's
+    // height z), the longest a (angle 0). Where the axes differ much the integrand bends within
+    // c / b of the equator and b / a of the long axis: sinh spreads those places out.
+    static const Gauss kGauss;
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(),
+              [&](int i, int j) { return half_size[i] > half_size[j]; });
+    const double a = half_size[order[0]];
+    const double b = half_size[order[1]];
+    const double c = half_size[order[2]];
+    const double bend_z = c / b;
+    const double bend_angle = b / a;
+    constexpr double kQuarter = 1.57079632679489661923;
+    const double end_z = std::asinh(1 / bend_z);
+    const double end_angle = std::asinh(kQuarter / bend_angle);
+    std::array<double, Gauss::kCount> weights;  // of heights
+    std::array<double, Gauss::kCount> z_squares;
+    for (size_t j = 0; j < weights.size(); ++j) {
+        const double t = end_z * kGauss.at[j];
+        const double z = std::min(1.0, bend_z * std::sinh(t));
+        weights[j] = kGauss.weight[j] * end_z * bend_z * std::cosh(t);
+        z_squares[j] = z * z;
+    }
+    double area = 0;
+    glm::dvec3 seconds(0.0);
+    for (int i = 0; i < Gauss::kCount; ++i) {
+        const double s = end_angle * kGauss.at[i];
+        const double angle = bend_angle * std::sinh(s);
+        const double angle_weight = kGauss.weight[i] * end_angle * bend_angle * std::cosh(s);
+        const double x = std::cos(angle);
+        const double y = std::sin(angle);
+        const double across = (b / a * x) * (b / a * x) + y * y;  // times b^2
+        const double bend_across = bend_z * bend_z * across;
+        // Sums in lanes, which the compiler may not make of one by itself.
+        constexpr size_t kLanes = 4;
+        std::array<double, kLanes> all{};
+        std::array<double, kLanes> level{};  // times the square of what is not height
+        for (size_t j = 0; j < weights.size(); j += kLanes) {
+            for (size_t lane = 0; lane < kLanes; ++lane) {
+                const double up = z_squares[j + lane];
+                // hx hy hz |u / h| = a b c sqrt(z^2 / c^2 + ...) = a b sqrt(z^2 + (c / b)^2 ...)
+                const double patch = weights[j + lane] * std::sqrt(up + bend_across * (1 - up));
+                all[lane] += patch;
+                level[lane] += patch * (1 - up);
+            }
+        }
+        const double scale = angle_weight * a * b;
+        const double sum = scale * (all[0] + all[1] + all[2] + all[3]);
+        const double across_sum = scale * (level[0] + level[1] + level[2] + level[3]);
+        area += sum;
+        seconds += glm::dvec3(a * a * x * x * across_sum, b * b * y * y * across_sum,
+                              c * c * (sum - across_sum));
+    }
+    Shell out;
+    out.area = 8 * area;
+    for (int i = 0; i < 3; ++i)
+        out.variances[order[i]] = seconds[i] / area;
+    return out;
+}
+
+std::optional<Primitive> fit_box(const Attributes& attributes, const Bound& bound) {
+    return fit(attributes, bound, match_box, box_shell, kBoxReach);
+}
+
+std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound& bound) {
+    return fit(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+}
+
+bool boxlike(const Attributes& attributes) {
+    return attributes.normal_moment >= kBoxMoment;
+}
+
+std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound) {
+    return fit_clear(attributes, bound, match_box, box_shell, kBoxReach);
+}
+
+std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound) {
+    return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+}
+
+Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure) {
+    if (rough.empty() || sure.empty())
+        return primitive;
+    primitive.center += sure.centroid - rough.centroid;
+    primitive.half_size *= std::sqrt(sure.visible_area / rough.visible_area);
+    return primitive;
+}
+
+Clear settled(Clear clear, const Attributes& rough, const Attributes& sure) {
+    if (rough.empty() || sure.empty())
+        return clear;
+    clear.primitive.center += sure.centroid - rough.centroid;
+    clear.opacity = std::min(1.0, clear.opacity * sure.visible_area / rough.visible_area);
+    return clear;
+}
+
+std::optional<Clear> shell_box(const Attributes& attributes) {
+    const auto found = matched(attributes, Bound{}, match_box, box_shell, kBoxReach);
+    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+}
+
+std::optional<Clear> shell_ellipsoid(const Attributes& attributes) {
+    const auto found =
+        matched(attributes, Bound{}, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
+    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+}
+
+double surface_alpha(double opacity) {
+    return 1 - std::sqrt(1 - std::clamp(opacity, 0.0, 1.0));
+}
+
+}  // namespace lodestone::solids
