@@ -49,7 +49,7 @@ uint64_t empty_scene_bytes(const View& view, Antialiasing antialiasing, const Ru
     scene.folder = folder.path;
     scene.antialiasing = antialiasing;
     Problems problems;
-    export_scene(Model{}, quality::Cut{}, view, scene, problems, job.part(0, 0));
+    export_scene(Model{}, choose::Cut{}, view, scene, problems, job.part(0, 0));
     RunOptions options = like;
     options.folder = folder.path;
     const uint64_t bytes = run(options, job).peak_bytes;

@@ -27,6 +27,6 @@ std::vector<Sighting> cover(const LitScene& scene, const View& view,
 /// Where a thing is cut between a sighting and its point, lends the point to the piece that is
 /// seen: copies of it in that region, and of its shares.
 void lend(std::span<const Sighting> sightings, const LightRegions& regions,
-          std::vector<quality::LitPoint>& points, quality::LightShares& shares);
+          std::vector<light::LitPoint>& points, light::LightShares& shares);
 
 }  // namespace lodestone::povray

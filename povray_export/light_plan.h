@@ -43,7 +43,7 @@ inline constexpr size_t kFewLamps = 8;
 /// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000,
 /// in mirrors and behind glass too, and as many more as it takes that every part of a thing that a
 /// pixel shows sees one (light_coverage.h). They tell which lamps reach what, and by how much a
-/// light that stands for several differs from these (quality::cut_lights). A lamp that reaches no
+/// light that stands for several differs from these (light::cut_lights). A lamp that reaches no
 /// point of an object, nor any beside these, is not among its lights; so a patch of light smaller
 /// than the distance of points can be missed. Things without any point are lit by all lamps. Things
 /// that many lamps light here and there (the floor of many rooms) are cut into boxes. `bounces`: of

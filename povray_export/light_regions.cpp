@@ -20,7 +20,7 @@ constexpr size_t kGaps = 12;           // widest gaps between points along an ax
 class Maker {
 public:
     Maker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-          const quality::LightShares& shares, std::vector<quality::LitPoint>& points)
+          const light::LightShares& shares, std::vector<light::LitPoint>& points)
         : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
 
     LightRegions make() {
@@ -246,8 +246,8 @@ private:
 
     std::span<const Bound> bounds_;
     std::span<const uint8_t> divisible_;
-    const quality::LightShares& shares_;
-    std::vector<quality::LitPoint>& points_;
+    const light::LightShares& shares_;
+    std::vector<light::LitPoint>& points_;
     std::vector<size_t> counts_;       // by thing
     std::vector<glm::dvec3> middles_;  // by thing
     std::vector<uint32_t> pooled_;     // by thing
@@ -259,8 +259,8 @@ private:
 }  // namespace
 
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                                const quality::LightShares& shares,
-                                std::vector<quality::LitPoint>& points) {
+                                const light::LightShares& shares,
+                                std::vector<light::LitPoint>& points) {
     return Maker(bounds, divisible, shares, points).make();
 }
 

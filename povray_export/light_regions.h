@@ -2,8 +2,8 @@
 // Light regions: which parts of a scene are lit by the same lights.
 #pragma once
 
+#include "light/light_cut.h"
 #include "povray_export/light_plan.h"
-#include "quality/light_cut.h"
 
 namespace lodestone::povray {
 
@@ -19,7 +19,7 @@ inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 /// `divisible` allows is cut where that makes shorter lists of lamps for its points, into at most
 /// 128 boxes that fill its bound.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                                const quality::LightShares& shares,
-                                std::vector<quality::LitPoint>& points);
+                                const light::LightShares& shares,
+                                std::vector<light::LitPoint>& points);
 
 }  // namespace lodestone::povray

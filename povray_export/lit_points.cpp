@@ -2,11 +2,11 @@
 #include "povray_export/lit_points.h"
 
 #include "base/parallel.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
 #include "povray_export/finish.h"
 #include "povray_export/magnification.h"
 #include "povray_export/texture_writer.h"
-#include "quality/criterion.h"
-#include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -50,10 +50,10 @@ std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column) {
     return cells;
 }
 
-double reach_beside(const View& view, const LitGrid& grid, const quality::LitPoint& point) {
+double reach_beside(const View& view, const LitGrid& grid, const light::LitPoint& point) {
     const double cell = view.width / static_cast<double>(grid.columns);
     const double z = glm::length(point.position - view.camera.position);
-    return kBeside * cell * quality::pixel_size(view, z);
+    return kBeside * cell * choose::pixel_size(view, z);
 }
 
 LitScene::Shape LitScene::shape_of(const Lit& lit) const {
@@ -87,7 +87,7 @@ LitScene::LitScene(const Model& model, std::span<const Lit> drawn, const Job& jo
         surface.albedo = glm::clamp(material.base_color, 0.0, 1.0);
         const double alpha = std::max(1e-3, look.roughness * look.roughness);
         surface.gloss = finish.specular * (1 - look.metallic) +
-                        look.metallic * quality::luminance(surface.albedo);
+                        look.metallic * light::luminance(surface.albedo);
         surface.exponent = std::clamp(2 / (alpha * alpha) - 2, 1.0, kSharpest);
         surface.albedo = glm::max(surface.albedo, glm::dvec3(0.02));
         surface.mirror =
@@ -131,8 +131,8 @@ LitScene::Surface LitScene::surface_of(const Lit& lit, uint16_t slot) const {
     return surfaces_[std::min(index, surfaces_.size() - 1)];
 }
 
-std::vector<quality::LitPoint> LitScene::followed(Ray ray) const {
-    std::vector<quality::LitPoint> out;
+std::vector<light::LitPoint> LitScene::followed(Ray ray) const {
+    std::vector<light::LitPoint> out;
     bool mirrored = false;
     for (int bounce = 0; bounce <= kMostBounces; ++bounce) {
         const ray::PlacedScenes::Hit hit = seen_.first_hit(ray.origin, ray.direction);
@@ -164,7 +164,7 @@ std::vector<quality::LitPoint> LitScene::followed(Ray ray) const {
         const RayMask sees = mirrored ? kReflectionRays : kCameraRays;
         const bool shown = (lit.hidden & sees) == 0;
         if (shown) {
-            quality::LitPoint lit_point;
+            light::LitPoint lit_point;
             lit_point.position = point;
             lit_point.aside = flat * aside;
             lit_point.normal = normal;
@@ -201,9 +201,9 @@ LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
 }
 
 /// From the last point on, as a matt surface hands on light.
-void LitScene::bounce(int times, Random& random, std::vector<quality::LitPoint>& out) const {
+void LitScene::bounce(int times, Random& random, std::vector<light::LitPoint>& out) const {
     for (int i = 0; i < times && !out.empty(); ++i) {
-        const quality::LitPoint& from = out.back();
+        const light::LitPoint& from = out.back();
         const double turn = 2 * std::numbers::pi * random.uniform();
         const double out_of = random.uniform();  // square of the sine
         const glm::dvec3 u = any_across(from.normal);
@@ -212,7 +212,7 @@ void LitScene::bounce(int times, Random& random, std::vector<quality::LitPoint>&
         ray.origin = from.position + from.aside;
         ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
                         std::sqrt(1 - out_of) * from.normal;
-        std::vector<quality::LitPoint> more = followed(ray);
+        std::vector<light::LitPoint> more = followed(ray);
         if (more.empty())
             return;
         out.push_back(std::move(more.back()));
@@ -228,14 +228,14 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
     grid.columns =
         static_cast<size_t>(std::clamp(static_cast<double>(count) / rows, 1.0, view.width * 1.0));
     const auto columns = static_cast<double>(grid.columns);
-    std::vector<std::vector<quality::LitPoint>> found(grid.rows * grid.columns);
+    std::vector<std::vector<light::LitPoint>> found(grid.rows * grid.columns);
     parallel_for(grid.rows, [&](size_t row) {
         job.check();
         Random random(1, row);
         for (size_t column = 0; column < grid.columns; ++column) {
             const double x = (static_cast<double>(column) + random.uniform()) / columns;
             const double y = (static_cast<double>(row) + random.uniform()) / rows;
-            std::vector<quality::LitPoint>& points = found[row * grid.columns + column];
+            std::vector<light::LitPoint>& points = found[row * grid.columns + column];
             points = seen(view, x, y);
             bounce(bounces, random, points);
         }
@@ -250,7 +250,7 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
             const size_t here = row * grid.columns + column;
             for (size_t i = 0; i < found[here].size(); ++i) {
                 grid.points.push_back(found[here][i]);
-                quality::LitPoint& point = grid.points.back();
+                light::LitPoint& point = grid.points.back();
                 const double most = reach_beside(view, grid, point);
                 for (const size_t there : around(grid, row, column)) {
                     if (there == here || i >= found[there].size())
@@ -271,7 +271,7 @@ bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
     return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
 }
 
-double LitScene::reaches(const Light& light, const quality::LitPoint& point,
+double LitScene::reaches(const Light& light, const light::LitPoint& point,
                          uint32_t& blocker) const {
     if (!light.shadow && light.kind == LightKind::Point)
         return 1;
@@ -283,7 +283,7 @@ double LitScene::reaches(const Light& light, const quality::LitPoint& point,
         return distance <= kTolerance ||
                !blocking_.occluded(from, way, 1 - kTolerance / distance, blocker);
     };
-    const double extent = quality::extent_of(light);
+    const double extent = light::extent_of(light);
     const glm::dvec3 way = light.position - point.position;
     const double distance = glm::length(way);
     if (extent <= kPoint * distance)

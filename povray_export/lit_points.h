@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/random.h"
+#include "light/light_cut.h"
 #include "povray_export/light_plan.h"
-#include "quality/light_cut.h"
 #include "ray/placed_scenes.h"
 
 namespace lodestone::povray {
@@ -14,14 +14,14 @@ struct LitGrid {
     size_t rows = 0;
     size_t columns = 0;
     std::vector<uint32_t> first;  // point of each cell; one more at the end
-    std::vector<quality::LitPoint> points;
+    std::vector<light::LitPoint> points;
 };
 
 /// A cell and those that touch it, rising.
 std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column);
 
 /// How far from a point those are that count as beside it.
-double reach_beside(const View& view, const LitGrid& grid, const quality::LitPoint& point);
+double reach_beside(const View& view, const LitGrid& grid, const light::LitPoint& point);
 
 /// The drawn things, ready for rays. Things hidden from a class of rays are not met by it.
 class LitScene {
@@ -33,13 +33,13 @@ public:
     /// thing. `bounces`: then from where it ends on, each where light may come from.
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
     /// What is seen at a place of the picture (0...1 from its left, top), nearest first.
-    std::vector<quality::LitPoint> seen(const View& view, double x, double y) const {
+    std::vector<light::LitPoint> seen(const View& view, double x, double y) const {
         return followed(ray_at(view, x, y));
     }
 
     /// Share of a light that reaches a point; what is see-through hides nothing.
-    /// `blocker`: see quality::Reaches.
-    double reaches(const Light& light, const quality::LitPoint& point, uint32_t& blocker) const;
+    /// `blocker`: see light::Reaches.
+    double reaches(const Light& light, const light::LitPoint& point, uint32_t& blocker) const;
     /// Whether any of a drawn thing is.
     bool partly_clear(uint32_t drawn) const {
         const Shape& shape = shapes_[shape_of_[drawn]];
@@ -70,8 +70,8 @@ private:
     Surface surface_of(const Lit& lit, uint16_t slot) const;
     Shape shape_of(const Lit& lit) const;
     static Ray ray_at(const View& view, double x, double y);
-    std::vector<quality::LitPoint> followed(Ray ray) const;
-    void bounce(int times, Random& random, std::vector<quality::LitPoint>& out) const;
+    std::vector<light::LitPoint> followed(Ray ray) const;
+    void bounce(int times, Random& random, std::vector<light::LitPoint>& out) const;
 
     const Model& model_;
     std::span<const Lit> drawn_;

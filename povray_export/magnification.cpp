@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/magnification.h"
 
-#include "quality/criterion.h"
+#include "choose/criterion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ double magnification(const View& view, std::span<const Bound> bounds) {
         const double away = glm::length(bound.center - view.camera.position);
         if (!std::isfinite(away) || !std::isfinite(bound.radius))
             continue;
-        pixel = std::min(pixel, quality::pixel_size(view, std::max(away, bound.radius)));
+        pixel = std::min(pixel, choose::pixel_size(view, std::max(away, bound.radius)));
         reach = std::max(reach, away + bound.radius);
     }
     if (!(pixel > 0) || !(pixel < kTolerance) || !(reach > 0))

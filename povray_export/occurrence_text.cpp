@@ -6,9 +6,9 @@
 namespace lodestone::povray {
 namespace {
 
-const std::string& name_of_node(const Model& model, const quality::Cut& cut, uint32_t node) {
-    const quality::Node& here = cut.nodes[node];
-    if (here.parent == quality::kNoParent)
+const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint32_t node) {
+    const choose::Node& here = cut.nodes[node];
+    if (here.parent == choose::kNoParent)
         return model.objects[here.object].name;
     const Object& group = model.objects[cut.nodes[here.parent].object];
     return group.representations[0].assembly().placements[here.placement].name;
@@ -27,7 +27,7 @@ void append_hidden(std::string& out, RayMask hidden) {
         out += " no_radiosity";
 }
 
-void append_name(std::string& out, const Model& model, const quality::Cut& cut, uint32_t node) {
+void append_name(std::string& out, const Model& model, const choose::Cut& cut, uint32_t node) {
     const std::string& name = name_of_node(model, cut, node);
     if (name.empty())
         out += "unnamed";

@@ -2,7 +2,7 @@
 // Occurrence text: what is said about an occurrence besides its shape and place: flags, a comment.
 #pragma once
 
-#include "quality/cut.h"
+#include "choose/cut.h"
 
 #include <string>
 
@@ -13,6 +13,6 @@ void append_hidden(std::string& out, RayMask hidden);
 
 /// The name of a node's placement, as far as it may stand in a comment: letters, digits and
 /// underscores only, at most 60.
-void append_name(std::string& out, const Model& model, const quality::Cut& cut, uint32_t node);
+void append_name(std::string& out, const Model& model, const choose::Cut& cut, uint32_t node);
 
 }  // namespace lodestone::povray

@@ -3,16 +3,16 @@
 
 namespace lodestone::povray {
 
-std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
-                             std::span<const quality::RayCut> rays, bool softened) {
+std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
+                             std::span<const choose::RayCut> rays, bool softened) {
     std::vector<OwnUse> out;
     std::vector<uint8_t> there(cut.nodes.size(), 0);  // for all classes together
-    for (const quality::RayCut& of : rays) {
-        for (const quality::RayChoice& own : of.own) {
+    for (const choose::RayCut& of : rays) {
+        for (const choose::RayChoice& own : of.own) {
             if (there.at(own.node) != 0 || (of.rays == kShadowRays && own.soft && !softened))
                 continue;
             there[own.node] = own.alone ? 1 : 0;
-            const quality::Node& node = cut.nodes[own.node];
+            const choose::Node& node = cut.nodes[own.node];
             OwnUse use{own.node, own.lod, cut.world(node), 0, node.hidden, true};
             if (!own.alone) {
                 use.in_place = of.rays;
@@ -31,10 +31,10 @@ std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
     return out;
 }
 
-std::vector<uint8_t> left_out(const quality::Cut& cut, std::span<const quality::RayCut> rays) {
+std::vector<uint8_t> left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays) {
     std::vector<RayMask> alone(cut.nodes.size(), 0);
-    for (const quality::RayCut& of : rays) {
-        for (const quality::RayChoice& own : of.own) {
+    for (const choose::RayCut& of : rays) {
+        for (const choose::RayChoice& own : of.own) {
             if (own.alone)
                 alone.at(own.node) = 1;
         }
@@ -42,9 +42,9 @@ std::vector<uint8_t> left_out(const quality::Cut& cut, std::span<const quality::
     return spread(cut, std::move(alone));
 }
 
-std::vector<RayMask> spread(const quality::Cut& cut, std::vector<RayMask> replaced) {
+std::vector<RayMask> spread(const choose::Cut& cut, std::vector<RayMask> replaced) {
     for (size_t i = 0; i < replaced.size(); ++i) {
-        if (cut.nodes[i].parent != quality::kNoParent)
+        if (cut.nodes[i].parent != choose::kNoParent)
             replaced[i] |= replaced[cut.nodes[i].parent];
     }
     return replaced;

@@ -2,7 +2,7 @@
 // Own uses: what only some classes of rays meet of a scene, or all of them in place of the cut's.
 #pragma once
 
-#include "quality/ray_cut.h"
+#include "choose/ray_class/ray_cut.h"
 
 #include <span>
 
@@ -19,14 +19,14 @@ struct OwnUse {
 
 /// Each once. `softened`: lights are as soft as the choice was made for; else soft edges are no
 /// reason for one.
-std::vector<OwnUse> own_uses(const Model& model, const quality::Cut& cut,
-                             std::span<const quality::RayCut> rays, bool softened);
+std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
+                             std::span<const choose::RayCut> rays, bool softened);
 
 /// For each node whether no ray meets it, nor anything below it, as something else stands for it.
-std::vector<uint8_t> left_out(const quality::Cut& cut, std::span<const quality::RayCut> rays);
+std::vector<uint8_t> left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays);
 
 /// For each node the classes that meet something else in its place: its own and those of groups
 /// above.
-std::vector<RayMask> spread(const quality::Cut& cut, std::vector<RayMask> replaced);
+std::vector<RayMask> spread(const choose::Cut& cut, std::vector<RayMask> replaced);
 
 }  // namespace lodestone::povray

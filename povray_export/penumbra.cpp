@@ -2,8 +2,8 @@
 #include "povray_export/penumbra.h"
 
 #include "base/maths.h"
-#include "quality/criterion.h"
-#include "quality/light_arrival.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
 
 #include <glm/common.hpp>
 
@@ -26,7 +26,7 @@ double of_sun(const Light& sun, const View& view, std::span<const Bound> occlude
     for (const Bound& bound : occluders) {
         const double way = down > kFlattest ? (bound.box.high.z - floor) / down : 2 * all.radius;
         const double z = std::max(0.0, distance(bound, view.camera.position) - way);
-        widest = std::max(widest, way * across / quality::pixel_size(view, z));
+        widest = std::max(widest, way * across / choose::pixel_size(view, z));
     }
     return widest;
 }
@@ -36,10 +36,10 @@ double of_lamp(const Light& lamp, const View& view) {
     constexpr double kDarkest = 0.004;  // about one step of a display
     const bool area = lamp.kind == LightKind::Area;
     const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * (area ? 1 : kPi));
-    const double size = 2 * quality::extent_of(lamp);
+    const double size = 2 * light::extent_of(lamp);
     const double reach = std::sqrt(std::max({shining.x, shining.y, shining.z}) / kDarkest);
     const double z = std::max(0.0, glm::length(lamp.position - view.camera.position) - reach);
-    return kMagnified * size / quality::pixel_size(view, z);
+    return kMagnified * size / choose::pixel_size(view, z);
 }
 
 }  // namespace

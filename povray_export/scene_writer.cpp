@@ -2,6 +2,8 @@
 #include "povray_export/scene_writer.h"
 
 #include "base/files.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
 #include "povray_export/camera_writer.h"
 #include "povray_export/finish.h"
 #include "povray_export/include_files.h"
@@ -15,8 +17,6 @@
 #include "povray_export/render_settings.h"
 #include "povray_export/scene_head.h"
 #include "povray_export/scene_lights.h"
-#include "quality/criterion.h"
-#include "quality/light_arrival.h"
 
 #include <glm/common.hpp>
 
@@ -29,11 +29,11 @@ namespace lodestone::povray {
 namespace {
 
 /// Below an Environment group, or a stand-in for a group that holds Environment.
-bool environment(const Model& model, const quality::Cut& cut,
+bool environment(const Model& model, const choose::Cut& cut,
                  const std::vector<uint8_t>& holds_environment, uint32_t node) {
     if (holds_environment[cut.nodes[node].object] != 0)
         return true;
-    for (uint32_t at = node; at != quality::kNoParent; at = cut.nodes[at].parent) {
+    for (uint32_t at = node; at != choose::kNoParent; at = cut.nodes[at].parent) {
         if (model.objects[cut.nodes[at].object].role == Role::Environment)
             return true;
     }
@@ -77,7 +77,7 @@ std::optional<glm::dvec3> without_glow(const Model& model, const Representation&
 
 class SceneWriter {
 public:
-    SceneWriter(const Model& model, const quality::Cut& cut, const View& view,
+    SceneWriter(const Model& model, const choose::Cut& cut, const View& view,
                 const ExportOptions& options, Problems& problems, const Job& job)
         : model_(model),
           cut_(cut),
@@ -149,8 +149,8 @@ private:
     }
 
     /// What classes of rays meet, where there is light at all.
-    std::span<const quality::RayCut> rays() const {
-        return lit() ? options_.rays : std::span<const quality::RayCut>{};
+    std::span<const choose::RayCut> rays() const {
+        return lit() ? options_.rays : std::span<const choose::RayCut>{};
     }
 
     void collect_own() {
@@ -176,13 +176,13 @@ private:
 
     /// The path of its placements. The root has none and is called as its object is.
     std::string called(uint32_t node) const {
-        const std::string path = quality::path_of(model_, cut_, node);
+        const std::string path = choose::path_of(model_, cut_, node);
         return path.empty() ? model_.objects.at(cut_.nodes[node].object).name : path;
     }
 
     /// Of a representation of its node, in its file.
     void add_use(Use use, bool textures) {
-        const quality::Node& node = cut_.nodes[use.node];
+        const choose::Node& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
         if (!make_invertible(use.world)) {  // of a line or a point nothing is seen anyway
@@ -205,7 +205,7 @@ private:
             const uint32_t index = cut_.chosen[position];
             if ((uses_.size() & 1023u) == 0)
                 job_.check();
-            const quality::Node& node = cut_.nodes.at(index);
+            const choose::Node& node = cut_.nodes.at(index);
             const Object& object = model_.objects.at(node.object);
             const Representation& representation = object.representations.at(node.lod);
             if (representation.summary.kind == Kind::Assembly)
@@ -230,12 +230,12 @@ private:
     }
 
     /// What a texel may cover of one occurrence, in metres of its own frame.
-    double texel_of(const quality::Node& node, const Representation& representation,
+    double texel_of(const choose::Node& node, const Representation& representation,
                     const Affine& world) const {
         const Bound bound = transformed(representation.summary.bound, world);
         const double z = distance(bound, view_.camera.position);
         const double enlarged = stretch(world) * std::max(1.0, node.importance);
-        return shading_.texture_error * quality::pixel_size(view_, z) / enlarged;
+        return shading_.texture_error * choose::pixel_size(view_, z) / enlarged;
     }
 
     /// Once for what several occurrences show.
@@ -290,7 +290,7 @@ private:
     LightPlan light_plan(const std::vector<Bound>& occluders) {
         const double error = options_.light_error.value_or(view_.pixel_error);
         report_.lamps = static_cast<uint64_t>(
-            std::count_if(model_.lights.begin(), model_.lights.end(), quality::lamp));
+            std::count_if(model_.lights.begin(), model_.lights.end(), light::lamp));
         report_.lights_each = static_cast<double>(report_.lamps);
         if (!lit() || !(error > 0) || report_.lamps < kFewLamps)
             return {};
@@ -389,7 +389,7 @@ private:
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights) {
-                if (plan.empty() || !quality::lamp(light))
+                if (plan.empty() || !light::lamp(light))
                     scene_lights.append(out, light);
             }
             if (!plan.empty()) {
@@ -412,7 +412,7 @@ private:
     }
 
     const Model& model_;
-    const quality::Cut& cut_;
+    const choose::Cut& cut_;
     const View& view_;
     const ExportOptions& options_;
     Problems& problems_;
@@ -426,7 +426,7 @@ private:
 
 }  // namespace
 
-ExportReport export_scene(const Model& model, const quality::Cut& cut, const View& view,
+ExportReport export_scene(const Model& model, const choose::Cut& cut, const View& view,
                           const ExportOptions& options, Problems& problems, const Job& job) {
     return SceneWriter(model, cut, view, options, problems, job).write();
 }

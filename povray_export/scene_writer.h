@@ -3,9 +3,9 @@
 #pragma once
 
 #include "base/job.h"
+#include "choose/ray_class/ray_cut.h"
 #include "model/model.h"
 #include "povray_export/shading.h"
-#include "quality/ray_cut.h"
 
 #include <filesystem>
 #include <optional>
@@ -27,7 +27,7 @@ struct ExportOptions {
     std::optional<double> light_error;
     /// What classes of rays meet in place of parts of the cut, by its nodes; not in false colors,
     /// nor where only what is covered counts.
-    std::span<const quality::RayCut> rays{};
+    std::span<const choose::RayCut> rays{};
     bool uvs =
         true;  // texture coordinates where a texture uses them; false: textures are their means
 };
@@ -53,7 +53,7 @@ struct ExportReport {
 /// Throws Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as
 /// many as the chosen occurrences, Error(Io) naming the file,
 /// Error(Cancelled). cost: 0.1-0.2 s CPU a million triangles written.
-ExportReport export_scene(const Model& model, const quality::Cut& cut, const View& view,
+ExportReport export_scene(const Model& model, const choose::Cut& cut, const View& view,
                           const ExportOptions& options, Problems& problems, const Job& job = {});
 
 }  // namespace lodestone::povray

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "base/maths.h"
-#include "measure/environment_lights.h"
+#include "light/environment_lights.h"
 #include "povray_export/number.h"
 
 #include <algorithm>
@@ -65,18 +65,18 @@ Sky write_sky(const World& world, const SkySampling& sampling, const std::filesy
         return sky;
     const Picture& picture = *world.environment;
     constexpr size_t kFewest = 12;  // of which the mean is taken
-    measure::EnvironmentLights found;
+    light::EnvironmentLights found;
     try {
-        found = measure::environment_lights(world, sampling.lights > 0 ? sampling.lights : kFewest);
+        found = light::environment_lights(world, sampling.lights > 0 ? sampling.lights : kFewest);
     } catch (const Error& error) {
         problems.push_back({picture.name, Severity::Error, "environment_unreadable", error.what()});
         return sky;
     }
     sky.ambient = found.ambient;
     double largest = largest_of(sky.ambient);
-    for (const measure::EnvironmentLight& each : found.lights)
+    for (const light::EnvironmentLight& each : found.lights)
         largest = std::max(largest, largest_of(each.irradiance));
-    for (const measure::EnvironmentLight& each : found.lights) {
+    for (const light::EnvironmentLight& each : found.lights) {
         if (sampling.lights == 0 || largest_of(each.irradiance) < kFaintest * largest) {
             sky.ambient += each.irradiance / (4 * std::numbers::pi);  // in the mean of all normals
             continue;

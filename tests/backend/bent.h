@@ -3,7 +3,7 @@
 #pragma once
 
 #include "backend/models.h"
-#include "quality/cut.h"
+#include "choose/cut.h"
 
 namespace lodestone::bent {
 
@@ -22,17 +22,17 @@ inline Model pairs(int balls = 4) {
 }
 
 /// Path and level of everything drawn, e.g. "pair 0/left 2, pair 1 1".
-inline std::string drawn(const Model& model, const quality::Cut& cut) {
+inline std::string drawn(const Model& model, const choose::Cut& cut) {
     std::string out;
     for (const uint32_t index : cut.chosen) {
         out += out.empty() ? "" : ", ";
-        out += quality::path_of(model, cut, index) + ' ' + std::to_string(cut.nodes[index].lod);
+        out += choose::path_of(model, cut, index) + ' ' + std::to_string(cut.nodes[index].lod);
     }
     return out;
 }
 
 inline std::string drawn(const Model& model, const View& view) {
-    return drawn(model, quality::choose(model, view));
+    return drawn(model, choose::choose(model, view));
 }
 
 inline DetailLens lens(double x, double radius, double strength) {

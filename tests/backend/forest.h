@@ -3,7 +3,7 @@
 #pragma once
 
 #include "backend/bent.h"
-#include "quality/cut.h"
+#include "choose/cut.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -99,11 +99,11 @@ private:
 };
 
 /// To the last bit, and in all.
-inline void expect_same(const quality::Cut& a, const quality::Cut& b) {
+inline void expect_same(const choose::Cut& a, const choose::Cut& b) {
     ASSERT_EQ(a.nodes.size(), b.nodes.size());
     for (size_t i = 0; i < a.nodes.size(); ++i) {
-        const quality::Node& one = a.nodes[i];
-        const quality::Node& other = b.nodes[i];
+        const choose::Node& one = a.nodes[i];
+        const choose::Node& other = b.nodes[i];
         ASSERT_EQ(one.object, other.object);
         ASSERT_EQ(one.parent, other.parent);
         ASSERT_EQ(one.placement, other.placement);

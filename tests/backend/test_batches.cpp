@@ -2,7 +2,7 @@
 // Guards what viewers keep of a cut: every triangle once, keys that tell what has changed.
 #include "backend/models.h"
 #include "base/parallel.h"
-#include "quality/batches.h"
+#include "view/viewer_batches.h"
 
 #include <gtest/gtest.h>
 #include <set>
@@ -10,8 +10,8 @@
 using namespace lodestone;
 using models::add_level;
 using models::view_from;
-using quality::Batch;
-using quality::BatchMesh;
+using view::Batch;
+using view::BatchMesh;
 
 namespace {
 
@@ -31,11 +31,11 @@ std::set<Hash> keys_of(const std::vector<Batch>& batches) {
     return keys;
 }
 
-uint64_t triangles_of(const Model& model, const quality::Cut& cut,
+uint64_t triangles_of(const Model& model, const choose::Cut& cut,
                       const std::vector<Batch>& batches) {
     uint64_t triangles = 0;
     for (const Batch& batch : batches) {
-        const BatchMesh mesh = quality::mesh_of(model, cut, batch);
+        const BatchMesh mesh = view::mesh_of(model, cut, batch);
         EXPECT_EQ(mesh.triangles.size(), batch.triangles);
         EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
         EXPECT_EQ(mesh.colors.size(), mesh.positions.size());
@@ -52,7 +52,7 @@ TEST(Batches, EmptyCutHasNone) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    EXPECT_TRUE(quality::batches_of(model, quality::choose(model, View{})).empty());
+    EXPECT_TRUE(view::batches_of(model, choose::choose(model, View{})).empty());
 }
 
 TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
@@ -67,10 +67,10 @@ TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
     place.linear[2] = {0, 0, -2};  // mirrored, so that normals point the other way
     model.root = models::add_group(model, "g", {{leaf, place, "t"}});
     summarize_assemblies(model, bottom_up(model));
-    const quality::Cut cut = quality::choose(model, view_from(10));
-    const std::vector<Batch> batches = quality::batches_of(model, cut);
+    const choose::Cut cut = choose::choose(model, view_from(10));
+    const std::vector<Batch> batches = view::batches_of(model, cut);
     ASSERT_EQ(batches.size(), 1u);
-    const BatchMesh made = quality::mesh_of(model, cut, batches[0]);
+    const BatchMesh made = view::mesh_of(model, cut, batches[0]);
     ASSERT_EQ(made.positions.size(), 3u);
     EXPECT_EQ(made.positions[1], glm::vec3(7, 0, 0));
     EXPECT_EQ(std::abs(made.normals[0][2]), 32767);
@@ -80,8 +80,8 @@ TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
 
 TEST(Batches, EachTriangleIsInExactlyOne) {
     const Model model = balls(512);
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = quality::batches_of(model, cut);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const std::vector<Batch> batches = view::batches_of(model, cut);
     EXPECT_GT(batches.size(), 1u);
     EXPECT_LT(batches.size(), 16u);  // not one for each ball or pair
     EXPECT_EQ(triangles_of(model, cut, batches), uint64_t{512} * 1280);
@@ -93,22 +93,22 @@ TEST(Batches, MeshLargerThanABatchIsCutUp) {
     const ObjectIndex leaf = models::add_leaf(model, "big", shapes::sphere(1, 7));  // 327,680
     model.root = models::add_group(model, "g", {{leaf, Affine{}, "big"}});
     summarize_assemblies(model, bottom_up(model));
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = quality::batches_of(model, cut);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const std::vector<Batch> batches = view::batches_of(model, cut);
     ASSERT_EQ(batches.size(), 2u);
     for (const Batch& batch : batches)
-        EXPECT_LE(batch.triangles, quality::kMostInBatch);
+        EXPECT_LE(batch.triangles, view::kMostInBatch);
     EXPECT_EQ(triangles_of(model, cut, batches), 327'680u);
 }
 
 TEST(Batches, TheSameCutAgainHasTheSameKeysAndAStepChangesFew) {
     const Model model = balls(512);
     View view = view_from(3, 1);
-    const std::set<Hash> before = keys_of(quality::batches_of(model, quality::choose(model, view)));
-    EXPECT_EQ(keys_of(quality::batches_of(model, quality::choose(model, view))), before);
+    const std::set<Hash> before = keys_of(view::batches_of(model, choose::choose(model, view)));
+    EXPECT_EQ(keys_of(view::batches_of(model, choose::choose(model, view))), before);
     view.camera.position.x += 4;
     size_t kept = 0;
-    const std::set<Hash> after = keys_of(quality::batches_of(model, quality::choose(model, view)));
+    const std::set<Hash> after = keys_of(view::batches_of(model, choose::choose(model, view)));
     for (const Hash key : after)
         kept += before.count(key);
     EXPECT_GT(2 * kept, after.size());
@@ -117,15 +117,15 @@ TEST(Batches, TheSameCutAgainHasTheSameKeysAndAStepChangesFew) {
 
 TEST(Batches, ColorsOfTheirOwnReplaceMaterialsAndChangeKeys) {
     const Model model = balls(4);
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
     const std::vector<glm::dvec3> colors(cut.chosen.size(), {0, 0, 1});
-    const std::vector<Batch> plain = quality::batches_of(model, cut);
-    const std::vector<Batch> painted = quality::batches_of(model, cut, colors);
+    const std::vector<Batch> plain = view::batches_of(model, cut);
+    const std::vector<Batch> painted = view::batches_of(model, cut, colors);
     ASSERT_EQ(plain.size(), painted.size());
     EXPECT_NE(plain[0].key, painted[0].key);
-    const BatchMesh mesh = quality::mesh_of(model, cut, painted[0], colors);
+    const BatchMesh mesh = view::mesh_of(model, cut, painted[0], colors);
     EXPECT_EQ(mesh.colors[0], (std::array<uint8_t, 4>{0, 0, 255, 255}));
-    EXPECT_THROW(quality::batches_of(model, cut, {{1, 1, 1}}), Error);
+    EXPECT_THROW(view::batches_of(model, cut, {{1, 1, 1}}), Error);
 }
 
 TEST(Batches, SlotsGlassAndGlowAreTold) {
@@ -143,8 +143,8 @@ TEST(Batches, SlotsGlassAndGlowAreTold) {
     model.objects[leaf].representations[0].materials.push_back(1);
     model.root = models::add_group(model, "g", {{leaf, Affine{}, "l"}});
     summarize_assemblies(model, bottom_up(model));
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const BatchMesh made = quality::mesh_of(model, cut, quality::batches_of(model, cut).front());
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const BatchMesh made = view::mesh_of(model, cut, view::batches_of(model, cut).front());
     const uint32_t first = made.triangles[0].x;
     const uint32_t second = made.triangles[1].x;
     EXPECT_EQ(made.colors[first][3], 64);
@@ -161,14 +161,14 @@ TEST(Batches, WhatCamerasDoNotSeeIsInNone) {
     pair->placements[0].hidden = kCameraRays;
     model.objects[1].representations[0].payload = std::shared_ptr<const Assembly>(pair);
     summarize_assemblies(model, bottom_up(model));
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    EXPECT_EQ(triangles_of(model, cut, quality::batches_of(model, cut)), uint64_t{2} * 1280);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    EXPECT_EQ(triangles_of(model, cut, view::batches_of(model, cut)), uint64_t{2} * 1280);
 }
 
 TEST(Batches, MeshThatIsNotInMemoryIsNamedAsAnError) {
     Model model = balls(4);
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = quality::batches_of(model, cut);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const std::vector<Batch> batches = view::batches_of(model, cut);
     model.objects[0].representations[0].payload = std::monostate();
-    EXPECT_THROW(quality::mesh_of(model, cut, batches[0]), Error);
+    EXPECT_THROW(view::mesh_of(model, cut, batches[0]), Error);
 }

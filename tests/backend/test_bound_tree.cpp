@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how near things are said to be: as asking each of them says.
 #include "backend/bent.h"
-#include "quality/bound_tree.h"
+#include "choose/ray_class/bound_tree.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -9,7 +9,7 @@
 
 using namespace lodestone;
 using bent::ball;
-using quality::BoundTree;
+using choose::BoundTree;
 
 TEST(BoundTree, NothingIsNearWhereThereIsNothing) {
     EXPECT_EQ(BoundTree({}).nearest(ball({}, 1), 0, 7), 7);
@@ -18,13 +18,13 @@ TEST(BoundTree, NothingIsNearWhereThereIsNothing) {
 }
 
 TEST(BoundTree, DistancesAreTheLargerOfBoxesAndSpheres) {
-    EXPECT_NEAR(quality::distance(ball({}, 1), ball({5, 0, 0}, 1)), 3, 1e-12);
+    EXPECT_NEAR(choose::distance(ball({}, 1), ball({5, 0, 0}, 1)), 3, 1e-12);
     // Boxes of balls touch across the corner earlier than the balls
-    EXPECT_NEAR(quality::distance(ball({}, 1), ball({2, 2, 2}, 1)), std::sqrt(12.0) - 2, 1e-12);
+    EXPECT_NEAR(choose::distance(ball({}, 1), ball({2, 2, 2}, 1)), std::sqrt(12.0) - 2, 1e-12);
     Bound floor;
     floor.box = {{-100, -100, -1}, {100, 100, 0}};
     floor.radius = 142;
-    EXPECT_NEAR(quality::distance(ball({0, 0, 3}, 1), floor), 2, 1e-12);
+    EXPECT_NEAR(choose::distance(ball({0, 0, 3}, 1), floor), 2, 1e-12);
 }
 
 TEST(BoundTree, FindsWhatAskingEachFinds) {
@@ -43,7 +43,7 @@ TEST(BoundTree, FindsWhatAskingEachFinds) {
         double least = 30;
         for (uint32_t j = 0; j < bounds.size(); ++j) {
             if (j != i && j != 7)
-                least = std::min(least, std::max(0.0, quality::distance(bounds[i], bounds[j])));
+                least = std::min(least, std::max(0.0, choose::distance(bounds[i], bounds[j])));
         }
         EXPECT_NEAR(tree.nearest(bounds[i], i, 30), least, 1e-12);
     }

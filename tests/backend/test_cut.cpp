@@ -2,9 +2,9 @@
 // Guards the cut: each path crossed once, the cheapest that is good enough, groups never opened in
 // vain.
 #include "backend/models.h"
-#include "quality/chooser.h"
-#include "quality/criterion.h"
-#include "quality/cut.h"
+#include "choose/criterion.h"
+#include "choose/cut.h"
+#include "choose/cut_chooser.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -28,34 +28,34 @@ Model balls_with_levels() {
 
 TEST(Criterion, PixelGrowsWithDistanceAndNeverBelowTheNearClip) {
     const View view = view_from(10, 1);
-    EXPECT_NEAR(quality::pixel_size(view, 64), 0.1, 1e-12);
-    EXPECT_EQ(quality::pixel_size(view, 0), quality::pixel_size(view, view.camera.near_clip));
+    EXPECT_NEAR(choose::pixel_size(view, 64), 0.1, 1e-12);
+    EXPECT_EQ(choose::pixel_size(view, 0), choose::pixel_size(view, view.camera.near_clip));
     View flat = view;
     flat.camera.orthographic = true;
-    EXPECT_EQ(quality::pixel_size(flat, 1), quality::pixel_size(flat, 1000));
-    EXPECT_NEAR(quality::error_on_screen(view, 0.1, 2, 64), 2, 1e-12);
+    EXPECT_EQ(choose::pixel_size(flat, 1), choose::pixel_size(flat, 1000));
+    EXPECT_NEAR(choose::error_on_screen(view, 0.1, 2, 64), 2, 1e-12);
 }
 
 TEST(Cut, ModelWithoutRootIsRefused) {
-    EXPECT_THROW(quality::choose(Model{}, View{}), Error);
+    EXPECT_THROW(choose::choose(Model{}, View{}), Error);
     View view;
     view.width = 0;
-    EXPECT_THROW(quality::choose(models::row_of_balls(2), view), Error);
+    EXPECT_THROW(choose::choose(models::row_of_balls(2), view), Error);
     view = View{};
     view.pixel_error = std::nan("");
-    EXPECT_THROW(quality::choose(models::row_of_balls(2), view), Error);
+    EXPECT_THROW(choose::choose(models::row_of_balls(2), view), Error);
 }
 
 TEST(Cut, EmptyGroupDrawsNothing) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    EXPECT_TRUE(quality::choose(model, View{}).chosen.empty());
+    EXPECT_TRUE(choose::choose(model, View{}).chosen.empty());
 }
 
 TEST(Cut, ZeroPixelErrorDrawsTheOriginalsOnce) {
     const Model model = balls_with_levels();
-    const quality::Cut cut = quality::choose(model, view_from(1000, 0));
+    const choose::Cut cut = choose::choose(model, view_from(1000, 0));
     ASSERT_EQ(cut.chosen.size(), 8u);
     for (const uint32_t index : cut.chosen)
         EXPECT_EQ(cut.nodes[index].lod, 0u);
@@ -77,21 +77,21 @@ TEST(Cut, AGroupWhoseStandInCostsMoreThanItsChildrenIsOpened) {
     add_level(model, model.root, 30, shapes::sphere(1, 2));  // the row: more than four spheres
     summarize_assemblies(model, bottom_up(model));
     View far = view_from(1e6, 1);
-    quality::Cut cut = quality::choose(model, far);
+    choose::Cut cut = choose::choose(model, far);
     EXPECT_EQ(cut.kinds.at("box"), 8u);
     EXPECT_EQ(cut.nodes.size(), 1u + 4u + 8u);
     for (const uint32_t index : cut.chosen)
-        EXPECT_EQ(quality::path_of(model, cut, index).substr(0, 5), "pair ");
+        EXPECT_EQ(choose::path_of(model, cut, index).substr(0, 5), "pair ");
     far.kinds = mask_of(Kind::Mesh);  // spheres for pairs cost less than the balls themselves
-    cut = quality::choose(model, far);
+    cut = choose::choose(model, far);
     EXPECT_EQ(cut.chosen.size(), 1u);
     add_level(model, 1, 0.3, shapes::cube());
-    cut = quality::choose(model, far);
+    cut = choose::choose(model, far);
     EXPECT_EQ(cut.chosen.size(), 4u);
     EXPECT_EQ(cut.nodes.size(), 1u + 4u);
     EXPECT_EQ(cut.triangles, 4u * 12u);
     add_level(model, model.root, 40, shapes::cube());
-    cut = quality::choose(model, far);
+    cut = choose::choose(model, far);
     EXPECT_EQ(cut.chosen.size(), 1u);
     EXPECT_EQ(cut.nodes.size(), 1u);
     EXPECT_EQ(cut.largest_error_node, 0u);
@@ -99,10 +99,10 @@ TEST(Cut, AGroupWhoseStandInCostsMoreThanItsChildrenIsOpened) {
 
 TEST(Cut, FarGroupsAreNeverOpened) {
     const Model model = balls_with_levels();
-    const quality::Cut cut = quality::choose(model, view_from(1000, 1));
+    const choose::Cut cut = choose::choose(model, view_from(1000, 1));
     EXPECT_EQ(cut.chosen.size(), 4u);      // one stand-in a pair
     EXPECT_EQ(cut.nodes.size(), 1u + 4u);  // the row and the pairs
-    EXPECT_EQ(quality::path_of(model, cut, cut.chosen[2]), "pair 2");
+    EXPECT_EQ(choose::path_of(model, cut, cut.chosen[2]), "pair 2");
     EXPECT_LE(cut.largest_error_px, 1);
     EXPECT_GT(cut.largest_error_px, 0);
 }
@@ -111,14 +111,14 @@ TEST(Cut, EveryChoiceIsTheCheapestThatIsGoodEnough) {
     const Model model = balls_with_levels();
     for (const double distance : {2.0, 9.0, 33.0, 150.0, 700.0}) {
         const View view = view_from(distance, 1);
-        const quality::Cut cut = quality::choose(model, view);
+        const choose::Cut cut = choose::choose(model, view);
         for (const uint32_t index : cut.chosen) {
-            const quality::Node& node = cut.nodes[index];
+            const choose::Node& node = cut.nodes[index];
             const Object& object = model.objects[node.object];
             const double z = lodestone::distance(transformed(object.bound(), cut.world(node)),
                                                  view.camera.position);
             const auto good = [&](size_t lod) {
-                return quality::good_enough(view, object.representations[lod].summary.error, 1, z);
+                return choose::good_enough(view, object.representations[lod].summary.error, 1, z);
             };
             EXPECT_TRUE(good(node.lod));
             if (node.lod + 1 < object.representations.size()) {
@@ -132,7 +132,7 @@ TEST(Cut, CoarserPixelErrorNeverDrawsMore) {
     const Model model = balls_with_levels();
     uint64_t last = ~uint64_t{0};
     for (const double pixel_error : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 64.0}) {
-        const quality::Cut cut = quality::choose(model, view_from(20, pixel_error));
+        const choose::Cut cut = choose::choose(model, view_from(20, pixel_error));
         EXPECT_LE(cut.triangles, last);
         EXPECT_LE(cut.largest_error_px, pixel_error + 1e-12);
         last = cut.triangles;
@@ -148,9 +148,9 @@ TEST(Cut, EnlargedPlacementIsHeldToItsStretch) {
     add_level(model, ball, 0.01, shapes::cube());
     summarize_assemblies(model, bottom_up(model));
     // 0.01 m enlarged ten times is one pixel at 64 m from the bound.
-    EXPECT_EQ(quality::choose(model, view_from(64 + 10 - 0.1, 1)).kinds.at("mesh"), 1u);
-    EXPECT_EQ(quality::choose(model, view_from(64 + 10 - 0.1, 1)).triangles, 1280u);
-    EXPECT_EQ(quality::choose(model, view_from(64 + 10 + 0.1, 1)).triangles, 12u);
+    EXPECT_EQ(choose::choose(model, view_from(64 + 10 - 0.1, 1)).kinds.at("mesh"), 1u);
+    EXPECT_EQ(choose::choose(model, view_from(64 + 10 - 0.1, 1)).triangles, 1280u);
+    EXPECT_EQ(choose::choose(model, view_from(64 + 10 + 0.1, 1)).triangles, 12u);
 }
 
 TEST(Cut, OnlyKindsTheViewCanDrawAreChosen) {
@@ -162,11 +162,11 @@ TEST(Cut, OnlyKindsTheViewCanDrawAreChosen) {
     summarize(box, model);
     box.summary.error = 0.5;
     model.objects[1].representations.push_back(box);
-    EXPECT_EQ(quality::choose(model, view_from(1000, 2)).kinds.at("box"), 4u);
+    EXPECT_EQ(choose::choose(model, view_from(1000, 2)).kinds.at("box"), 4u);
     View view = view_from(1000, 2);
     view.kinds = mask_of(Kind::Mesh);
-    EXPECT_EQ(quality::choose(model, view).kinds.count("box"), 0u);
-    EXPECT_EQ(quality::choose(model, view).kinds.at("mesh"), 4u);
+    EXPECT_EQ(choose::choose(model, view).kinds.count("box"), 0u);
+    EXPECT_EQ(choose::choose(model, view).kinds.at("mesh"), 4u);
 }
 
 TEST(Cut, CycleIsRefusedWithBothNames) {
@@ -188,7 +188,7 @@ TEST(Cut, CycleIsRefusedWithBothNames) {
 TEST(Cut, CancelledJobStops) {
     const int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
-    EXPECT_THROW(quality::choose(models::row_of_balls(4), view_from(1, 1), job), Error);
+    EXPECT_THROW(choose::choose(models::row_of_balls(4), view_from(1, 1), job), Error);
 }
 
 TEST(Cut, ManyOccurrencesOfDeepSharing) {
@@ -208,7 +208,7 @@ TEST(Cut, ManyOccurrencesOfDeepSharing) {
     model.root = below;
     summarize_assemblies(model, bottom_up(model));
     EXPECT_EQ(totals(model).occurrences, 32768u);
-    const quality::Cut cut = quality::choose(model, view_from(10, 1));
+    const choose::Cut cut = choose::choose(model, view_from(10, 1));
     EXPECT_EQ(cut.chosen.size(), 32768u);
     size_t seen = 0;
     for_each_occurrence(model, [&](const Occurrence& occurrence) {
@@ -230,12 +230,12 @@ TEST(Cut, GroupsThatPlaceAnotherTwiceSixtyTimesOverAreRefused) {
     model.root = below;
     summarize_assemblies(model, bottom_up(model));
     const View view = view_from(100, 0);
-    const quality::Table table = quality::Table::whole(model, model.root, view.kinds);
+    const choose::Table table = choose::Table::whole(model, model.root, view.kinds);
     const Job job;
     for (const uint64_t triangles : {uint64_t{0}, uint64_t{1} << 60u}) {
-        quality::FactorField field(model, view);
-        quality::Chooser chooser(table, nullptr, view, field, job, 1000);
-        quality::Cut cut;
+        choose::FactorField field(model, view);
+        choose::Chooser chooser(table, nullptr, view, field, job, 1000);
+        choose::Cut cut;
         if (triangles == 0) {
             EXPECT_THROW(chooser.run(table.find(model.root), {}, cut), Error);
         } else {

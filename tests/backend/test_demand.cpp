@@ -4,7 +4,7 @@
 #include "build/demand.h"
 #include "build/effort.h"
 #include "build/hierarchy.h"
-#include "quality/cut.h"
+#include "choose/cut.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST(Demand, CallsForGroupsOnlyWhenAllBelowIsThere) {
     for (const build::Stale& stale : everything(rows))
         seconds += build::seconds_to_build(rows.objects[stale.index], {});
     const View view = view_from(3000);
-    const double picture = build::seconds_to_draw(rows, quality::choose(rows, view), view);
+    const double picture = build::seconds_to_draw(rows, choose::choose(rows, view), view);
     EXPECT_EQ(called_names(rows, settings_for(3000, 0.9 * seconds / picture)),
               (Names{"ball", "pair"}));
 }

@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "image/image.h"
 #include "image/sampler.h"
-#include "measure/environment_lights.h"
+#include "light/environment_lights.h"
 
 #include <cmath>
 #include <functional>
@@ -11,8 +11,8 @@
 #include <numbers>
 
 using namespace lodestone;
-using measure::environment_lights;
-using measure::EnvironmentLights;
+using light::environment_lights;
+using light::EnvironmentLights;
 
 namespace {
 
@@ -25,8 +25,8 @@ World world_of(const Radiance& radiance, int width = 128) {
     sky.height = width / 2;
     for (int y = 0; y < sky.height; ++y) {
         for (int x = 0; x < sky.width; ++x) {
-            const glm::dvec3 d = measure::equirectangular_direction((x + 0.5) / sky.width,
-                                                                    1 - (y + 0.5) / sky.height);
+            const glm::dvec3 d =
+                light::equirectangular_direction((x + 0.5) / sky.width, 1 - (y + 0.5) / sky.height);
             const auto red = static_cast<float>(radiance(d));
             for (const float value : {red, 0.25f, 0.0f, 1.0f})
                 sky.pixels.push_back(value);
@@ -39,7 +39,7 @@ World world_of(const Radiance& radiance, int width = 128) {
 
 double received(const EnvironmentLights& sky, const glm::dvec3& normal, int channel = 0) {
     double sum = kPi * sky.ambient[channel];
-    for (const measure::EnvironmentLight& light : sky.lights)
+    for (const light::EnvironmentLight& light : sky.lights)
         sum += light.irradiance[channel] * std::max(0.0, -glm::dot(normal, light.direction));
     return sum;
 }
@@ -130,7 +130,7 @@ TEST(EnvironmentLights, TinyAndBlackPicturesAndStrangeTurnsAreFine) {
         2);
     World world = world_of(sunny, 2);
     world.environment_turn = glm::dmat3(0.0);
-    for (const measure::EnvironmentLight& light : environment_lights(world, 300).lights)
+    for (const light::EnvironmentLight& light : environment_lights(world, 300).lights)
         EXPECT_NEAR(glm::length(light.direction), 1, 1e-9);
 }
 

@@ -2,8 +2,8 @@
 // Guards what else bends quality (5.5.5): screen lenses, depth, motion, darkness, and how all of it
 // goes together and is told.
 #include "backend/bent.h"
-#include "quality/criterion.h"
-#include "quality/factors.h"
+#include "choose/criterion.h"
+#include "choose/detail_factors.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -30,14 +30,14 @@ View flat_view() {
     return view;
 }
 
-quality::Reason reason_of(const Model& model, const View& view, size_t position = 0) {
-    const quality::Cut cut = quality::choose(model, view);
-    return quality::why(model, view, cut, cut.chosen.at(position));
+choose::Reason reason_of(const Model& model, const View& view, size_t position = 0) {
+    const choose::Cut cut = choose::choose(model, view);
+    return choose::why(model, view, cut, cut.chosen.at(position));
 }
 
 std::string refusal(const View& view) {
     try {
-        quality::choose(bent::pairs(), view);
+        choose::choose(bent::pairs(), view);
     } catch (const Error& error) {
         return error.what();
     }
@@ -48,9 +48,9 @@ std::string refusal(const View& view) {
 
 TEST(ImageFrame, ABallsRectangleTouchesItsTangents) {
     View view = view_from(0);
-    const quality::ImageFrame frame(view.camera, 640, 360);
+    const choose::ImageFrame frame(view.camera, 640, 360);
     // Seen from 5 m a ball of 3 m has tangents of 3/4; a pixel is 1/640 of the distance.
-    const quality::ImageRect rect = frame.rect(ball({0, 5, 0}, 3));
+    const choose::ImageRect rect = frame.rect(ball({0, 5, 0}, 3));
     EXPECT_NEAR(rect.low.x, 320 - 480, 1e-9);
     EXPECT_NEAR(rect.high.x, 320 + 480, 1e-9);
     EXPECT_NEAR(rect.low.y, 180 - 480, 1e-9);
@@ -58,7 +58,7 @@ TEST(ImageFrame, ABallsRectangleTouchesItsTangents) {
     EXPECT_TRUE(frame.rect(ball({0, -5, 0}, 3)).behind);
     EXPECT_EQ(frame.rect(ball({0, 1, 0}, 3)).nearest({1e6, 1e6}), 0);  // around the eye
     view.camera.right = {-1, 0, 0};                                    // mirrored
-    const quality::ImageFrame mirrored(view.camera, 640, 360);
+    const choose::ImageFrame mirrored(view.camera, 640, 360);
     EXPECT_NEAR(mirrored.rect(ball({1, 10, 0}, 0.001)).low.x, 320 - 64, 0.1);
 }
 
@@ -138,12 +138,11 @@ TEST(Motion, InsideAGroupOpensNothingAndCoarsensItsPartOnly) {
     View view = flat_view();
     view.modifiers.when_moving = true;
     bent::move(model, kPair, 1, models::moved(3, 0, 0.125));  // right, in both pairs
-    const quality::Cut cut = quality::choose(model, view);
+    const choose::Cut cut = choose::choose(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
-    EXPECT_EQ(quality::why(model, view, cut, cut.chosen[0]).factors.motion, 1);
-    EXPECT_NEAR(quality::why(model, view, cut, cut.chosen[1]).factors.motion, std::sqrt(65.0),
-                1e-9);
-    EXPECT_EQ(quality::why(model, view, cut, cut.nodes[cut.chosen[1]].parent).factors.motion, 1);
+    EXPECT_EQ(choose::why(model, view, cut, cut.chosen[0]).factors.motion, 1);
+    EXPECT_NEAR(choose::why(model, view, cut, cut.chosen[1]).factors.motion, std::sqrt(65.0), 1e-9);
+    EXPECT_EQ(choose::why(model, view, cut, cut.nodes[cut.chosen[1]].parent).factors.motion, 1);
 }
 
 TEST(Motion, OfTheCameraCoarsensWhatCrossesTheScreen) {
@@ -161,13 +160,13 @@ TEST(Motion, OfTheCameraCoarsensWhatCrossesTheScreen) {
 }
 
 TEST(Darkness, IsWhatIsDisplayedOverTheMiddle) {
-    EXPECT_EQ(quality::displayed(0), 0);
-    EXPECT_NEAR(quality::displayed(1), 1, 1e-12);
-    EXPECT_NEAR(quality::displayed(0.21404114), 0.5, 1e-7);  // sRGB's
-    EXPECT_EQ(quality::coarser_by_darkness(1), 1);
-    EXPECT_EQ(quality::coarser_by_darkness(0.5), 1);
-    EXPECT_EQ(quality::coarser_by_darkness(0.25), 2);
-    EXPECT_EQ(quality::coarser_by_darkness(0), 64);
+    EXPECT_EQ(choose::displayed(0), 0);
+    EXPECT_NEAR(choose::displayed(1), 1, 1e-12);
+    EXPECT_NEAR(choose::displayed(0.21404114), 0.5, 1e-7);  // sRGB's
+    EXPECT_EQ(choose::coarser_by_darkness(1), 1);
+    EXPECT_EQ(choose::coarser_by_darkness(0.5), 1);
+    EXPECT_EQ(choose::coarser_by_darkness(0.25), 2);
+    EXPECT_EQ(choose::coarser_by_darkness(0), 64);
 }
 
 TEST(Darkness, CoarsensWhereNoLampReaches) {
@@ -207,7 +206,7 @@ TEST(Darkness, DoesNotCountBeforeABrightBackgroundOrOnWhatGlows) {
 }
 
 TEST(Factors, MultiplyAndStayWithinTheirRange) {
-    quality::Factors factors;
+    choose::Factors factors;
     EXPECT_EQ(factors.total(), 1);
     factors = {2, 3, 1.5, 0.5, 2, 4, 1.5};
     EXPECT_DOUBLE_EQ(factors.total(), 2 * 3 * 1.5 * 0.5 / (2 * 4 * 1.5));
@@ -222,7 +221,7 @@ TEST(Factors, MultiplyAndStayWithinTheirRange) {
 TEST(Why, NamesTheNumbersOfTheChoice) {
     Model model = bent::pairs();
     const View view = view_from(301);
-    const quality::Reason reason = reason_of(model, view);
+    const choose::Reason reason = reason_of(model, view);
     EXPECT_EQ(reason.chosen.object, kPair);
     EXPECT_EQ(reason.chosen.lod, 1u);
     EXPECT_NEAR(reason.z, 300, 1e-9);
@@ -230,13 +229,13 @@ TEST(Why, NamesTheNumbersOfTheChoice) {
     EXPECT_NEAR(reason.chosen.error_px, 0.4 * 640 / 300, 1e-9);
     EXPECT_EQ(reason.stretch, 1);
     EXPECT_FALSE(reason.coarser);  // the row itself has none
-    const quality::Reason near = reason_of(model, view_from(201));
+    const choose::Reason near = reason_of(model, view_from(201));
     EXPECT_EQ(near.chosen.object, kBall);
     EXPECT_EQ(near.chosen.lod, 2u);
     ASSERT_TRUE(near.coarser);
     EXPECT_EQ(near.coarser->object, kPair);
     EXPECT_NEAR(near.coarser->error_px, 0.4 * 640 / 200, 1e-9);
-    const quality::Reason nearer = reason_of(model, view_from(101));
+    const choose::Reason nearer = reason_of(model, view_from(101));
     EXPECT_EQ(nearer.chosen.lod, 1u);
     ASSERT_TRUE(nearer.coarser);
     EXPECT_EQ(nearer.coarser->lod, 2u);
@@ -250,7 +249,7 @@ TEST(Why, FromInsideTheBoundTheDistanceIsTheNearClip) {
     EXPECT_EQ(reason_of(model, view).z, view.camera.near_clip);
     EXPECT_EQ(reason_of(model, view).chosen.lod, 0u);
     view.camera.position.x = std::nan("");
-    EXPECT_THROW(quality::choose(model, view), Error);
+    EXPECT_THROW(choose::choose(model, view), Error);
 }
 
 TEST(Criteria, FeatureIsTheShareOfThePictureThatItCovers) {
@@ -279,7 +278,7 @@ TEST(Criteria, DistanceServesTwiceAsFarForEachLevel) {
     summarize_assemblies(ball, bottom_up(ball));
     for (const auto& [threshold, lod] : {std::pair{101.0, 0u}, {99.0, 1u}, {49.0, 2u}}) {
         view.pixel_error = threshold;
-        EXPECT_EQ(quality::choose(ball, view).nodes[0].lod, lod);
+        EXPECT_EQ(choose::choose(ball, view).nodes[0].lod, lod);
     }
 }
 
@@ -294,6 +293,6 @@ TEST(Criteria, AreaServesFourTimesAsMuchForEachFinerLevel) {
     const double share = 4 / (10 * 5.625);  // of its box, 2 x 2 m
     for (const auto& [threshold, lod] : {std::pair{1.01, 2u}, {0.99, 1u}, {0.26, 1u}, {0.24, 0u}}) {
         view.pixel_error = threshold * share;
-        EXPECT_EQ(quality::choose(ball, view).nodes[0].lod, lod) << threshold;
+        EXPECT_EQ(choose::choose(ball, view).nodes[0].lod, lod) << threshold;
     }
 }

@@ -7,7 +7,7 @@
 #include "build/flatten.h"
 #include "build/hierarchy.h"
 #include "build/surroundings.h"
-#include "quality/cut.h"
+#include "choose/cut.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "segment/json.h"
@@ -468,9 +468,9 @@ TEST_F(Hierarchy, CutOfTheBuiltModelKeepsItsPromise) {
     view.camera.direction = {0, 1, 0};
     view.camera.right = {1, 0, 0};
     view.camera.up = {0, 0, 0.5625};
-    const quality::Cut fine = quality::choose(model, view);
+    const choose::Cut fine = choose::choose(model, view);
     view.pixel_error = 0;
-    const quality::Cut full = quality::choose(model, view);
+    const choose::Cut full = choose::choose(model, view);
     EXPECT_LE(fine.largest_error_px, 1);
     EXPECT_LT(fine.triangles * 4, full.triangles);
 }

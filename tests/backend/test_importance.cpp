@@ -3,8 +3,8 @@
 #include "backend/models.h"
 #include "base/files.h"
 #include "build/hierarchy.h"
-#include "quality/criterion.h"
-#include "quality/cut.h"
+#include "choose/criterion.h"
+#include "choose/cut.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "segment/store.h"
@@ -40,18 +40,18 @@ Placement& placement(Model& model, ObjectIndex group, size_t position) {
     return changed->placements[position];
 }
 
-quality::Cut cut_of(Model& model, const View& view) {
+choose::Cut cut_of(Model& model, const View& view) {
     summarize_assemblies(model, bottom_up(model));
-    return quality::choose(model, view);
+    return choose::choose(model, view);
 }
 
 /// Path and level of everything drawn, e.g. "pair 0/left 2, pair 1 1".
 std::string drawn(Model& model, const View& view) {
-    const quality::Cut cut = cut_of(model, view);
+    const choose::Cut cut = cut_of(model, view);
     std::string out;
     for (const uint32_t index : cut.chosen) {
         out += out.empty() ? "" : ", ";
-        out += quality::path_of(model, cut, index) + ' ' + std::to_string(cut.nodes[index].lod);
+        out += choose::path_of(model, cut, index) + ' ' + std::to_string(cut.nodes[index].lod);
     }
     return out;
 }
@@ -59,23 +59,23 @@ std::string drawn(Model& model, const View& view) {
 }  // namespace
 
 TEST(Importance, FactorsAreKeptWithinTheirRange) {
-    EXPECT_EQ(quality::total_refinement(1), 1);
-    EXPECT_EQ(quality::total_refinement(3.5), 3.5);
-    EXPECT_EQ(quality::total_refinement(1e9), 64);
-    EXPECT_EQ(quality::total_refinement(1e-9), 1.0 / 64);
-    EXPECT_EQ(quality::total_refinement(0), 1.0 / 64);
-    EXPECT_TRUE(std::isinf(quality::total_refinement(std::numeric_limits<double>::infinity())));
+    EXPECT_EQ(choose::total_refinement(1), 1);
+    EXPECT_EQ(choose::total_refinement(3.5), 3.5);
+    EXPECT_EQ(choose::total_refinement(1e9), 64);
+    EXPECT_EQ(choose::total_refinement(1e-9), 1.0 / 64);
+    EXPECT_EQ(choose::total_refinement(0), 1.0 / 64);
+    EXPECT_TRUE(std::isinf(choose::total_refinement(std::numeric_limits<double>::infinity())));
 }
 
 TEST(Importance, ErrorCountsSoManyTimes) {
     // .1 m is one pixel at 64 m; with importance 2 it is one and no more at 128 m.
     const View view = view_from(0);
-    EXPECT_TRUE(quality::good_enough(view, 0.1, 1, 64));
-    EXPECT_FALSE(quality::good_enough(view, 0.1, 1, 64, 1.001));
-    EXPECT_TRUE(quality::good_enough(view, 0.1, 1, 128, 2));
-    EXPECT_FALSE(quality::good_enough(view, 0.1, 1, 127.9, 2));
-    EXPECT_TRUE(quality::good_enough(view, 0.1, 1, 32, 0.5));
-    EXPECT_FALSE(quality::good_enough(view, 0, 1, 1e9, std::numeric_limits<double>::infinity()));
+    EXPECT_TRUE(choose::good_enough(view, 0.1, 1, 64));
+    EXPECT_FALSE(choose::good_enough(view, 0.1, 1, 64, 1.001));
+    EXPECT_TRUE(choose::good_enough(view, 0.1, 1, 128, 2));
+    EXPECT_FALSE(choose::good_enough(view, 0.1, 1, 127.9, 2));
+    EXPECT_TRUE(choose::good_enough(view, 0.1, 1, 32, 0.5));
+    EXPECT_FALSE(choose::good_enough(view, 0, 1, 1e9, std::numeric_limits<double>::infinity()));
 }
 
 TEST(Importance, WithoutDecisionsPairsAreDrawnAsOne) {
@@ -105,11 +105,11 @@ TEST(Importance, FactorsAlongAPathMultiply) {
     Model model = pairs();
     placement(model, model.root, 0).importance = 0.25;
     placement(model, kPair, 1).importance = 4;
-    const quality::Cut cut = cut_of(model, view_from(300));
+    const choose::Cut cut = cut_of(model, view_from(300));
     // In the first pair they cancel out.
     EXPECT_EQ(drawn(model, view_from(300)), "pair 0 1, pair 1/left 2, pair 1/right 1");
     for (const uint32_t index : cut.chosen) {
-        const std::string path = quality::path_of(model, cut, index);
+        const std::string path = choose::path_of(model, cut, index);
         const double wanted = path == "pair 0" ? 0.25 : path == "pair 1/left" ? 1 : 4;
         EXPECT_EQ(cut.nodes[index].importance, wanted) << path;
     }

@@ -6,8 +6,8 @@
 #include "build/flatten.h"
 #include "build/hierarchy.h"
 #include "build/surroundings.h"
+#include "choose/cut.h"
 #include "measure/deviation.h"
-#include "quality/cut.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST_F(Layers, StartLineOnATrackDoesNotVanishAtOnePixel) {
         }
         EXPECT_GE(white, 95) << "at " << pixel << " m";
     }
-    EXPECT_LE(quality::choose(model, from_above(0.2)).largest_error_px, 1);
+    EXPECT_LE(choose::choose(model, from_above(0.2)).largest_error_px, 1);
 }
 
 TEST_F(Layers, FlatThingIsAsWrongAsItIsOffWhereNothingLiesOnIt) {

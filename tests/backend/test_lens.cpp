@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards lenses (5.5.5, equation 5.18): their profile, what they touch, what they open and hide.
 #include "backend/bent.h"
-#include "quality/lens_field.h"
+#include "choose/lens_field.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ View through(const DetailLens& lens) {
 
 std::string refusal(const Model& model, const View& view) {
     try {
-        quality::choose(model, view);
+        choose::choose(model, view);
     } catch (const Error& error) {
         return error.what();
     }
@@ -42,35 +42,35 @@ TEST(Lens, NoneChangesNothing) {
 }
 
 TEST(Lens, ProfileIsTheStrengthInTheMiddleAndOneAtTheRim) {
-    EXPECT_DOUBLE_EQ(quality::lens_profile(4, 2, 1, 0), 4);
-    EXPECT_NEAR(quality::lens_profile(4, 2, 1, 1), 3.121320343559643, 1e-12);  // 1 + 3 / sqrt(2)
-    EXPECT_NEAR(quality::lens_profile(4, 2, 2, 1), 2.5, 1e-12);
-    EXPECT_NEAR(quality::lens_profile(4, 2, 1, 2 - 1e-9), 1, 1e-8);
-    EXPECT_EQ(quality::lens_profile(4, 2, 1, 2), 1);
-    EXPECT_EQ(quality::lens_profile(4, 2, 1, 1e9), 1);
-    EXPECT_EQ(quality::lens_profile(4, 2, 0, 1.999), 4);  // no fall-off: a hard rim
-    EXPECT_NEAR(quality::lens_profile(0.25, 2, 1, 1), 1 - 0.75 / std::sqrt(2.0), 1e-12);
-    EXPECT_EQ(quality::lens_profile(4, 0, 1, 0), 1);
+    EXPECT_DOUBLE_EQ(choose::lens_profile(4, 2, 1, 0), 4);
+    EXPECT_NEAR(choose::lens_profile(4, 2, 1, 1), 3.121320343559643, 1e-12);  // 1 + 3 / sqrt(2)
+    EXPECT_NEAR(choose::lens_profile(4, 2, 2, 1), 2.5, 1e-12);
+    EXPECT_NEAR(choose::lens_profile(4, 2, 1, 2 - 1e-9), 1, 1e-8);
+    EXPECT_EQ(choose::lens_profile(4, 2, 1, 2), 1);
+    EXPECT_EQ(choose::lens_profile(4, 2, 1, 1e9), 1);
+    EXPECT_EQ(choose::lens_profile(4, 2, 0, 1.999), 4);  // no fall-off: a hard rim
+    EXPECT_NEAR(choose::lens_profile(0.25, 2, 1, 1), 1 - 0.75 / std::sqrt(2.0), 1e-12);
+    EXPECT_EQ(choose::lens_profile(4, 0, 1, 0), 1);
 }
 
 TEST(Lens, ReachIsTheDistanceInItsOwnFrame) {
     const Bound five = ball({5, 0, 0}, 1);
     DetailLens sphere = lens(0, 2, 4);
-    EXPECT_DOUBLE_EQ(quality::reach(sphere, five).nearest, 4);
-    EXPECT_DOUBLE_EQ(quality::reach(sphere, five).farthest, 6);
+    EXPECT_DOUBLE_EQ(choose::reach(sphere, five).nearest, 4);
+    EXPECT_DOUBLE_EQ(choose::reach(sphere, five).farthest, 6);
     sphere.transform.linear = glm::dmat3(2.0);  // half as far
-    EXPECT_DOUBLE_EQ(quality::reach(sphere, five).nearest, 2);
-    EXPECT_DOUBLE_EQ(quality::reach(sphere, five).farthest, 3);
+    EXPECT_DOUBLE_EQ(choose::reach(sphere, five).nearest, 2);
+    EXPECT_DOUBLE_EQ(choose::reach(sphere, five).farthest, 3);
     sphere.transform.linear = glm::dmat3(-1.0);  // mirrored: no matter
-    EXPECT_DOUBLE_EQ(quality::reach(sphere, five).nearest, 4);
+    EXPECT_DOUBLE_EQ(choose::reach(sphere, five).nearest, 4);
     DetailLens box = lens(0, 2, 4);
     box.shape = LensShape::Box;
     const Bound corner = ball({5, 4, 0}, 1);
-    EXPECT_DOUBLE_EQ(quality::reach(box, corner).nearest, 4);  // the largest coordinate
-    EXPECT_DOUBLE_EQ(quality::reach(box, corner).farthest, 6);
+    EXPECT_DOUBLE_EQ(choose::reach(box, corner).nearest, 4);  // the largest coordinate
+    EXPECT_DOUBLE_EQ(choose::reach(box, corner).farthest, 6);
     box.transform.linear[0] = {10, 0, 0};  // ten times as long
-    EXPECT_DOUBLE_EQ(quality::reach(box, corner).nearest, 3);
-    EXPECT_DOUBLE_EQ(quality::reach(box, ball({0, 0, 0}, 1)).nearest, 0);
+    EXPECT_DOUBLE_EQ(choose::reach(box, corner).nearest, 3);
+    EXPECT_DOUBLE_EQ(choose::reach(box, ball({0, 0, 0}, 1)).nearest, 0);
 }
 
 TEST(Lens, ReachHoldsForEveryPointOfTheBound) {
@@ -86,7 +86,7 @@ TEST(Lens, ReachHoldsForEveryPointOfTheBound) {
             continue;
         const glm::dvec3 center = 3.0 * vector();
         const Bound bound = ball(center, 0.5);
-        const quality::LensReach found = quality::reach(made, bound);
+        const choose::LensReach found = choose::reach(made, bound);
         const glm::dmat3 inverse = glm::inverse(made.transform.linear);
         for (int point = 0; point < 8; ++point) {
             const glm::dvec3 at = center + 0.5 * glm::normalize(vector());
@@ -156,8 +156,8 @@ TEST(Lens, TogetherTheyStayWithinTheirRange) {
     View most = through(lens(0, 100, 64));
     view.modifiers.lenses[0].falloff = most.modifiers.lenses[0].falloff = 0;
     EXPECT_EQ(drawn(model, view), drawn(model, most));
-    const quality::Cut cut = quality::choose(model, view);
-    EXPECT_EQ(quality::why(model, view, cut, cut.chosen[0]).chosen.total, 64);
+    const choose::Cut cut = choose::choose(model, view);
+    EXPECT_EQ(choose::why(model, view, cut, cut.chosen[0]).chosen.total, 64);
 }
 
 TEST(Lens, ForAListRefinesNothingElse) {
@@ -241,12 +241,12 @@ TEST(Lens, AGroupCountsAtLeastAsMuchAsAnythingInIt) {
             made.falloff = 2 * any(random);
             view.modifiers.lenses.push_back(made);
         }
-        const quality::Cut cut = quality::choose(model, view);
-        const quality::Factors none;
+        const choose::Cut cut = choose::choose(model, view);
+        const choose::Factors none;
         for (const uint32_t index : cut.chosen) {
-            const quality::Node& node = cut.nodes[index];
-            const double own = quality::why(model, view, cut, index).factors.lenses;
-            const double above = quality::why(model, view, cut, node.parent).factors.lenses;
+            const choose::Node& node = cut.nodes[index];
+            const double own = choose::why(model, view, cut, index).factors.lenses;
+            const double above = choose::why(model, view, cut, node.parent).factors.lenses;
             EXPECT_LE(own, above * (1 + 1e-12));
         }
     }

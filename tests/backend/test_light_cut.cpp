@@ -2,14 +2,14 @@
 // Guards which lights light what: differences within Pixel Error, energy kept, finer never fewer.
 #include "base/parallel.h"
 #include "base/random.h"
-#include "quality/light_arrival.h"
-#include "quality/light_cut.h"
+#include "light/light_arrival.h"
+#include "light/light_cut.h"
 
 #include <gtest/gtest.h>
 #include <numeric>
 
 using namespace lodestone;
-using namespace lodestone::quality;
+using namespace lodestone::light;
 
 namespace {
 

@@ -2,8 +2,8 @@
 // Guards the tree of lamps: energy, what may be joined, walls, determinism, hostile numbers.
 #include "base/parallel.h"
 #include "base/random.h"
-#include "quality/light_arrival.h"
-#include "quality/light_tree.h"
+#include "light/light_arrival.h"
+#include "light/light_tree.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -11,7 +11,7 @@
 #include <set>
 
 using namespace lodestone;
-using namespace lodestone::quality;
+using namespace lodestone::light;
 
 namespace {
 

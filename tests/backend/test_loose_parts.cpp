@@ -4,8 +4,8 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "build/hierarchy.h"
+#include "choose/cut.h"
 #include "group/loose_parts.h"
-#include "quality/cut.h"
 #include "scratch.h"
 
 #include <algorithm>
@@ -337,9 +337,9 @@ TEST(LooseParts, WhatIsNearDoesNotForceWhatIsFarToBeFine) {
     view.width = 640;
     view.height = 320;
     view.pixel_error = 0;
-    EXPECT_EQ(quality::choose(stored, view).triangles, totals(whole).triangles_placed);
+    EXPECT_EQ(choose::choose(stored, view).triangles, totals(whole).triangles_placed);
     view.pixel_error = 1;
-    EXPECT_LT(2 * quality::choose(stored, view).triangles, quality::choose(whole, view).triangles);
+    EXPECT_LT(2 * choose::choose(stored, view).triangles, choose::choose(whole, view).triangles);
     const build::Report again =
         build::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
     EXPECT_EQ(again.built, 0u);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what the picture does not show: how coarse its shadows and its images allow it to be.
 #include "backend/bent.h"
-#include "quality/criterion.h"
-#include "quality/off_screen.h"
+#include "choose/criterion.h"
+#include "choose/off_screen.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 using namespace lodestone;
 using bent::ball;
 using bent::drawn;
+using choose::OffScreenField;
+using choose::Pyramid;
 using models::add_group;
 using models::add_leaf;
 using models::moved;
 using models::view_from;
-using quality::OffScreenField;
-using quality::Pyramid;
 
 namespace {
 
@@ -194,11 +194,11 @@ TEST(OffScreen, WhatAMirrorShowsIsAsFarAsTheWayToIt) {
     EXPECT_NEAR(coarser(metal), way / 19, 0.06 * way / 19);
     Material lacquer;
     lacquer.roughness = 0;
-    EXPECT_NEAR(coarser(lacquer) / coarser(metal), 1 / std::sqrt(quality::imaged(lacquer)), 1e-9);
+    EXPECT_NEAR(coarser(lacquer) / coarser(metal), 1 / std::sqrt(choose::imaged(lacquer)), 1e-9);
     Material rough;
     EXPECT_EQ(coarser(rough), kMostImportance);
-    EXPECT_EQ(quality::imaged(rough), 0);
-    EXPECT_EQ(quality::imaged(metal), 1);
+    EXPECT_EQ(choose::imaged(rough), 0);
+    EXPECT_EQ(choose::imaged(metal), 1);
 }
 
 TEST(OffScreen, APictureOfTheSkyLimitsIt) {
@@ -217,10 +217,9 @@ TEST(OffScreen, CutsAreCoarserOutsideAndTheSameInside) {
     const std::string coarse = drawn(model, view);
     EXPECT_NE(coarse, full);
     EXPECT_EQ(coarse.substr(0, coarse.find(", pair 1")), full.substr(0, full.find(", pair 1")));
-    const quality::Cut cut = quality::choose(model, view);
+    const choose::Cut cut = choose::choose(model, view);
     EXPECT_LE(cut.largest_error_px, view.pixel_error);
-    EXPECT_EQ(quality::why(model, view, cut, cut.chosen.back()).factors.off_screen,
-              kMostImportance);
+    EXPECT_EQ(choose::why(model, view, cut, cut.chosen.back()).factors.off_screen, kMostImportance);
     view.pixel_error = 0;
     const std::string originals = drawn(model, view);
     view.modifiers.off_screen = OffScreen::Full;

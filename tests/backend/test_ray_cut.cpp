@@ -2,7 +2,7 @@
 // Guards what classes of rays meet: nothing a picture can tell, nothing that shadows its own
 // original.
 #include "backend/bent.h"
-#include "quality/ray_cut.h"
+#include "choose/ray_class/ray_cut.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -11,13 +11,13 @@
 
 using namespace lodestone;
 using bent::kBall;
+using choose::Cut;
+using choose::RayCut;
+using choose::RayState;
 using models::add_group;
 using models::add_leaf;
 using models::moved;
 using models::view_from;
-using quality::Cut;
-using quality::RayCut;
-using quality::RayState;
 
 namespace {
 
@@ -71,8 +71,8 @@ View view_of(RayMask rays, double distance = 20, double pixel_error = 1) {
 }
 
 RayCut shadow_cut(const Model& model, const View& view) {
-    const Cut cut = quality::choose(model, view);
-    std::vector<RayCut> rays = quality::choose_rays(model, view, cut, quality::shape_of);
+    const Cut cut = choose::choose(model, view);
+    std::vector<RayCut> rays = choose::choose_rays(model, view, cut, choose::shape_of);
     EXPECT_EQ(rays.size(), 1u);
     EXPECT_EQ(rays.at(0).states.size(), cut.chosen.size());
     return rays.at(0);
@@ -112,9 +112,9 @@ Affine wall() {  // a quad of 1 m becomes 16 x 8 m, upright, 6 m behind the ball
 TEST(RayCut, NothingIsAskedForByDefault) {
     const Model model = floating();
     const View view = view_of(0);
-    const Cut cut = quality::choose(model, view);
-    EXPECT_TRUE(quality::choose_rays(model, view, cut, quality::shape_of).empty());
-    const quality::Resident resident = quality::resident(model, cut, {});
+    const Cut cut = choose::choose(model, view);
+    EXPECT_TRUE(choose::choose_rays(model, view, cut, choose::shape_of).empty());
+    const choose::Resident resident = choose::resident(model, cut, {});
     EXPECT_EQ(resident.triangles, cut.triangles);
     EXPECT_EQ(resident.bytes, cut.bytes);
 }
@@ -122,7 +122,7 @@ TEST(RayCut, NothingIsAskedForByDefault) {
 TEST(RayCut, AFloatingBallThrowsTheShadowOfAnEllipsoidInsideIt) {
     const Model model = floating();
     const View view = view_of(kShadowRays);
-    const Cut cut = quality::choose(model, view);
+    const Cut cut = choose::choose(model, view);
     const RayCut rays = shadow_cut(model, view);
     ASSERT_EQ(rays.own.size(), 1u);
     EXPECT_EQ(rays.states, (std::vector<RayState>{RayState::Own, RayState::Need}));
@@ -134,7 +134,7 @@ TEST(RayCut, AFloatingBallThrowsTheShadowOfAnEllipsoidInsideIt) {
     EXPECT_EQ(rays.triangles, cut.triangles - 1280);
     EXPECT_EQ(rays.met, 2u);
     // Both are in memory
-    const quality::Resident both = quality::resident(model, cut, {rays});
+    const choose::Resident both = choose::resident(model, cut, {rays});
     EXPECT_EQ(both.triangles, cut.triangles);
     EXPECT_EQ(both.bytes, cut.bytes + kBytesPerOccurrence + kBytesPerPrimitive);
 }
@@ -249,7 +249,7 @@ TEST(RayCut, NoSampledEdgeOfAShadowIsFartherOffThanPixelError) {
         const glm::dvec3 light(8 * any(random), 8 * any(random), 22 + 8 * any(random));
         model.lights = {lamp(light)};
         const View view = view_of(kShadowRays, 60 + 30 * any(random), 1 + 0.5 * any(random));
-        const Cut cut = quality::choose(model, view);
+        const Cut cut = choose::choose(model, view);
         const RayCut rays = shadow_cut(model, view);
         if (rays.own.empty() || cut.nodes[rays.own[0].node].lod != 0)
             continue;
@@ -290,7 +290,7 @@ TEST(RayCut, FinerPixelErrorsNeverGiveCoarserShadows) {
     for (int step = 0; step < 31; ++step) {
         const double error = 0.0625 * std::pow(1.25, step);
         const RayCut rays = shadow_cut(model, view_of(kShadowRays, 20, error));
-        if (own && quality::choose(model, view_of(0, 20, error)).nodes[1].lod == 0) {
+        if (own && choose::choose(model, view_of(0, 20, error)).nodes[1].lod == 0) {
             EXPECT_EQ(rays.states.at(0), RayState::Own) << error;
         }
         own = own || rays.states.at(0) == RayState::Own;
@@ -309,11 +309,11 @@ TEST(RayCut, WhatThePictureDoesNotShowThrowsShadowsByItsGroup) {
     model.lights = {sun};
     for (Material& material : model.materials)
         material = rough();
-    const Cut cut = quality::choose(model, view);
+    const Cut cut = choose::choose(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
     const RayCut rays = shadow_cut(model, view);
     EXPECT_EQ(rays.own.size(), 2u);
-    for (const quality::RayChoice& own : rays.own)
+    for (const choose::RayChoice& own : rays.own)
         EXPECT_TRUE(cut.nodes[own.node].opened);
     EXPECT_EQ(rays.states, std::vector<RayState>(4, RayState::Group));
     EXPECT_EQ(rays.triangles, 24u);
@@ -341,10 +341,10 @@ TEST(RayCut, WhatOnlyAMirrorShowsIsReplacedForAllRaysTogether) {
     // A shadow on itself would be seen in the mirror
     EXPECT_EQ(shadow_cut(model, view_of(kShadowRays)).states.at(3), RayState::Need);
     View view = view_of(kShadowRays | kReflectionRays, 20, 1);
-    const Cut cut = quality::choose(model, view);
+    const Cut cut = choose::choose(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
     EXPECT_EQ(cut.nodes[cut.chosen[3]].lod, 0u);
-    const auto rays = quality::choose_rays(model, view, cut, quality::shape_of);
+    const auto rays = choose::choose_rays(model, view, cut, choose::shape_of);
     ASSERT_EQ(rays.size(), 2u);
     for (const RayCut& own : rays) {
         ASSERT_EQ(own.states.at(3), RayState::Own);
@@ -353,14 +353,14 @@ TEST(RayCut, WhatOnlyAMirrorShowsIsReplacedForAllRaysTogether) {
         EXPECT_LE(own.own.back().error_px, 1);
     }
     // Its original is in memory no more
-    const quality::Resident all = quality::resident(model, cut, rays);
+    const choose::Resident all = choose::resident(model, cut, rays);
     EXPECT_EQ(all.triangles, cut.triangles - 1280);
     // Curved one way or another, it may show it as large as the eye would see it
     Model bent = mirrored(shapes::terrain(8), wall());
     bent.objects[kBall].representations[1].summary.error = 0.03;
     bent.objects[bent.root].representations[0].payload = std::make_shared<const Assembly>(placed);
     summarize_assemblies(bent, bottom_up(bent));
-    for (const RayCut& own : quality::choose_rays(bent, view, cut, quality::shape_of))
+    for (const RayCut& own : choose::choose_rays(bent, view, cut, choose::shape_of))
         EXPECT_FALSE(own.states.at(3) == RayState::Own && own.own.back().alone);
 }
 
@@ -375,7 +375,7 @@ TEST(RayCut, AMirrorShowsAnEllipsoidAroundTheBall) {
     const RayCut rays = shadow_cut(model, view);
     ASSERT_EQ(rays.own.size(), 1u);
     EXPECT_GE(rays.own[0].scale, 1);
-    EXPECT_EQ(quality::choose(model, view).nodes[1].lod, 0u);
+    EXPECT_EQ(choose::choose(model, view).nodes[1].lod, 0u);
     // The mirror shows itself as it is
     EXPECT_EQ(rays.states.at(2), RayState::Need);
 }
@@ -414,8 +414,8 @@ TEST(RayCut, NonsenseIsTheCamerasOrRefused) {
     Model model = floating();
     View view = view_of(kShadowRays | kReflectionRays);
     view.camera.position = {0, 0, 5};  // inside the ball
-    const Cut cut = quality::choose(model, view);
-    for (const RayCut& rays : quality::choose_rays(model, view, cut, quality::shape_of))
+    const Cut cut = choose::choose(model, view);
+    for (const RayCut& rays : choose::choose_rays(model, view, cut, choose::shape_of))
         EXPECT_TRUE(rays.own.empty());
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     for (const glm::dvec3& nowhere : {glm::dvec3(kNan), glm::dvec3(1e300), glm::dvec3(0.0)}) {

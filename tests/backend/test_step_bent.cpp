@@ -159,8 +159,8 @@ TEST(Step, IsTheCutMadeAnewWhileALensThatHidesMoves) {
 TEST(Step, AMovedLensIsLookedAtWhereItIsAndWas) {
     // From 300 m each of 20 pairs is drawn as one; a lens opens the one that it lies on.
     const Model model = bent::pairs(40);
-    quality::Stepper stepper(table_of(model));
-    quality::Cut cut;
+    choose::Stepper stepper(table_of(model));
+    choose::Cut cut;
     View view = models::view_from(300);
     view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
     stepper.step(view, cut);
@@ -176,17 +176,17 @@ TEST(Step, AMovedLensIsLookedAtWhereItIsAndWas) {
 TEST(Step, RefusesALensThatMakesNoSenseAndKeepsTheCut) {
     const Model model = bent::pairs(8);
     const auto table = table_of(model);
-    quality::Stepper stepper(table);
-    quality::Cut cut;
+    choose::Stepper stepper(table);
+    choose::Cut cut;
     View view = models::view_from(300);
     view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
     stepper.step(view, cut);
-    const quality::Cut before = cut;
+    const choose::Cut before = cut;
     View bad = view;
     bad.modifiers.lenses[0].strength = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(stepper.step(bad, cut), Error);
     expect_same(cut, before);
     view.modifiers.lenses[0].strength = 2;
     stepper.step(view, cut);
-    expect_same(cut, quality::choose(*table, view));
+    expect_same(cut, choose::choose(*table, view));
 }

@@ -2,7 +2,7 @@
 // Guards what viewers show of a cut: all of it, within the triangles they can draw.
 #include "backend/models.h"
 #include "base/parallel.h"
-#include "quality/surface.h"
+#include "view/viewer_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ Model balls() {
     return model;
 }
 
-quality::Surface all_of(const Model& model, const quality::Cut& cut, uint64_t most) {
-    return quality::surface_of(model, cut, quality::surface_levels(model, cut, most));
+view::Surface all_of(const Model& model, const choose::Cut& cut, uint64_t most) {
+    return view::surface_of(model, cut, view::surface_levels(model, cut, most));
 }
 
-Box3 box_of(const quality::Surface& surface) {
+Box3 box_of(const view::Surface& surface) {
     Box3 box;
     for (const glm::vec3& corner : surface.corners)
         box.add(glm::dvec3(corner));
@@ -38,15 +38,15 @@ TEST(Surface, EmptyCutHasNone) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    const quality::Surface surface = all_of(model, quality::choose(model, View{}), 1000);
+    const view::Surface surface = all_of(model, choose::choose(model, View{}), 1000);
     EXPECT_TRUE(surface.corners.empty());
     EXPECT_TRUE(surface.owners.empty());
 }
 
 TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
     const Model model = balls();
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const quality::Surface surface = all_of(model, cut, uint64_t{8} * 1280);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const view::Surface surface = all_of(model, cut, uint64_t{8} * 1280);
     EXPECT_EQ(surface.owners.size(), uint64_t{8} * 1280);
     EXPECT_EQ(surface.corners.size(), 3 * surface.owners.size());
     EXPECT_EQ(surface.owners.front(), 0u);
@@ -58,10 +58,10 @@ TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
 
 TEST(Surface, FewerTrianglesShowCoarserLevelsAndThenBoxes) {
     const Model model = balls();
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
     EXPECT_EQ(all_of(model, cut, uint64_t{8} * 1280 - 1).owners.size(), uint64_t{8} * 80);
     EXPECT_EQ(all_of(model, cut, uint64_t{8} * 79).owners.size(), uint64_t{8} * 20);
-    const quality::Surface boxes = all_of(model, cut, 1);
+    const view::Surface boxes = all_of(model, cut, 1);
     EXPECT_EQ(boxes.owners.size(), uint64_t{8} * 12);
     EXPECT_NEAR(box_of(boxes).high.x, 22, 1e-5);
 }
@@ -72,19 +72,19 @@ TEST(Surface, WhatCamerasDoNotSeeIsLeftOut) {
     row.placements[0].hidden = kCameraRays;
     model.objects[model.root].representations[0].payload =
         std::make_shared<const Assembly>(std::move(row));
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
     EXPECT_EQ(cut.chosen.size(), 8u);
-    const quality::Surface surface = all_of(model, cut, uint64_t{8} * 80);
+    const view::Surface surface = all_of(model, cut, uint64_t{8} * 80);
     EXPECT_EQ(surface.owners.size(), uint64_t{6} * 80);
     EXPECT_EQ(surface.owners.front(), 2u);
 }
 
 TEST(Surface, OneThreadAndManyGiveTheSame) {
     const Model model = balls();
-    const quality::Cut cut = quality::choose(model, view_from(1, 0));
-    const quality::Surface many = all_of(model, cut, 4000);
+    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const view::Surface many = all_of(model, cut, 4000);
     const ThreadLimit limit(1);
-    const quality::Surface one = all_of(model, cut, 4000);
+    const view::Surface one = all_of(model, cut, 4000);
     EXPECT_EQ(one.corners, many.corners);
     EXPECT_EQ(one.owners, many.owners);
 }
@@ -94,9 +94,9 @@ TEST(Surface, ShadesTellSidesApartAndAreTheSameOnBoth) {
     const glm::vec3 turned[] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     const glm::vec3 wall[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     const glm::vec3 line[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    EXPECT_DOUBLE_EQ(quality::shade_of(floor), quality::shade_of(turned));
-    EXPECT_GT(quality::shade_of(floor), 0.9);
-    EXPECT_LT(quality::shade_of(wall), 0.7);
-    EXPECT_GE(quality::shade_of(wall), 0.55);
-    EXPECT_EQ(quality::shade_of(line), 1);
+    EXPECT_DOUBLE_EQ(view::shade_of(floor), view::shade_of(turned));
+    EXPECT_GT(view::shade_of(floor), 0.9);
+    EXPECT_LT(view::shade_of(wall), 0.7);
+    EXPECT_GE(view::shade_of(wall), 0.55);
+    EXPECT_EQ(view::shade_of(line), 1);
 }

@@ -3,8 +3,8 @@
 // from any thread.
 #include "backend/forest.h"
 #include "base/parallel.h"
-#include "quality/criterion.h"
-#include "quality/table.h"
+#include "choose/choice_table.h"
+#include "choose/criterion.h"
 
 using namespace lodestone;
 using forest::expect_same;
@@ -13,17 +13,17 @@ using forest::Forest;
 namespace {
 
 /// A group that has a level which would do.
-bool opened_though_good(const Model& model, const View& view, const quality::Cut& cut,
+bool opened_though_good(const Model& model, const View& view, const choose::Cut& cut,
                         uint32_t index) {
-    const quality::Node& node = cut.nodes[index];
+    const choose::Node& node = cut.nodes[index];
     if (!node.opened)
         return false;
-    const quality::Reason reason = quality::why(model, view, cut, index);
+    const choose::Reason reason = choose::why(model, view, cut, index);
     const Object& object = model.objects[node.object];
     for (size_t lod = 1; lod < object.representations.size(); ++lod) {
         if (lod <= node.coarsest &&
-            quality::good_enough(view, object.representations[lod].summary.error, reason.stretch,
-                                 reason.z, reason.chosen.total))
+            choose::good_enough(view, object.representations[lod].summary.error, reason.stretch,
+                                reason.z, reason.chosen.total))
             return true;
     }
     return false;
@@ -35,20 +35,20 @@ TEST(Table, OfAnEmptyGroupHasOneRow) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
+    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
     EXPECT_EQ(table.size(), 1u);
-    EXPECT_TRUE(quality::choose(table, View{}).chosen.empty());
+    EXPECT_TRUE(choose::choose(table, View{}).chosen.empty());
 }
 
 TEST(Table, KeepsSiblingsBesideEachOther) {
     const Model model = bent::pairs(8);
-    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
+    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
     EXPECT_EQ(table.size(), 3u);  // row, pair, ball: what is shared is there once
-    const quality::TableObject& row = table.object(table.find(model.root));
+    const choose::TableObject& row = table.object(table.find(model.root));
     EXPECT_EQ(row.child_count, 4u);
     EXPECT_EQ(table.child(row.first_child + 1).offset.x, 6);
-    EXPECT_EQ(table.child(row.first_child + 1).linear, quality::kUnturned);
-    const quality::TableRow& ball = table.row(table.find(bent::kBall));
+    EXPECT_EQ(table.child(row.first_child + 1).linear, choose::kUnturned);
+    const choose::TableRow& ball = table.row(table.find(bent::kBall));
     ASSERT_EQ(ball.level_count, 3u);
     EXPECT_EQ(table.level(ball.first_level + 1).error, 0.1);
     EXPECT_EQ(table.level(ball.first_level + 1).triangles, 80u);
@@ -61,7 +61,7 @@ TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
     model.objects[0].representations[0].summary.bound.center += glm::dvec3(0.1, -0.0, 0.3);
     model.objects[1].demand = 3;
     model.objects[2].representations[0].summary.bound = {};
-    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
+    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
     size_t wishes = 0;
     for (uint32_t row = 0; row < table.size(); ++row) {
         const Object& object = model.objects[table.object(row).object];
@@ -73,8 +73,8 @@ TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
         EXPECT_EQ(table.object(row).demand, object.demand);
         for (uint32_t i = 0; i < table.object(row).child_count; ++i) {
             const Placement& placed = object.representations[0].assembly().placements[i];
-            const quality::TableChild& child = table.child(table.object(row).first_child + i);
-            const quality::TableWish& wish = table.wish(child.wish);
+            const choose::TableChild& child = table.child(table.object(row).first_child + i);
+            const choose::TableWish& wish = table.wish(child.wish);
             const Object& below = model.objects[placed.object];
             EXPECT_EQ(child.object, placed.object);
             EXPECT_EQ(child.offset, placed.transform.offset);
@@ -100,8 +100,8 @@ TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
     models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));
     models::add_level(model, bent::kPair, 0.15, shapes::sphere(1, 1));
     summarize_assemblies(model, bottom_up(model));
-    const quality::Table table = quality::Table::whole(model, model.root, kAllKinds);
-    const quality::TableRow& pair = table.row(table.find(bent::kPair));
+    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
+    const choose::TableRow& pair = table.row(table.find(bent::kPair));
     EXPECT_EQ(table.level(pair.first_level).opens_from, 0.2);
     EXPECT_EQ(bent::drawn(model, models::view_from(1 + 0.15 * 640 + 0.1)), "pair 0 1");
     EXPECT_EQ(bent::drawn(model, models::view_from(1 + 0.2 * 640 - 0.1)), "pair 0 1");
@@ -127,12 +127,12 @@ TEST(Table, ChangesNoCutWhetherWholeOrMadeOnTheWay) {
     size_t openings = 0;
     for (uint32_t seed = 0; seed < 40; ++seed) {
         Forest forest(seed);
-        const quality::Table table =
-            quality::Table::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::Table table =
+            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
         for (int i = 0; i < 20; ++i) {
             const View view = forest.view();
-            const quality::Cut cut = quality::choose(table, view);
-            expect_same(cut, quality::choose(forest.model, view));
+            const choose::Cut cut = choose::choose(table, view);
+            expect_same(cut, choose::choose(forest.model, view));
             for (uint32_t at = 0; at < cut.nodes.size(); ++at)
                 openings += opened_though_good(forest.model, view, cut, at) ? 1 : 0;
         }
@@ -146,30 +146,30 @@ TEST(Table, NothingIsOpenedInVain) {
         const Model& model = forest.model;
         for (int i = 0; i < 20; ++i) {
             const View view = forest.view();
-            const quality::Cut cut = quality::choose(model, view);
+            const choose::Cut cut = choose::choose(model, view);
             std::vector<uint64_t> below(cut.nodes.size(), 0);
             std::vector<uint64_t> children(cut.nodes.size(), 0);
             for (size_t at = cut.nodes.size(); at-- > 0;) {
-                const quality::Node& node = cut.nodes[at];
+                const choose::Node& node = cut.nodes[at];
                 const Object& object = model.objects[node.object];
                 if (!node.opened)
                     below[at] =
                         object.representations[node.lod].summary.cost.bytes + kBytesPerOccurrence;
                 const auto index = static_cast<uint32_t>(at);
                 if (node.opened) {
-                    const quality::Reason reason = quality::why(model, view, cut, index);
+                    const choose::Reason reason = choose::why(model, view, cut, index);
                     for (size_t lod = object.representations.size(); lod-- > 1;) {
                         const Summary& summary = object.representations[lod].summary;
                         if (lod > node.coarsest ||
-                            !quality::good_enough(view, summary.error, reason.stretch, reason.z,
-                                                  reason.chosen.total))
+                            !choose::good_enough(view, summary.error, reason.stretch, reason.z,
+                                                 reason.chosen.total))
                             continue;
                         EXPECT_GT(children[at], 0u);
                         EXPECT_LT(below[at], summary.cost.bytes + kBytesPerOccurrence);
                         break;
                     }
                 }
-                if (node.parent != quality::kNoParent) {
+                if (node.parent != choose::kNoParent) {
                     below[node.parent] += below[at];
                     ++children[node.parent];
                 }
@@ -181,13 +181,13 @@ TEST(Table, NothingIsOpenedInVain) {
 TEST(Table, NoChoiceAsksForMoreThanThePixelError) {
     for (uint32_t seed = 200; seed < 220; ++seed) {
         Forest forest(seed);
-        const quality::Table table =
-            quality::Table::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::Table table =
+            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
         View view = forest.view();
         for (view.pixel_error = 0.1; view.pixel_error < 64; view.pixel_error *= 1.5) {
-            const quality::Cut cut = quality::choose(table, view);
+            const choose::Cut cut = choose::choose(table, view);
             for (const uint32_t node : cut.chosen) {
-                const quality::Reason reason = quality::why(forest.model, view, cut, node);
+                const choose::Reason reason = choose::why(forest.model, view, cut, node);
                 EXPECT_LE(reason.chosen.error_px * reason.chosen.total,
                           view.pixel_error * (1 + 1e-12));
             }
@@ -207,13 +207,13 @@ TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
         view.modifiers.when_dark = view.modifiers.when_moving = true;
         view.modifiers.closing = view.camera;
         view.modifiers.closing->position.x += 1;
-        const quality::Table table =
-            quality::Table::whole(forest.model, forest.model.root, kAllKinds);
-        const quality::Cut cut = quality::choose(table, view);
+        const choose::Table table =
+            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::Cut cut = choose::choose(table, view);
         for (const uint32_t index : cut.chosen) {
-            const quality::Reason reason = quality::why(forest.model, view, cut, index);
-            const quality::Node& node = cut.nodes[index];
-            EXPECT_EQ(reason.chosen.error_px, quality::error_on_screen(table, view, cut, node));
+            const choose::Reason reason = choose::why(forest.model, view, cut, index);
+            const choose::Node& node = cut.nodes[index];
+            EXPECT_EQ(reason.chosen.error_px, choose::error_on_screen(table, view, cut, node));
             EXPECT_FALSE(reason.chosen.error_px * reason.chosen.total >
                          view.pixel_error * (1 + 1e-12));
             EXPECT_GE(reason.chosen.total, 1.0 / 64);
@@ -223,12 +223,12 @@ TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
 
 TEST(Table, IsSafeFromManyThreads) {
     Forest forest(7);
-    const quality::Table table = quality::Table::whole(forest.model, forest.model.root, kAllKinds);
+    const choose::Table table = choose::Table::whole(forest.model, forest.model.root, kAllKinds);
     std::vector<View> views(32);
     for (View& view : views)
         view = forest.view();
-    std::vector<quality::Cut> cuts(views.size());
-    parallel_for(views.size(), [&](size_t i) { cuts[i] = quality::choose(table, views[i]); });
+    std::vector<choose::Cut> cuts(views.size());
+    parallel_for(views.size(), [&](size_t i) { cuts[i] = choose::choose(table, views[i]); });
     for (size_t i = 0; i < views.size(); ++i)
-        expect_same(cuts[i], quality::choose(table, views[i]));
+        expect_same(cuts[i], choose::choose(table, views[i]));
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "backend/forest.h"
-#include "quality/ray_cut.h"
-#include "quality/step.h"
+#include "choose/follow/cut_stepper.h"
+#include "choose/ray_class/ray_cut.h"
 
 #include <functional>
 #include <map>
@@ -12,9 +12,9 @@
 
 namespace lodestone::forest {
 
-inline std::shared_ptr<const quality::Table> table_of(const Model& model) {
-    return std::make_shared<const quality::Table>(
-        quality::Table::whole(model, model.root, kAllKinds));
+inline std::shared_ptr<const choose::Table> table_of(const Model& model) {
+    return std::make_shared<const choose::Table>(
+        choose::Table::whole(model, model.root, kAllKinds));
 }
 
 /// A camera that is turned around the vertical: its pixels differ in the last bits.
@@ -26,10 +26,10 @@ inline void turn(View& view, double angle) {
 }
 
 /// What ray classes meet is the same; returns how much of it is their own.
-inline size_t expect_same_rays(const Model& model, const View& view, const quality::Cut& a,
-                               const quality::Cut& b, const quality::ShapeOf& shape_of) {
-    const auto rays = quality::choose_rays(model, view, a, shape_of);
-    const auto anew = quality::choose_rays(model, view, b, shape_of);
+inline size_t expect_same_rays(const Model& model, const View& view, const choose::Cut& a,
+                               const choose::Cut& b, const choose::ShapeOf& shape_of) {
+    const auto rays = choose::choose_rays(model, view, a, shape_of);
+    const auto anew = choose::choose_rays(model, view, b, shape_of);
     size_t own = 0;
     EXPECT_EQ(rays.size(), anew.size());
     for (size_t i = 0; i < std::min(rays.size(), anew.size()); ++i) {
@@ -41,8 +41,8 @@ inline size_t expect_same_rays(const Model& model, const View& view, const quali
         EXPECT_EQ(rays[i].largest_error_px, anew[i].largest_error_px);
         EXPECT_EQ(rays[i].own.size(), anew[i].own.size());
         for (size_t k = 0; k < std::min(rays[i].own.size(), anew[i].own.size()); ++k) {
-            const quality::RayChoice& one = rays[i].own[k];
-            const quality::RayChoice& other = anew[i].own[k];
+            const choose::RayChoice& one = rays[i].own[k];
+            const choose::RayChoice& other = anew[i].own[k];
             EXPECT_EQ(std::tie(one.node, one.lod, one.scale, one.error, one.error_px, one.soft,
                                one.alone),
                       std::tie(other.node, other.lod, other.scale, other.error, other.error_px,
@@ -54,14 +54,14 @@ inline size_t expect_same_rays(const Model& model, const View& view, const quali
 }
 
 /// Each mesh and solid is measured once.
-inline quality::ShapeOf measured_once() {
+inline choose::ShapeOf measured_once() {
     using Key = std::pair<const Representation*, const Representation*>;
-    auto known = std::make_shared<std::map<Key, quality::Shape>>();
+    auto known = std::make_shared<std::map<Key, choose::Shape>>();
     return [known](const Representation& mesh, const Representation* solid) {
         const auto found = known->find({&mesh, solid});
         if (found != known->end())
             return found->second;
-        return known->emplace(Key{&mesh, solid}, quality::shape_of(mesh, solid)).first->second;
+        return known->emplace(Key{&mesh, solid}, choose::shape_of(mesh, solid)).first->second;
     };
 }
 
@@ -76,15 +76,15 @@ inline Walked walk(
     Forest& forest, View view, int steps, const std::function<void(View&)>& change = [](View&) {}) {
     Walked walked;
     const auto table = table_of(forest.model);
-    const quality::ShapeOf shape_of = measured_once();
-    quality::Stepper stepper(table);
-    quality::Cut cut;
+    const choose::ShapeOf shape_of = measured_once();
+    choose::Stepper stepper(table);
+    choose::Cut cut;
     double looked = 0;
     double all = 0;
     size_t most = 0;
     for (int step = 0; step < steps; ++step) {
         stepper.step(view, cut);
-        const quality::Cut anew = quality::choose(*table, view);
+        const choose::Cut anew = choose::choose(*table, view);
         expect_same(cut, anew);
         if (view.modifiers.ray_classes != 0)
             walked.own += expect_same_rays(forest.model, view, cut, anew, shape_of);

@@ -9,8 +9,8 @@
 // turns with it, each the mean of 50 steps, least / median / most of five walks.
 #include "backend/models.h"
 #include "base/clock.h"
-#include "quality/budget.h"
-#include "quality/step.h"
+#include "choose/cut_budget.h"
+#include "choose/follow/cut_stepper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,10 +91,10 @@ void print_times(int runs, double unit, const Run& run) {
 
 /// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the
 /// camera.
-void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, double metres,
+void bench_steps(const std::shared_ptr<const choose::Table>& table, View view, double metres,
                  const char* what, const char* how, bool lenses_move = false) {
-    quality::Stepper stepper(table);
-    quality::Cut cut;
+    choose::Stepper stepper(table);
+    choose::Cut cut;
     stepper.step(view, cut);
     std::vector<double> steps;
     std::vector<double> wholes;
@@ -118,7 +118,7 @@ void bench_steps(const std::shared_ptr<const quality::Table>& table, View view, 
             const double start = cpu_seconds();
             stepper.step(view, cut);
             const double middle = cpu_seconds();
-            const size_t chosen = quality::choose(*table, view).chosen.size();
+            const size_t chosen = choose::choose(*table, view).chosen.size();
             whole_s += cpu_seconds() - middle;
             step_s += middle - start;
             looked += static_cast<double>(stepper.looked_at());
@@ -149,23 +149,23 @@ void bench(const char* what, int own) {
     model.root = plain(model, house, kDepth, own, shared);
     summarize_assemblies(model, bottom_up(model));
     const auto kept =
-        std::make_shared<const quality::Table>(quality::Table::whole(model, model.root, kAllKinds));
-    const quality::Table& table = *kept;
+        std::make_shared<const choose::Table>(choose::Table::whole(model, model.root, kAllKinds));
+    const choose::Table& table = *kept;
     double fine = 0;
     double coarse = 1000;
     for (int i = 0; i < 40; ++i) {
         const double middle = (fine + coarse) / 2;
-        const size_t chosen = quality::choose(table, view_of(middle)).chosen.size();
+        const size_t chosen = choose::choose(table, view_of(middle)).chosen.size();
         (chosen > kWanted ? fine : coarse) = middle;
     }
     View view = view_of(coarse);
     const auto row = [&](const char* how) {
-        const quality::Cut cut = quality::choose(table, view);
+        const choose::Cut cut = choose::choose(table, view);
         const double visits = static_cast<double>(cut.nodes.size());
         std::printf("| %s, %s | %zu | %zu | %zu |", what, how, model.objects.size(),
                     cut.nodes.size(), cut.chosen.size());
         for (const double unit : {1e9 / visits, 1e3})
-            print_times(kCuts, unit, [&] { quality::choose(table, view); });
+            print_times(kCuts, unit, [&] { choose::choose(table, view); });
         std::printf("\n");
     };
     row("plain");
@@ -176,13 +176,13 @@ void bench(const char* what, int own) {
     view.modifiers.lenses = {lens};
     row("one lens");
     view.modifiers.lenses.clear();
-    const quality::Cut cut = quality::choose(table, view);
+    const choose::Cut cut = choose::choose(table, view);
     std::printf("| %s, table | %zu | | | |", what, model.objects.size());
-    print_times(5, 1e3, [&] { quality::Table::whole(model, model.root, kAllKinds); });
+    print_times(5, 1e3, [&] { choose::Table::whole(model, model.root, kAllKinds); });
     std::printf("\n| %s, budget | %zu | | %zu | |", what, model.objects.size(), cut.chosen.size());
     View fine_view = view;
     fine_view.pixel_error = 0;
-    print_times(5, 1e3, [&] { quality::choose_within(table, fine_view, {0, cut.bytes}); });
+    print_times(5, 1e3, [&] { choose::choose_within(table, fine_view, {0, cut.bytes}); });
     std::printf("\n");
     for (const double metres : {0.0, 0.1, 1.0, 10.0, 100.0})
         bench_steps(kept, view, metres, what, "plain");

@@ -18,9 +18,9 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "build/hierarchy.h"
+#include "choose/cut.h"
 #include "group/position.h"
 #include "group/structure.h"
-#include "quality/cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -205,18 +205,18 @@ double drawn_by(const Representation& representation) {
 }
 
 void add_cut(Result& result, const Model& model, const View& view) {
-    const quality::Cut cut = quality::choose(model, view);
+    const choose::Cut cut = choose::choose(model, view);
     result.triangles += static_cast<double>(cut.triangles);
     result.occurrences += static_cast<double>(cut.chosen.size());
     result.bytes += static_cast<double>(cut.bytes);
     for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
+        const choose::Node& node = cut.nodes[index];
         result.drawn += drawn_by(model.objects[node.object].representations[node.lod]);
     }
 }
 
 void add_used(Result& result, const Model& model, size_t made, const View& view) {
-    const quality::Cut cut = quality::choose(model, view);
+    const choose::Cut cut = choose::choose(model, view);
     for (const uint32_t index : cut.chosen) {
         if (cut.nodes[index].object >= made)
             result.used.insert(cut.nodes[index].object);
@@ -230,9 +230,9 @@ double floor_of(Model model, bool away) {
     model.objects[model.root].representations.resize(1);
     double drawn = 0;
     for (const View& view : views) {
-        const quality::Cut cut = quality::choose(model, view);
+        const choose::Cut cut = choose::choose(model, view);
         for (const uint32_t index : cut.chosen) {
-            const quality::Node& node = cut.nodes[index];
+            const choose::Node& node = cut.nodes[index];
             const Object& object = model.objects[node.object];
             if (node.lod + 1 < object.representations.size())
                 drawn += drawn_by(object.representations[node.lod]);

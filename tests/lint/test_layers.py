@@ -35,7 +35,7 @@ class TheCheck(unittest.TestCase):
 
     def test_includes_may_point_down_or_sideways(self):
         self.assert_right("backend/src/model/a.cpp", '#include "base/b.h"\n#include "model/c.h"\n')
-        self.assert_right("povray_export/a.cpp", '#include "quality/cut.h"\n#include <string>\n')
+        self.assert_right("povray_export/a.cpp", '#include "choose/cut.h"\n#include <string>\n')
         self.assert_right("backend/src/capi/a.cpp", '#include "lodestone/lodestone.h"\n')
 
     def test_includes_may_not_point_up(self):

@@ -189,7 +189,7 @@ inline Image read_ppm(const std::filesystem::path& path) {
 
 inline ExportReport write(const Model& model, const View& view, const ExportOptions& options,
                           Problems& problems) {
-    const quality::Cut cut = quality::choose(model, view);
+    const choose::Cut cut = choose::choose(model, view);
     return export_scene(model, cut, view, options, problems);
 }
 

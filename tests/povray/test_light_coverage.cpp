@@ -51,7 +51,7 @@ TEST_F(LightCoverage, NothingIsSpokenForByAPointFarFromIt) {
     ASSERT_GT(sightings.size(), 1000u);
     size_t far = 0;
     for (const Sighting& seen : sightings) {
-        quality::LitPoint look;
+        light::LitPoint look;
         look.position = seen.position;
         const double away = glm::length(grid.points[seen.point].position - seen.position);
         ASSERT_LE(away, reach_beside(view, grid, look));

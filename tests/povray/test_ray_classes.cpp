@@ -65,10 +65,10 @@ struct Floating {
               bool draw = true) {
         view.modifiers.ray_classes = rays;
         const Model& model = builder.finish();
-        const quality::Cut cut = quality::choose(model, view);
-        const auto met = quality::choose_rays(model, view, cut, quality::shape_of);
+        const choose::Cut cut = choose::choose(model, view);
+        const auto met = choose::choose_rays(model, view, cut, choose::shape_of);
         Made made;
-        for (const quality::RayCut& own : met)
+        for (const choose::RayCut& own : met)
             made.own += own.own.size();
         ExportOptions options = how;
         options.folder = scratch(name);

@@ -112,7 +112,7 @@ TEST(PovrayWriter, AnEmptyModelIsASceneWithoutObjects) {
     ExportOptions options;
     options.folder = scratch("empty");
     Problems problems;
-    const ExportReport report = export_scene(Model{}, quality::Cut{}, above(), options, problems);
+    const ExportReport report = export_scene(Model{}, choose::Cut{}, above(), options, problems);
     EXPECT_EQ(report.files, 2u);
     EXPECT_EQ(report.occurrences, 0u);
     EXPECT_EQ(count(scene_text(options.folder), "object{"), 0u);
@@ -355,7 +355,7 @@ TEST(PovrayWriter, LinesAndDotsAreSkippedWithoutAWordAndSheetsGetAThickness) {
     ExportOptions options;
     options.folder = scratch("singular");
     Problems problems;
-    const quality::Cut cut = quality::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose(builder.finish(), above());
     export_scene(builder.model, cut, above(), options, problems);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].object, "broken");
@@ -438,7 +438,7 @@ TEST(PovrayWriter, ACancelledExportStops) {
     ExportOptions options;
     options.folder = scratch("cancelled");
     Problems problems;
-    const quality::Cut cut = quality::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose(builder.finish(), above());
     EXPECT_THROW(export_scene(builder.model, cut, above(), options, problems,
                               Job(&cancel, nullptr, nullptr)),
                  Error);
@@ -450,7 +450,7 @@ TEST(PovrayWriter, GivenColorsPaintTheChosenOccurrencesInTheirOrder) {
     const ObjectIndex cube = builder.mesh(shapes::cube());
     builder.place_at(cube, {-1, 0, 0});
     builder.place_at(cube, {1, 0, 0});
-    const quality::Cut cut = quality::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose(builder.finish(), above());
     ExportOptions options;
     options.folder = scratch("given_colors");
     options.false_color = true;

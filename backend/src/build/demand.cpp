@@ -3,7 +3,7 @@
 
 #include "build/effort.h"
 #include "build/judge.h"
-#include "quality/criterion.h"
+#include "choose/criterion.h"
 
 #include <algorithm>
 #include <map>
@@ -33,7 +33,7 @@ class Survey {
 public:
     Survey(const Model& model, const std::vector<Stale>& stale, const Demand& demand,
            const Job& job)
-        : model_(model), cut_(quality::choose(model, demand.view, job)), shown_(stale.size()) {
+        : model_(model), cut_(choose::choose(model, demand.view, job)), shown_(stale.size()) {
         for (size_t i = 0; i < stale.size(); ++i) {
             position_[stale[i].index] = i;
             for (const ObjectIndex copy : stale[i].copies)
@@ -41,10 +41,10 @@ public:
         }
         std::vector<uint64_t> below(cut_.nodes.size(), 0);
         for (size_t i = cut_.nodes.size(); i-- > 0;) {  // children follow their parents
-            const quality::Node& node = cut_.nodes[i];
+            const choose::Node& node = cut_.nodes[i];
             if (!node.opened)
                 below[i] = 1;
-            if (node.parent != quality::kNoParent)
+            if (node.parent != choose::kNoParent)
                 below[node.parent] += below[i];
             const auto at = position_.find(node.object);
             if (at == position_.end())
@@ -56,7 +56,7 @@ public:
         }
     }
 
-    const quality::Cut& cut() const { return cut_; }
+    const choose::Cut& cut() const { return cut_; }
 
     /// CPU seconds that the picture saves.
     double gain(size_t position, ObjectIndex index, uint64_t group_triangles) const {
@@ -81,18 +81,18 @@ public:
     }
 
 private:
-    double error_allowed(const quality::Node& node, const View& view) const {
+    double error_allowed(const choose::Node& node, const View& view) const {
         const Object& object = model_.objects[node.object];
         const Affine& world = cut_.world(node);
         const double z = distance(transformed(object.bound(), world), view.camera.position);
         const double enlarged = stretch(world);
         const double counted = counted_error(1, object.role == Role::Environment, 0);
-        return enlarged > 0 ? view.pixel_error * quality::pixel_size(view, z) / enlarged / counted
+        return enlarged > 0 ? view.pixel_error * choose::pixel_size(view, z) / enlarged / counted
                             : 0;
     }
 
     const Model& model_;
-    quality::Cut cut_;
+    choose::Cut cut_;
     std::map<ObjectIndex, size_t> position_;  // in stale
     std::vector<Shown> shown_;
 };

@@ -22,11 +22,11 @@ double seconds_to_build(const Object& object, const Settings& settings) {
     return static_cast<double>(read) / kBuiltTrianglesPerSecond + kSecondsPerObject;
 }
 
-double seconds_to_draw(const Model& model, const quality::Cut& cut, const View& view) {
+double seconds_to_draw(const Model& model, const choose::Cut& cut, const View& view) {
     std::set<Hash> distinct;
     uint64_t triangles = 0;
     for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
+        const choose::Node& node = cut.nodes[index];
         const Summary& summary = model.objects[node.object].representations[node.lod].summary;
         if (distinct.insert(summary.hash).second)
             triangles += summary.cost.triangles;

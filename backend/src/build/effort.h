@@ -3,8 +3,8 @@
 #pragma once
 
 #include "build/settings.h"
+#include "choose/cut.h"
 #include "model/model.h"
-#include "quality/cut.h"
 
 namespace lodestone::build {
 
@@ -17,6 +17,6 @@ inline constexpr double kSecondsPerTriangle = 2e-6;
 inline constexpr double kSecondsPerOccurrence = 2e-5;
 
 /// CPU seconds of a picture in POV-Ray.
-double seconds_to_draw(const Model& model, const quality::Cut& cut, const View& view);
+double seconds_to_draw(const Model& model, const choose::Cut& cut, const View& view);
 
 }  // namespace lodestone::build

@@ -22,7 +22,7 @@ Material without_textures(Material material) {
 Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const Job& job) {
     Flat flat;
     const Model& model = group.model();
-    const quality::Cut cut = group.cut(error, job);
+    const choose::Cut cut = group.cut(error, job);
     std::map<std::pair<uint32_t, bool>, uint16_t> slots;  // by material, and whether it is plain
     const auto slot_of = [&](uint32_t index, bool has_uvs) {
         const Material& material = model.materials.at(index);
@@ -35,7 +35,7 @@ Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const J
     };
     for (const uint32_t index : cut.chosen) {
         job.check();
-        const quality::Node& node = cut.nodes[index];
+        const choose::Node& node = cut.nodes[index];
         const Object& object = model.objects[node.object];
         const Representation& representation = object.representations[node.lod];
         flat.child_error =
@@ -58,7 +58,7 @@ Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const J
         ++flat.occurrences;
         flat.placement.push_back(0);
         flat.environment.push_back(0);
-        for (uint32_t at = index; cut.nodes[at].parent != quality::kNoParent;
+        for (uint32_t at = index; cut.nodes[at].parent != choose::kNoParent;
              at = cut.nodes[at].parent) {
             flat.placement.back() = cut.nodes[at].placement;
             if (model.objects[cut.nodes[at].object].role == Role::Environment)

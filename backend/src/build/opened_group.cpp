@@ -18,10 +18,10 @@ View view_within(double error) {
     return view;
 }
 
-uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
+uint64_t triangles_of(const Model& model, const choose::Cut& cut) {
     uint64_t triangles = cut.triangles;
     for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
+        const choose::Node& node = cut.nodes[index];
         const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
         if (kind == Kind::Box)
             triangles += kTrianglesOfBox;
@@ -40,18 +40,18 @@ uint64_t triangles_of(const Model& model, const quality::Cut& cut) {
 OpenedGroup::OpenedGroup(const Model& model, ObjectIndex group, const std::vector<uint64_t>& uses)
     : table_(model, View{}.kinds), group_(group), uses_(uses) {}
 
-quality::Cut OpenedGroup::cut(double error, const Job& job) {
-    return quality::choose_below(table_, group_, view_within(error), job);
+choose::Cut OpenedGroup::cut(double error, const Job& job) {
+    return choose::choose_below(table_, group_, view_within(error), job);
 }
 
 Drawn OpenedGroup::drawn_within(double error, const Job& job) {
     if (const auto known = drawn_.find(error); known != drawn_.end())
         return known->second;
     Drawn drawn;
-    const quality::Cut cut = this->cut(error, job);
+    const choose::Cut cut = this->cut(error, job);
     drawn.triangles = triangles_of(model(), cut);
     for (const uint32_t index : cut.chosen) {
-        const quality::Node& node = cut.nodes[index];
+        const choose::Node& node = cut.nodes[index];
         const Summary& summary = model().objects[node.object].representations[node.lod].summary;
         drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
                        bytes_each(summary.kind, summary.cost.bytes, uses_[node.object]);

@@ -2,7 +2,7 @@
 // OpenedGroup: what a group's children are drawn by within an error.
 #pragma once
 
-#include "quality/cut.h"
+#include "choose/cut.h"
 
 #include <map>
 
@@ -30,13 +30,13 @@ public:
     uint64_t uses() const { return uses_[group_]; }
 
     /// Children by their cheapest representations within `error` metres (0: the finest).
-    quality::Cut cut(double error, const Job& job);
+    choose::Cut cut(double error, const Job& job);
     /// Bytes: a share of every representation (its bytes over its object's uses, for all
     /// occurrences share it) and the occurrences themselves.
     Drawn drawn_within(double error, const Job& job);
 
 private:
-    quality::Table table_;
+    choose::Table table_;
     ObjectIndex group_;
     const std::vector<uint64_t>& uses_;
     std::map<double, Drawn> drawn_;  // by error

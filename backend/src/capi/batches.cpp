@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Handing what a cut draws to viewers that keep it, portion by portion.
-#include "quality/batches.h"
-
 #include "capi/chosen.h"
 #include "capi/guard.h"
+#include "view/viewer_batches.h"
 
 #include <cstring>
 
@@ -11,7 +10,7 @@ using namespace lodestone;
 using namespace lodestone::capi;
 
 struct lds_batch {
-    quality::BatchMesh mesh;
+    view::BatchMesh mesh;
 };
 
 namespace {
@@ -32,7 +31,7 @@ lds_status lds_cut_make_batches(lds_model* model, lds_cut* cut, size_t* out_coun
         require(cut, "cut");
         require(out_count, "out_count");
         require_current(*model, *cut);
-        cut->batches = quality::batches_of(model->model, cut->cut, cut->colors);
+        cut->batches = view::batches_of(model->model, cut->cut, cut->colors);
         cut->batch_colors = cut->colors;
         *out_count = cut->batches.size();
     });
@@ -63,14 +62,14 @@ lds_status lds_batch_create(lds_model* model, const lds_cut* cut, size_t positio
         require_current(*model, *cut);
         if (position >= cut->batches.size())
             fail(Status::InvalidArgument, "batch ", position, " of ", cut->batches.size());
-        const quality::Batch& batch = cut->batches[position];
+        const view::Batch& batch = cut->batches[position];
         const Job progress = job_of(job);
-        std::vector<uint32_t> levels(cut->cut.chosen.size(), quality::kBoxOnly);
-        for (const quality::Piece& piece : batch.pieces)
+        std::vector<uint32_t> levels(cut->cut.chosen.size(), choose::kBoxOnly);
+        for (const view::Piece& piece : batch.pieces)
             levels.at(piece.choice) = cut->cut.nodes.at(cut->cut.chosen.at(piece.choice)).lod;
         load_levels(*model, cut->cut, levels, progress);
         auto made = std::make_unique<lds_batch>();
-        made->mesh = quality::mesh_of(model->model, cut->cut, batch, cut->batch_colors, progress);
+        made->mesh = view::mesh_of(model->model, cut->cut, batch, cut->batch_colors, progress);
         *out_batch = made.release();
     });
 }

@@ -18,8 +18,7 @@ void require_current(const lds_model& model, const lds_cut& cut) {
         fail(Status::StaleId, "the cut was made before the model's groups changed");
 }
 
-std::vector<Representation>& levels_with(lds_model& model, const quality::Node& node,
-                                         uint32_t lod) {
+std::vector<Representation>& levels_with(lds_model& model, const choose::Node& node, uint32_t lod) {
     std::vector<Object>& objects = model.model.objects;
     if (node.object >= objects.size() || lod >= objects[node.object].representations.size())
         fail(Status::StaleId, "the cut was made before the model's levels changed");
@@ -33,13 +32,13 @@ uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position) {
     return cut.cut.chosen[position];
 }
 
-void load_levels(lds_model& model, const quality::Cut& cut, const std::vector<uint32_t>& levels,
+void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
                  const Job& job) {
     std::map<Hash, std::vector<Representation*>> wanted;
     for (size_t i = 0; i < levels.size(); ++i) {
-        if (levels[i] == quality::kBoxOnly)
+        if (levels[i] == choose::kBoxOnly)
             continue;
-        const quality::Node& node = cut.nodes.at(cut.chosen.at(i));
+        const choose::Node& node = cut.nodes.at(cut.chosen.at(i));
         Representation& chosen = levels_with(model, node, levels[i])[levels[i]];
         if (!chosen.resident())
             wanted[chosen.summary.hash].push_back(&chosen);

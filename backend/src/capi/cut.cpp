@@ -25,11 +25,11 @@ void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
     made.rays.clear();
     made.resident = {};
     made.largest_error_name.clear();
-    if (made.cut.largest_error_node != quality::kNoParent)
+    if (made.cut.largest_error_node != choose::kNoParent)
         made.largest_error_name =
-            quality::path_of(*made.table, made.cut, made.cut.largest_error_node);
+            choose::path_of(*made.table, made.cut, made.cut.largest_error_node);
     made.rays = choose_rays(model, made.view, made.cut, job);
-    made.resident = quality::resident(model.model, made.cut, made.rays);
+    made.resident = choose::resident(model.model, made.cut, made.rays);
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         auto made = std::make_unique<lds_cut>();
         made->generation = model->generation;
         made->table = model->table_for(given.kinds);
-        made->cut = quality::choose(*made->table, given, progress);
+        made->cut = choose::choose(*made->table, given, progress);
         finish(*model, *made, std::move(given), progress);
         *out_cut = made.release();
     });
@@ -60,7 +60,7 @@ lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, ld
         View given = view_of(view, model);
         auto table = model->table_for(given.kinds);
         if (cut->stepper == nullptr || cut->stepper->table() != table)
-            cut->stepper = std::make_unique<quality::Stepper>(table);
+            cut->stepper = std::make_unique<choose::Stepper>(table);
         cut->stepper->step(given, cut->cut, progress);
         cut->table = std::move(table);
         finish(*model, *cut, std::move(given), progress);
@@ -80,8 +80,8 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         auto made = std::make_unique<lds_cut>();
         made->generation = model->generation;
         made->table = model->table_for(made_for.kinds);
-        quality::Budgeted found = quality::choose_within(*made->table, made_for,
-                                                         {given.triangles, given.bytes}, progress);
+        choose::Budgeted found =
+            choose::choose_within(*made->table, made_for, {given.triangles, given.bytes}, progress);
         lds_budget_report report{};
         report.fits = found.fits ? 1 : 0;
         report.pixel_error = found.pixel_error;
@@ -125,7 +125,7 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         out.composite = kind(Kind::Composite);
         const auto& chosen = cut->cut.chosen;
         const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->cut.largest_error_node);
-        if (cut->cut.largest_error_node != quality::kNoParent && at != chosen.end())
+        if (cut->cut.largest_error_node != choose::kNoParent && at != chosen.end())
             out.largest_error_choice = static_cast<uint64_t>(at - chosen.begin());
         hand_out_grown(out_summary, out, kFirstSummary, "out_summary");
     });
@@ -142,12 +142,12 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
             require(out_choices, "out_choices");
         const size_t count = std::min(capacity, cut->cut.chosen.size());
         for (size_t i = 0; i < count; ++i) {
-            const quality::Node& node = cut->cut.nodes[cut->cut.chosen[i]];
+            const choose::Node& node = cut->cut.nodes[cut->cut.chosen[i]];
             lds_choice& out = out_choices[i];
             out.object = {node.object, cut->generation};
             out.lod = node.lod;
             out.kind = static_cast<int32_t>(node.kind);
-            out.error_px = quality::error_on_screen(*cut->table, cut->view, cut->cut, node);
+            out.error_px = choose::error_on_screen(*cut->table, cut->view, cut->cut, node);
             cut->cut.world(node).to_rows(out.world);
         }
     });
@@ -160,7 +160,7 @@ lds_status lds_cut_level_uses(const lds_cut* cut, lds_level_use* out_uses, size_
         require(out_count, "out_count");
         if (capacity > 0)
             require(out_uses, "out_uses");
-        const std::vector<quality::LevelUse> uses = quality::level_uses(cut->cut);
+        const std::vector<choose::LevelUse> uses = choose::level_uses(cut->cut);
         for (size_t i = 0; i < std::min(capacity, uses.size()); ++i)
             out_uses[i] = {{uses[i].object, cut->generation}, uses[i].lod, 0, uses[i].occurrences};
         *out_count = uses.size();
@@ -175,7 +175,7 @@ const char* lds_cut_choice_path(lds_cut* cut, size_t position) {
         cut->paths.resize(cut->cut.chosen.size());
         std::string& known = cut->paths[position];
         if (known.empty())
-            known = quality::path_of(*cut->table, cut->cut, cut->cut.chosen[position]);
+            known = choose::path_of(*cut->table, cut->cut, cut->cut.chosen[position]);
         path = known.c_str();
     });
     return path;
@@ -189,8 +189,8 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
         const uint32_t node = node_at(*model, *cut, position);
         levels_with(*model, cut->cut.nodes[node], cut->cut.nodes[node].lod);
         model->summarize();
-        const quality::Reason reason = quality::why(model->model, cut->view, cut->cut, node);
-        const quality::Factors& factors = reason.factors;
+        const choose::Reason reason = choose::why(model->model, cut->view, cut->cut, node);
+        const choose::Factors& factors = reason.factors;
         lds_reason out{};
         out.lod = reason.chosen.lod;
         out.z = reason.z;

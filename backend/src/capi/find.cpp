@@ -3,7 +3,7 @@
 #include "capi/chosen.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "quality/find_choice.h"
+#include "choose/find_choice.h"
 
 using namespace lodestone;
 using namespace lodestone::capi;
@@ -21,10 +21,9 @@ lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object 
         const Affine place = Affine::from_rows(world);
         if (!place.finite())
             fail(Status::InvalidArgument, "world is not finite");
-        const quality::FoundChoice found =
-            quality::find_choice(model->model, cut->cut, index, place);
+        const choose::FoundChoice found = choose::find_choice(model->model, cut->cut, index, place);
         *out_drawn = static_cast<int32_t>(found.drawn);
-        if (found.drawn != quality::Drawn::Itself && found.drawn != quality::Drawn::InGroup)
+        if (found.drawn != choose::Drawn::Itself && found.drawn != choose::Drawn::InGroup)
             return;
         const auto at =
             std::lower_bound(cut->cut.chosen.begin(), cut->cut.chosen.end(), found.node);
@@ -38,7 +37,7 @@ lds_status lds_model_most_demanding(lds_model* model, lds_object group, const ch
         require(out_path, "out_path");
         model->summarize();
         thread_local std::string path;
-        path = quality::most_demanding(model->model, model->index_of(group));
+        path = choose::most_demanding(model->model, model->index_of(group));
         *out_path = path.c_str();
     });
 }

@@ -5,13 +5,13 @@
 #include "lodestone/lodestone.h"
 
 #include "build/settings.h"
+#include "choose/cut_budget.h"
+#include "choose/follow/cut_stepper.h"
+#include "choose/ray_class/ray_cut.h"
 #include "geometry/polygon_mesh.h"
-#include "quality/batches.h"
-#include "quality/budget.h"
-#include "quality/ray_cut.h"
-#include "quality/step.h"
-#include "quality/surface.h"
 #include "segment/store.h"
+#include "view/viewer_batches.h"
+#include "view/viewer_surface.h"
 
 #include <map>
 #include <memory>
@@ -30,9 +30,9 @@ struct lds_model {
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
     uint64_t structured = 0;  // how often what groups place was put into other groups
     /// For choosing; reset when the model changes. Cuts keep it.
-    std::shared_ptr<const lodestone::quality::Table> table;
+    std::shared_ptr<const lodestone::choose::Table> table;
     /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
-    std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::quality::Shape> shapes;
+    std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::choose::Shape> shapes;
 
     /// Index of an id; throws Error(StaleId) for another model's.
     lodestone::ObjectIndex index_of(lds_object object) const;
@@ -41,7 +41,7 @@ struct lds_model {
     /// Brings assemblies' summaries up to date.
     void summarize();
     /// What choosing reads, up to date.
-    std::shared_ptr<const lodestone::quality::Table> table_for(lodestone::KindMask kinds);
+    std::shared_ptr<const lodestone::choose::Table> table_for(lodestone::KindMask kinds);
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
     /// Makes every finest mesh and every picture resident (a model read from a store).
@@ -51,19 +51,19 @@ struct lds_model {
 };
 
 struct lds_cut {
-    lodestone::quality::Cut cut;
-    std::vector<lodestone::quality::RayCut> rays;  // of the classes asked for
-    lodestone::quality::Resident resident;         // for the camera and these
-    lodestone::View view;                          // that it was made for, with the threshold found
-    uint32_t generation = 0;                       // of the model it was made from
-    uint64_t structured = 0;                       // the model's then
-    std::shared_ptr<const lodestone::quality::Table> table;  // that it was chosen from
-    std::unique_ptr<lodestone::quality::Stepper> stepper;    // of the table; null: not stepped yet
-    std::vector<std::string> paths;                          // by choice; those asked for
+    lodestone::choose::Cut cut;
+    std::vector<lodestone::choose::RayCut> rays;  // of the classes asked for
+    lodestone::choose::Resident resident;         // for the camera and these
+    lodestone::View view;                         // that it was made for, with the threshold found
+    uint32_t generation = 0;                      // of the model it was made from
+    uint64_t structured = 0;                      // the model's then
+    std::shared_ptr<const lodestone::choose::Table> table;  // that it was chosen from
+    std::unique_ptr<lodestone::choose::Stepper> stepper;    // of the table; null: not stepped yet
+    std::vector<std::string> paths;                         // by choice; those asked for
     std::string largest_error_name;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
-    lodestone::quality::Surface surface;
-    std::vector<lodestone::quality::Batch> batches;
+    lodestone::view::Surface surface;
+    std::vector<lodestone::view::Batch> batches;
     std::vector<glm::dvec3> batch_colors;  // that they were made with
 };
 

@@ -61,9 +61,9 @@ Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, i
         fail(Status::InvalidArgument, "modifiers.criterion is ", given.criterion,
              "; 0 to 3 expected");
     out.criterion = static_cast<Criterion>(given.criterion);
-    if (given.lens_count > quality::kMostLenses || given.screen_lens_count > quality::kMostLenses)
+    if (given.lens_count > choose::kMostLenses || given.screen_lens_count > choose::kMostLenses)
         fail(Status::InvalidArgument, std::max(given.lens_count, given.screen_lens_count),
-             " lenses; at most ", quality::kMostLenses);
+             " lenses; at most ", choose::kMostLenses);
     for (size_t i = 0; i < given.lens_count; ++i)
         out.lenses.push_back(lens_of(element(given.lenses, i, "modifiers.lenses"), model));
     for (size_t i = 0; i < given.screen_lens_count; ++i)

@@ -16,23 +16,22 @@ RayMask class_of(uint32_t rays) {
     return static_cast<RayMask>(rays << 1u);
 }
 
-const quality::RayCut* cut_of(const lds_cut& cut, RayMask rays) {
+const choose::RayCut* cut_of(const lds_cut& cut, RayMask rays) {
     const auto at = std::find_if(cut.rays.begin(), cut.rays.end(),
-                                 [&](const quality::RayCut& own) { return own.rays == rays; });
+                                 [&](const choose::RayCut& own) { return own.rays == rays; });
     return at == cut.rays.end() ? nullptr : &*at;
 }
 
-uint64_t count_of(const quality::RayCut& rays, quality::RayState state) {
+uint64_t count_of(const choose::RayCut& rays, choose::RayState state) {
     return static_cast<uint64_t>(std::count(rays.states.begin(), rays.states.end(), state));
 }
 
 /// The own choice in whose place this node, or one above it, is met.
-const quality::RayChoice* own_of(const quality::Cut& cut, const quality::RayCut& rays,
-                                 uint32_t node) {
-    for (uint32_t at = node; at != quality::kNoParent; at = cut.nodes[at].parent) {
+const choose::RayChoice* own_of(const choose::Cut& cut, const choose::RayCut& rays, uint32_t node) {
+    for (uint32_t at = node; at != choose::kNoParent; at = cut.nodes[at].parent) {
         const auto found = std::lower_bound(
             rays.own.begin(), rays.own.end(), at,
-            [](const quality::RayChoice& own, uint32_t wanted) { return own.node < wanted; });
+            [](const choose::RayChoice& own, uint32_t wanted) { return own.node < wanted; });
         if (found != rays.own.end() && found->node == at)
             return &*found;
     }
@@ -41,8 +40,8 @@ const quality::RayChoice* own_of(const quality::Cut& cut, const quality::RayCut&
 
 }  // namespace
 
-std::vector<quality::RayCut> choose_rays(lds_model& model, const View& view,
-                                         const quality::Cut& cut, const Job& job) {
+std::vector<choose::RayCut> choose_rays(lds_model& model, const View& view, const choose::Cut& cut,
+                                        const Job& job) {
     if (view.modifiers.ray_classes == 0)
         return {};
     const auto shape = [&](const Representation& mesh, const Representation* solid) {
@@ -53,14 +52,14 @@ std::vector<quality::RayCut> choose_rays(lds_model& model, const View& view,
             return known->second;
         Representation read = mesh;
         model.load(read);
-        return model.shapes.emplace(key, quality::shape_of(read, solid)).first->second;
+        return model.shapes.emplace(key, choose::shape_of(read, solid)).first->second;
     };
-    return quality::choose_rays(model.model, view, cut, shape, job);
+    return choose::choose_rays(model.model, view, cut, shape, job);
 }
 
 void load_own(lds_model& model, const lds_cut& cut, const Job& job) {
-    for (const quality::RayCut& rays : cut.rays) {
-        for (const quality::RayChoice& own : rays.own) {
+    for (const choose::RayCut& rays : cut.rays) {
+        for (const choose::RayChoice& own : rays.own) {
             job.check();
             model.load(levels_with(model, cut.cut.nodes[own.node], own.lod)[own.lod]);
         }
@@ -76,7 +75,7 @@ lds_status lds_cut_get_rays(const lds_cut* cut, uint32_t rays, lds_ray_summary* 
     return guard([&] {
         require(cut, "cut");
         const RayMask wanted = class_of(rays);
-        const quality::RayCut* own = cut_of(*cut, wanted);
+        const choose::RayCut* own = cut_of(*cut, wanted);
         lds_ray_summary out{};
         out.rays = rays;
         out.occurrences = own != nullptr ? own->met : cut->cut.chosen.size();
@@ -85,9 +84,9 @@ lds_status lds_cut_get_rays(const lds_cut* cut, uint32_t rays, lds_ray_summary* 
         if (own != nullptr) {
             out.own = own->own.size();
             out.largest_error_px = own->largest_error_px;
-            out.kept_need = count_of(*own, quality::RayState::Need);
-            out.kept_shape = count_of(*own, quality::RayState::Shape);
-            out.kept_contact = count_of(*own, quality::RayState::Contact);
+            out.kept_need = count_of(*own, choose::RayState::Need);
+            out.kept_shape = count_of(*own, choose::RayState::Shape);
+            out.kept_contact = count_of(*own, choose::RayState::Contact);
         }
         out.all_triangles = cut->resident.triangles;
         out.all_bytes = cut->resident.bytes;
@@ -101,17 +100,17 @@ lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t posi
         require(model, "model");
         require(cut, "cut");
         const uint32_t node = node_at(*model, *cut, position);
-        const quality::Node& chosen = cut->cut.nodes[node];
+        const choose::Node& chosen = cut->cut.nodes[node];
         lds_ray_choice out{};
         out.object = model->id_of(chosen.object);
         out.lod = chosen.lod;
         out.kind = static_cast<int32_t>(chosen.kind);
         out.scale = 1;
-        const quality::RayCut* own = cut_of(*cut, class_of(rays));
+        const choose::RayCut* own = cut_of(*cut, class_of(rays));
         if (own != nullptr) {
             out.met = static_cast<int32_t>(own->states.at(position));
-            if (const quality::RayChoice* choice = own_of(cut->cut, *own, node)) {
-                const quality::Node& met = cut->cut.nodes[choice->node];
+            if (const choose::RayChoice* choice = own_of(cut->cut, *own, node)) {
+                const choose::Node& met = cut->cut.nodes[choice->node];
                 const Representation& level = levels_with(*model, met, choice->lod)[choice->lod];
                 out.object = model->id_of(met.object);
                 out.lod = choice->lod;

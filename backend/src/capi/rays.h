@@ -7,8 +7,8 @@
 namespace lodestone::capi {
 
 /// What the classes the view asks for meet. Remembers shapes in the model.
-std::vector<quality::RayCut> choose_rays(lds_model& model, const View& view,
-                                         const quality::Cut& cut, const Job& job);
+std::vector<choose::RayCut> choose_rays(lds_model& model, const View& view, const choose::Cut& cut,
+                                        const Job& job);
 
 /// Reads the meshes that only some classes meet.
 void load_own(lds_model& model, const lds_cut& cut, const Job& job);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Showing a cut in false colors.
-#include "quality/surface.h"
-
 #include "capi/chosen.h"
 #include "capi/guard.h"
 #include "image/compare_shown.h"
 #include "povray_export/finish.h"
+#include "view/viewer_surface.h"
 
 #include <cmath>
 
@@ -63,13 +62,13 @@ lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_tr
         require(cut, "cut");
         require(out_triangles, "out_triangles");
         require_current(*model, *cut);
-        quality::Surface made;
+        view::Surface made;
         if (most_triangles > 0) {
             const Job progress = job_of(job);
             const std::vector<uint32_t> levels =
-                quality::surface_levels(model->model, cut->cut, most_triangles);
+                view::surface_levels(model->model, cut->cut, most_triangles);
             load_levels(*model, cut->cut, levels, progress);
-            made = quality::surface_of(model->model, cut->cut, levels, progress);
+            made = view::surface_of(model->model, cut->cut, levels, progress);
         }
         cut->surface = std::move(made);
         *out_triangles = cut->surface.owners.size();
@@ -80,7 +79,7 @@ lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t*
                                 size_t capacity) {
     return guard([&] {
         require(cut, "cut");
-        const quality::Surface& surface = cut->surface;
+        const view::Surface& surface = cut->surface;
         if (capacity < surface.owners.size())
             fail(Status::InvalidArgument, "the surface has ", surface.owners.size(),
                  " triangles, the buffers room for ", capacity);
@@ -94,10 +93,10 @@ lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t*
         }
         for (size_t i = 0; i < surface.owners.size(); ++i) {
             const uint32_t owner = surface.owners[i];
-            const quality::Node& node = cut->cut.nodes[cut->cut.chosen[owner]];
+            const choose::Node& node = cut->cut.nodes[cut->cut.chosen[owner]];
             const glm::dvec3 color =
                 (cut->colors.empty() ? povray::color_of(node.kind, node.lod) : cut->colors[owner]) *
-                quality::shade_of(surface.corners.data() + 3 * i);
+                view::shade_of(surface.corners.data() + 3 * i);
             const uint8_t pixel[4] = {displayed(color.x), displayed(color.y), displayed(color.z),
                                       255};
             for (size_t corner = 0; corner < 3; ++corner)

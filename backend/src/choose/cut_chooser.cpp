@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "choose/cut_chooser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::choose {
+namespace {
+
+// Children whose memory is asked for before they are visited.
+constexpr uint32_t kAhead = 4;
+
+}  // namespace
+
+void refuse_nonsense(const View& view) {
+    if (view.width <= 0 || view.height <= 0)
+        fail(Status::InvalidArgument, "a picture of ", view.width, " x ", view.height, " pixels");
+    if (!(view.pixel_error >= 0))
+        fail(Status::InvalidArgument, "Pixel Error is ", view.pixel_error,
+             "; it must be 0 or more");
+    const glm::dvec3& eye = view.camera.position;
+    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
+        fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
+}
+
+std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
+    std::map<std::string, uint64_t> out;
+    for (size_t kind = 0; kind < kKinds; ++kind) {
+        if (kinds[kind] != 0)
+            out[name_of(static_cast<Kind>(kind))] = kinds[kind];
+    }
+    return out;
+}
+
+bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
+         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
+    const Node& node = placed.node;
+    sight.stretch = enlarge;
+    factors.importance = node.importance;
+    factors.demand = demand;
+    if (!field.bends(path) && view.modifiers.criterion != Criterion::Area) {
+        sight.z = distance_of(local, placed.world, enlarge, view.camera.position);
+        sight.pixel = field.pixel(sight.z);
+        sight.total = total_refinement(node.importance * demand);
+        return true;
+    }
+    const Bound bound = transformed(local, placed.world, enlarge);
+    sight.z = distance(bound, view.camera.position);
+    sight.pixel = field.pixel(sight.z);
+    if (field.bends(path)) {
+        const FactorField::Effect effect =
+            field.at(node.object, group, local, placed.world, bound, sight.z, path);
+        if (effect.gone)
+            return false;
+        factors = effect.factors;
+        factors.importance = node.importance;
+        factors.demand = demand;
+        sight.total = effect.open ? kInfinity : factors.total();
+    } else {
+        sight.total = total_refinement(node.importance * demand);
+    }
+    if (view.modifiers.criterion == Criterion::Area)
+        sight.share = field.frame().rect_of_box(bound).area() /
+                      (field.frame().width() * field.frame().height());
+    return true;
+}
+
+bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
+           Placed& placed, double& enlarge, double& demand) {
+    Node& node = placed.node;
+    node.object = child.object;
+    node.hidden = group.hidden;
+    node.importance = group.importance;
+    demand = 1;
+    if (child.wish != 0) {
+        const TableWish& wish = table.wish(child.wish);
+        node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
+        if (node.hidden == kAllRays)
+            return false;
+        node.importance = group.importance * wish.importance;
+        node.coarsest = wish.coarsest;
+        node.finest = wish.finest;
+        demand = wish.demand;
+    }
+    if (group.coarsest == 0) {
+        node.coarsest = 0;
+        node.finest = 0;
+    }
+    placed.world.offset = around.linear * child.offset + around.offset;
+    if (child.linear == kUnturned) {
+        placed.world.linear = around.linear;
+    } else {
+        placed.world.linear = around.linear * table.linear(child.linear);
+        enlarge = stretch(placed.world);
+    }
+    return true;
+}
+
+/// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
+/// costs fall from finest to coarsest.
+Decision decide(const Table& table, const View& view, uint32_t index, const Node& node,
+                const Sight& sight) {
+    const TableRow& row = table.row(index);
+    const size_t levels = by_error(view) ? 0 : table.object(index).all_levels;
+    Decision made;
+    for (uint32_t i = row.level_count; i-- > 0;) {
+        const TableLevel& level = table.level(row.first_level + i);
+        if (level.lod > node.coarsest)
+            continue;
+        if (made.level != nullptr && level.lod < node.finest)
+            break;
+        made.level = &level;
+        made.good = good_enough(view, sight, level.error, level.lod, levels);
+        if (made.good)
+            break;
+    }
+    if (made.level == nullptr) {
+        made.opened = row.group;
+        made.drawn = row.group;
+        return made;
+    }
+    made.drawn = true;
+    made.pinned = node.finest > 0;
+    made.cheaper = made.good && !made.pinned && made.level->opens_from < kInfinity &&
+                   by_error(view) &&
+                   good_enough(view, sight, made.level->opens_from, made.level->lod, levels);
+    made.opened = row.group && !made.pinned && (!made.good || made.cheaper);
+    return made;
+}
+
+void Visited::clear() {
+    nodes.clear();
+    transforms.clear();
+    seen.clear();
+}
+
+void Visited::reserve(size_t count) {
+    nodes.reserve(count);
+    transforms.reserve(count);
+    seen.reserve(count);
+}
+
+bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
+    job_.check();
+    const size_t expected = table_.expected();
+    cut.nodes.reserve(expected);
+    cut.chosen.reserve(expected);
+    cut.transforms.reserve(expected);
+    budget_ = &budget;
+    cut_ = &cut;
+    nodes_ = &cut.nodes;
+    transforms_ = &cut.transforms;
+    visit_root(root);
+    visit_all();
+    if (too_dear())
+        return false;
+    cut.kinds = named(kinds_);
+    table_.expect(cut.nodes.size());
+    return true;
+}
+
+void Chooser::run(uint32_t root, Visited& out) {
+    job_.check();
+    nodes_ = &out.nodes;
+    transforms_ = &out.transforms;
+    seen_ = &out.seen;
+    visit_root(root);
+    visit_all();
+}
+
+void Chooser::open(const Placed& group, const Seen& known, const FactorField::Path& path,
+                   Visited& out) {
+    nodes_ = &out.nodes;
+    transforms_ = &out.transforms;
+    seen_ = &out.seen;
+    Placed opened = group;
+    opened.node.opened = true;
+    opened.node.lod = 0;
+    opened.node.kind = Kind::Assembly;
+    const uint32_t index = append(opened, known);
+    push_children(this->known(known.row), index, known.stretch, path, 0);
+    visit_all();
+}
+
+Chooser::Known Chooser::known(uint32_t row) const {
+    const TableObject& object = table_.object(row);
+    Known out{row, object.demand, 0, object.first_child, object.child_count, 0, 0};
+    if (object.child_count > 0) {
+        out.first_row = table_.child(object.first_child).row;
+        out.first_level = table_.row(out.first_row).first_level;
+    }
+    return out;
+}
+
+void Chooser::visit_root(uint32_t root) {
+    Placed top;
+    top.node.object = table_.object(root).object;
+    FactorField::Path path = field_.root();
+    visit(known(root), top, 1, path, 0);
+}
+
+bool Chooser::too_dear() const {
+    const bool limited = budget_ != nullptr && (budget_->triangles > 0 || budget_->bytes > 0);
+    if (nodes_->size() > most_ && !limited)
+        fail(Status::InvalidArgument, "more than ", most_,
+             " things and groups at a Pixel Error of ", view_.pixel_error);
+    return nodes_->size() > most_ || (limited && !budget_->fits(*cut_));
+}
+
+void Chooser::visit_all() {
+    while (!stack_.empty()) {
+        if (too_dear())
+            return;
+        const Entry entry = stack_.back();
+        stack_.pop_back();
+        if (stack_.size() >= kAhead)
+            table_.fetch(stack_[stack_.size() - kAhead].child);
+        visit_child(entry);
+        if ((++visits_ & 1023u) == 0)
+            job_.check();
+    }
+}
+
+void Chooser::visit_child(const Entry& entry) {
+    const TableChild& child = table_.child(entry.child);
+    const Node& group = (*nodes_)[entry.parent];
+    const Affine& around = (*transforms_)[entry.parent];
+    const Frame& above = frames_[entry.depth - 1];
+    Placed placed;
+    placed.node.parent = entry.parent;
+    placed.node.placement = entry.position;
+    double enlarge = above.stretch;
+    double demand = 1;
+    if (!place(table_, group, around, child, placed, enlarge, demand))
+        return;
+    path_.lenses = above.path.lenses;
+    if (view_.modifiers.when_moving)
+        path_ = field_.below(above.path, around,
+                             table_.model()
+                                 .objects[group.object]
+                                 .representations[0]
+                                 .assembly()
+                                 .placements[entry.position]);
+    visit({child.row, demand, child.finest_error, child.first_child, child.child_count,
+           child.first_row, child.first_level},
+          placed, enlarge, path_, entry.depth);
+}
+
+/// Of the nodes; their transforms are in the same order.
+uint32_t Chooser::append(Placed& placed, const Seen& seen) {
+    const auto index = static_cast<uint32_t>(nodes_->size());
+    placed.node.transform = index;
+    nodes_->push_back(placed.node);
+    transforms_->push_back(placed.world);
+    if (seen_ != nullptr)
+        seen_->push_back(seen);
+    return index;
+}
+
+void Chooser::visit(const Known& known, Placed& placed, double enlarge, FactorField::Path& path,
+                    uint32_t depth) {
+    Node& node = placed.node;
+    const TableRow& row = table_.row(known.row);
+    if (!row.drawable)
+        return;
+    Sight sight;
+    Factors factors;
+    if (!see(view_, field_, placed, row.group, table_.bound(known.row), known.demand, enlarge, path,
+             sight, factors))
+        return;
+    Decision made;
+    // Most groups that are opened have no level that is good enough: none is read.
+    if (row.group && node.coarsest == kAnyLevel && node.finest == 0 &&
+        view_.modifiers.criterion == Criterion::Resolution &&
+        !good_enough(view_, sight, known.finest_error, 0, 0))
+        made.opened = made.drawn = true;
+    else
+        made = decide(table_, view_, known.row, node, sight);
+    if (!made.drawn)
+        return;
+    const Seen seen(table_, known.row, sight, made);
+    if (made.opened) {
+        node.opened = true;
+        const uint32_t index = append(placed, seen);
+        push_children(known, index, enlarge, path, depth);
+        return;
+    }
+    const TableLevel& level = *made.level;
+    node.lod = level.lod;
+    node.kind = level.kind;
+    const uint32_t index = append(placed, seen);
+    if (cut_ == nullptr)
+        return;
+    take(index, level, error_on_screen(sight, level.error) / factors.off_screen);
+}
+
+void Chooser::push_children(const Known& known, uint32_t index, double enlarge,
+                            const FactorField::Path& path, uint32_t depth) {
+    uint32_t first = known.first_child;
+    uint32_t count = known.child_count;
+    if (growing_ != nullptr) {
+        growing_->expand(known.row);
+        first = table_.object(known.row).first_child;
+        count = table_.object(known.row).child_count;
+    } else {
+        table_.fetch_below(first, known.first_row, known.first_level, std::min(count, kAhead));
+    }
+    if (frames_.size() <= depth)
+        frames_.resize(depth + size_t{1});
+    frames_[depth].stretch = enlarge;
+    frames_[depth].path.lenses = path.lenses;
+    if (view_.modifiers.when_moving)
+        frames_[depth].path = path;
+    for (uint32_t i = count; i-- > 0;)
+        stack_.push_back({index, first + i, i, depth + 1});
+}
+
+/// Counts what is drawn. `shown_px`: what of its error the picture shows.
+void Chooser::take(uint32_t index, const TableLevel& level, double shown_px) {
+    cut_->chosen.push_back(index);
+    cut_->triangles += level.triangles;
+    cut_->bytes += kBytesPerOccurrence;
+    cut_->originals += level.lod == 0 ? 1 : 0;
+    if (drawn_.size() <= level.distinct)
+        drawn_.resize(std::max<size_t>(table_.distinct(), level.distinct + size_t{1}));
+    // A composite is copied for each occurrence.
+    if (!drawn_[level.distinct] || level.kind == Kind::Composite) {
+        drawn_[level.distinct] = true;
+        cut_->bytes += level.bytes;
+    }
+    ++kinds_[static_cast<size_t>(level.kind)];
+    if (shown_px > cut_->largest_error_px) {
+        cut_->largest_error_px = shown_px;
+        cut_->largest_error_node = index;
+    }
+}
+
+}  // namespace lodestone::choose

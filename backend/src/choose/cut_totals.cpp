@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "choose/cut_totals.h"
+
+namespace lodestone::choose {
+
+void Tally::clear(const Table& table) {
+    uses_.assign(table.distinct(), 0);
+    kinds_.fill(0);
+}
+
+void Tally::count(const TableLevel& level, bool more, Cut& cut) {
+    uint32_t& uses = uses_[level.distinct];
+    // A composite is copied for each occurrence.
+    const bool own = level.kind == Kind::Composite || uses == (more ? 0u : 1u);
+    const uint64_t bytes = kBytesPerOccurrence + (own ? level.bytes : 0);
+    const uint64_t original = level.lod == 0 ? 1 : 0;
+    uint64_t& kind = kinds_[static_cast<size_t>(level.kind)];
+    if (more) {
+        ++uses;
+        ++kind;
+        cut.triangles += level.triangles;
+        cut.bytes += bytes;
+        cut.originals += original;
+    } else {
+        --uses;
+        --kind;
+        cut.triangles -= level.triangles;
+        cut.bytes -= bytes;
+        cut.originals -= original;
+    }
+}
+
+}  // namespace lodestone::choose

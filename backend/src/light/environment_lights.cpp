@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/environment_lights.h"
+
+#include "base/maths.h"
+#include "image/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lodestone::light {
+namespace {
+
+constexpr int kWidth = 128;  // texels that are looked at; details beyond it light nothing
+constexpr int kHeight = 64;
+constexpr int kSquare = 8;      // a side of the blocks whose darkest is the uniform sky
+constexpr int kNormals = 512;   // ways of facing that the strengths are fitted for
+constexpr double kMost = 1e9;   // radiance: more is a mistake of the picture's maker
+constexpr int kRounds = 30;     // of spreading the suns
+constexpr int kSweeps = 200;    // of the fit; it stands still long before
+constexpr double kKeep = 1e-3;  // how much the fit is drawn to the strengths it starts from
+
+double luma(const glm::dvec3& color) {
+    return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+struct Texel {
+    glm::dvec3 direction{0.0};  // it is seen in, in the world
+    glm::dvec3 radiance{0.0};
+    double solid_angle = 0;
+
+    glm::dvec3 power() const { return radiance * solid_angle; }
+};
+
+class Sky {
+public:
+    Sky(const World& world, const image::Image& picture) : width_(kWidth), height_(kHeight) {
+        width_ = std::min(kWidth, picture.width);
+        height_ = std::min(kHeight, picture.height);
+        const bool turned = std::abs(glm::determinant(world.environment_turn)) > 1e-12;
+        const glm::dmat3 to_world = turned ? glm::inverse(world.environment_turn) : glm::dmat3(1.0);
+        texels_.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+        for (int y = 0; y < height_; ++y) {
+            const double low = kPi * y / height_;  // from the zenith
+            const double high = kPi * (y + 1) / height_;
+            for (int x = 0; x < width_; ++x) {
+                Texel& texel = at(x, y);
+                const glm::dvec3 own =
+                    equirectangular_direction((x + 0.5) / width_, 1 - (y + 0.5) / height_);
+                texel.direction = glm::normalize(to_world * own);
+                texel.solid_angle = (std::cos(low) - std::cos(high)) * 2 * kPi / width_;
+                texel.radiance = mean_of(picture, x, y) * world.environment_strength;
+            }
+        }
+    }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    Texel& at(int x, int y) {
+        return texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) +
+                       static_cast<size_t>(x)];
+    }
+    const std::vector<Texel>& texels() const { return texels_; }
+
+    /// Power of a texel without the uniform sky; of one that is darker, negative.
+    glm::dvec3 above(const Texel& texel) const {
+        return (texel.radiance - uniform_) * texel.solid_angle;
+    }
+
+    /// The radiance that every block of texels has.
+    glm::dvec3 take_uniform() {
+        glm::dvec3 least(kMost);
+        for (int top = 0; top < height_; top += kSquare) {
+            for (int left = 0; left < width_; left += kSquare) {
+                glm::dvec3 sum(0.0);
+                double weight = 0;
+                for (int y = top; y < std::min(top + kSquare, height_); ++y) {
+                    for (int x = left; x < std::min(left + kSquare, width_); ++x) {
+                        sum += at(x, y).power();
+                        weight += at(x, y).solid_angle;
+                    }
+                }
+                least = glm::min(least, sum / weight);
+            }
+        }
+        return uniform_ = least;
+    }
+
+private:
+    /// Of the picture's pixels below a texel.
+    glm::dvec3 mean_of(const image::Image& picture, int x, int y) const {
+        const auto begin = [](int at, int count, int size) {
+            return static_cast<int>(static_cast<int64_t>(at) * size / count);
+        };
+        glm::dvec3 sum(0.0);
+        double count = 0;
+        for (int row = begin(y, height_, picture.height);
+             row < begin(y + 1, height_, picture.height); ++row) {
+            for (int column = begin(x, width_, picture.width);
+                 column < begin(x + 1, width_, picture.width); ++column) {
+                const float* pixel =
+                    picture.pixels.data() +
+                    4 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width) +
+                         static_cast<size_t>(column));
+                for (int c = 0; c < 3; ++c) {
+                    const auto value = static_cast<double>(pixel[c]);
+                    sum[c] += value > 0 ? std::min(value, kMost) : 0.0;  // false for a nan
+                }
+                ++count;
+            }
+        }
+        return sum / std::max(count, 1.0);
+    }
+
+    int width_;
+    int height_;
+    glm::dvec3 uniform_{0.0};
+    std::vector<Texel> texels_;
+};
+
+struct SkyRegion {
+    int left, top, right, bottom;  // texels; right and bottom are outside
+    double brightness = 0;
+
+    bool divisible() const { return right - left > 1 || bottom - top > 1; }
+};
+
+/// Width and height as seen from the middle, radians.
+glm::dvec2 extent(const Sky& sky, const SkyRegion& region) {
+    const double middle = kPi * (0.5 * (region.top + region.bottom) / sky.height() - 0.5);
+    return {2 * kPi * (region.right - region.left) / sky.width() * std::cos(middle),
+            kPi * (region.bottom - region.top) / sky.height()};
+}
+
+/// How wrong one sun for all of it is: what it sends, times its size squared.
+double badness(const Sky& sky, const SkyRegion& region) {
+    const glm::dvec2 size = extent(sky, region);
+    return region.divisible() ? region.brightness * glm::dot(size, size) : -1;
+}
+
+double brightness(Sky& sky, const SkyRegion& region) {
+    double sum = 0;
+    for (int y = region.top; y < region.bottom; ++y) {
+        for (int x = region.left; x < region.right; ++x)
+            sum += std::max(0.0, luma(sky.above(sky.at(x, y))));
+    }
+    return sum;
+}
+
+/// Cuts across the longer side, where half of the light is on each.
+std::pair<SkyRegion, SkyRegion> cut(Sky& sky, const SkyRegion& region) {
+    const glm::dvec2 size = extent(sky, region);
+    const bool columns =
+        region.bottom - region.top < 2 || (size.x > size.y && region.right - region.left > 1);
+    std::pair<SkyRegion, SkyRegion> halves{region, region};
+    int& first_end = columns ? halves.first.right : halves.first.bottom;
+    int& second_start = columns ? halves.second.left : halves.second.top;
+    const int start = columns ? region.left : region.top;
+    const int end = columns ? region.right : region.bottom;
+    double sum = 0;
+    int at = start + 1;
+    for (; at < end; ++at) {
+        SkyRegion line = region;
+        (columns ? line.left : line.top) = at - 1;
+        (columns ? line.right : line.bottom) = at;
+        const double more = brightness(sky, line);
+        if (at > start + 1 && sum + more / 2 > region.brightness / 2) {
+            --at;
+            break;
+        }
+        sum += more;
+    }
+    first_end = second_start = std::clamp(at, start + 1, end - 1);
+    halves.first.brightness = brightness(sky, halves.first);
+    halves.second.brightness = brightness(sky, halves.second);
+    return halves;
+}
+
+EnvironmentLight light_of(Sky& sky, const SkyRegion& region) {
+    EnvironmentLight light;
+    glm::dvec3 middle(0.0);
+    for (int y = region.top; y < region.bottom; ++y) {
+        for (int x = region.left; x < region.right; ++x) {
+            const Texel& texel = sky.at(x, y);
+            middle += texel.direction * std::max(0.0, luma(sky.above(sky.at(x, y))));
+            light.irradiance += sky.above(texel);
+        }
+    }
+    light.irradiance = glm::max(light.irradiance, glm::dvec3(0.0));
+    const double length = glm::length(middle);
+    light.direction = length > 0 ? -middle / length : -sky.at(region.left, region.top).direction;
+    return light;
+}
+
+/// Lloyd's iteration: every texel goes to its nearest sun, every sun to the middle of its texels'
+/// light. What is left of the error of suns for regions, light times distance squared, falls with
+/// each round; the regions' straight cuts are no longer seen.
+void spread(Sky& sky, std::vector<EnvironmentLight>& lights) {
+    std::vector<size_t> nearest(sky.texels().size(), 0);
+    std::vector<glm::dvec3> middles(lights.size());
+    for (int round = 0; round < kRounds; ++round) {
+        std::fill(middles.begin(), middles.end(), glm::dvec3(0.0));
+        for (size_t t = 0; t < nearest.size(); ++t) {
+            const Texel& texel = sky.texels()[t];
+            double closest = -2;
+            for (size_t i = 0; i < lights.size(); ++i) {
+                const double cosine = -glm::dot(lights[i].direction, texel.direction);
+                if (cosine > closest) {
+                    closest = cosine;
+                    nearest[t] = i;
+                }
+            }
+            middles[nearest[t]] += texel.direction * std::max(0.0, luma(sky.above(texel)));
+        }
+        for (size_t i = 0; i < lights.size(); ++i) {
+            if (glm::length(middles[i]) > 0)
+                lights[i].direction = -glm::normalize(middles[i]);
+        }
+    }
+    for (EnvironmentLight& light : lights)
+        light.irradiance = glm::dvec3(0.0);
+    for (size_t t = 0; t < nearest.size(); ++t)
+        lights[nearest[t]].irradiance += sky.above(sky.texels()[t]);
+    for (EnvironmentLight& light : lights)
+        light.irradiance = glm::max(light.irradiance, glm::dvec3(0.0));
+}
+
+/// Evenly spread over the sphere (a golden spiral).
+std::vector<glm::dvec3> normals() {
+    std::vector<glm::dvec3> out;
+    for (int i = 0; i < kNormals; ++i) {
+        const double z = 1 - (2 * i + 1.0) / kNormals;
+        const double angle = i * kPi * (3 - std::sqrt(5.0));
+        const double r = std::sqrt(1 - z * z);
+        out.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+    return out;
+}
+
+/// Non-negative least squares, one strength at a time: what each normal receives from the suns and
+/// the uniform sky (the last unknown) against what it receives from the picture.
+void fit(const Sky& sky, EnvironmentLights& lights) {
+    const size_t count = lights.lights.size() + 1;
+    std::vector<double> gram(count * count, 0.0);
+    std::vector<glm::dvec3> wanted(count, glm::dvec3(0.0));
+    std::vector<double> received(count, kPi);
+    for (const glm::dvec3& normal : normals()) {
+        glm::dvec3 target(0.0);
+        for (const Texel& texel : sky.texels())
+            target += texel.power() * std::max(0.0, glm::dot(normal, texel.direction));
+        for (size_t i = 0; i + 1 < count; ++i)
+            received[i] = std::max(0.0, -glm::dot(normal, lights.lights[i].direction));
+        for (size_t i = 0; i < count; ++i) {
+            wanted[i] += received[i] * target;
+            for (size_t k = 0; k < count; ++k)
+                gram[i * count + k] += received[i] * received[k];
+        }
+    }
+    const EnvironmentLights start = lights;
+    const auto strength = [count](auto& of, size_t i) -> auto& {
+        return i + 1 < count ? of.lights[i].irradiance : of.ambient;
+    };
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+        for (size_t i = 0; i < count; ++i) {
+            const double keep = kKeep * gram[i * count + i];
+            glm::dvec3 rest = wanted[i] + keep * strength(start, i);
+            for (size_t k = 0; k < count; ++k) {
+                if (k != i)
+                    rest -= gram[i * count + k] * strength(lights, k);
+            }
+            strength(lights, i) = glm::max(glm::dvec3(0.0), rest / (gram[i * count + i] + keep));
+        }
+    }
+}
+
+}  // namespace
+
+glm::dvec3 equirectangular_direction(double u, double v) {
+    const double turn = kPi * (1 - 2 * u);
+    const double height = kPi * (v - 0.5);
+    return {std::cos(height) * std::cos(turn), std::cos(height) * std::sin(turn), std::sin(height)};
+}
+
+EnvironmentLights environment_lights(const World& world, size_t count) {
+    EnvironmentLights out;
+    if (!world.environment)
+        return out;
+    Sky sky(world, image::decoded(*world.environment));
+    out.ambient = sky.take_uniform();
+    std::vector<SkyRegion> regions{{0, 0, sky.width(), sky.height()}};
+    regions[0].brightness = brightness(sky, regions[0]);
+    while (regions.size() < count) {
+        const auto worst = std::max_element(regions.begin(), regions.end(),
+                                            [&](const SkyRegion& a, const SkyRegion& b) {
+                                                return badness(sky, a) < badness(sky, b);
+                                            });
+        if (!(badness(sky, *worst) > 0))
+            break;
+        const auto [first, second] = cut(sky, *worst);
+        *worst = first;
+        regions.push_back(second);
+    }
+    for (const SkyRegion& region : regions) {
+        if (region.brightness > 0 && out.lights.size() < count)
+            out.lights.push_back(light_of(sky, region));
+    }
+    if (!out.lights.empty())
+        spread(sky, out.lights);
+    fit(sky, out);
+    std::erase_if(out.lights, [](const EnvironmentLight& light) {
+        return light.irradiance == glm::dvec3(0.0);
+    });
+    return out;
+}
+
+}  // namespace lodestone::light

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/light_arrival.h"
+
+#include "base/maths.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lodestone::light {
+namespace {
+
+/// 1 within the cone, falling smoothly to 0 at its edge.
+double in_cone(const Light& spot, double cosine) {
+    const double outer = std::cos(std::min(spot.spot_size / 2, kPi / 2));
+    if (!(cosine > outer))
+        return 0;
+    const double width = std::clamp(spot.spot_blend, 0.0, 1.0) * (1 - outer);
+    const double t = width > 0 ? std::min(1.0, (cosine - outer) / width) : 1.0;
+    return t * t * (3 - 2 * t);
+}
+
+/// Share of what an area would send if it had no spread.
+double in_spread(const Light& area, double cosine) {
+    const double s = area.spread / 2;
+    if (!(s > 0) || s > kPi / 2 - 0.01)
+        return 1;
+    const double x = std::acos(std::clamp(cosine, -1.0, 1.0));
+    if (x >= s)
+        return 0;
+    const double norm = s < 1e-2 ? 3 / (s * s) : 1 / (1 - s / std::tan(s));
+    return norm * std::sin(s - x) / (std::sin(s) * std::max(1e-9, std::cos(x)));
+}
+
+}  // namespace
+
+glm::dvec3 energy_of(const Light& light) {
+    return light.color * light.power;
+}
+
+double luminance(const glm::dvec3& color) {
+    return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+double extent_of(const Light& light) {
+    if (light.kind == LightKind::Area)
+        return 0.5 * glm::length(glm::abs(light.edge_u) + glm::abs(light.edge_v));
+    return std::max(0.0, light.radius);
+}
+
+bool lamp(const Light& light) {
+    const glm::dvec3 energy = energy_of(light);
+    if (light.kind == LightKind::Sun || !finite(energy) || !finite(light.position) ||
+        std::min({energy.x, energy.y, energy.z}) < 0 ||
+        !(std::max({energy.x, energy.y, energy.z}) > 0) || !std::isfinite(extent_of(light)))
+        return false;
+    if (light.kind == LightKind::Point)
+        return true;
+    const double length = glm::length(light.direction);
+    if (!(length > 0) || !std::isfinite(length))
+        return false;
+    return light.kind == LightKind::Spot || glm::length(glm::cross(light.edge_u, light.edge_v)) > 0;
+}
+
+glm::dvec3 arriving(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
+    const glm::dvec3 way = light.position - point;
+    const double square = glm::dot(way, way);
+    const double distance = std::sqrt(square);
+    const double facing = glm::dot(way, normal);
+    if (!(facing > 0))
+        return glm::dvec3(0.0);
+    const double cosine = facing / distance;
+    const double r = light.radius;
+    if (light.kind == LightKind::Point)
+        return energy_of(light) * (cosine / (4 * kPi * kPi * (square + r * r + 1e-9)));
+    const double sent = -glm::dot(way, glm::normalize(light.direction)) / distance;
+    if (!(sent > 0))
+        return glm::dvec3(0.0);
+    if (light.kind == LightKind::Spot)
+        return energy_of(light) *
+               (cosine * sent * in_cone(light, sent) / (4 * kPi * kPi * (square + r * r + 1e-9)));
+    const double size =
+        glm::length(glm::cross(light.edge_u, light.edge_v)) * (light.round ? kPi / 4 : 1);
+    return energy_of(light) *
+           (cosine * sent * in_spread(light, sent) / (4 * kPi * (square + size / kPi)));
+}
+
+double step_at(double radiance) {
+    constexpr double kStep = 1.0 / 255;
+    const double shown = std::min(radiance, 1.0);
+    if (!(shown > 0.0031308))
+        return kStep / 12.92;
+    return kStep * 2.4 / 1.055 * std::pow(shown, 1 - 1 / 2.4);
+}
+
+}  // namespace lodestone::light

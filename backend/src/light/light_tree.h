@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light tree: lamps joined two by two into single lights that stand for them (5.4.1).
+#pragma once
+
+#include "base/job.h"
+#include "model/view.h"
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace lodestone::light {
+
+inline constexpr uint32_t kNoLight = ~uint32_t{0};
+
+struct LightNode {
+    Light light;  // a lamp as it is, or one that stands for all below
+    uint32_t left = kNoLight;
+    uint32_t right = kNoLight;
+    uint32_t first = 0;  // its lamps: LightTree::order[first, first + count)
+    uint32_t count = 1;
+    Box3 box;  // of their places
+
+    bool leaf() const { return left == kNoLight; }
+};
+
+/// Node i is lamp i for the first of them; children come before parents. A root is what is joined
+/// no further: unlike the others, or parted from them.
+struct LightTree {
+    std::vector<LightNode> nodes;
+    std::vector<uint32_t> roots;  // rising
+    std::vector<uint32_t> order;
+
+    std::span<const uint32_t> lamps(uint32_t node) const {
+        return {order.data() + nodes[node].first, nodes[node].count};
+    }
+};
+
+/// Whether nothing lies between two points. Asked from one thread.
+using Clear = std::function<bool(const glm::dvec3&, const glm::dvec3&)>;
+
+/// One light of the energy of both (exactly: color times power add up): at their centroid by
+/// energy, areas as large as their second moments together say.
+Light joined(const Light& a, const Light& b);
+
+/// Joins nearest ones first, by energy times the square of the extent, only lamps of one kind that
+/// shine alike (spots and areas: within 15 degrees), and only where nothing lies between them nor
+/// between them and their centroid (all pairs of few; of many, 16 pairs and 16 to the centroid).
+/// Suns, and what is not finite, shines not or takes light away, are roots of their own.
+/// Deterministic. cost: 10,000 lamps .1 s, besides what `clear` takes.
+LightTree make_light_tree(std::span<const Light> lights, const Clear& clear, const Job& job = {});
+
+}  // namespace lodestone::light

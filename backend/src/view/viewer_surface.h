@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surface: what a cut draws, as loose triangles for viewers that show it in false colors.
+#pragma once
+
+#include "choose/cut.h"
+
+namespace lodestone::view {
+
+/// Instead of a LOD number: only the box of its bound is shown.
+inline constexpr uint32_t kBoxOnly = ~uint32_t{0};
+
+/// For each of cut.chosen the LOD number that shows it so that all together have about
+/// `most_triangles` at most: the chosen one, or where that has too many the finest coarser one that
+/// has not, or a box. The same limit holds for every occurrence. Never less than a box (12) each.
+std::vector<uint32_t> surface_levels(const Model& model, const choose::Cut& cut,
+                                     uint64_t most_triangles);
+
+struct Surface {
+    std::vector<glm::vec3> corners;  // three for each triangle, in the world
+    std::vector<uint32_t> owners;    // of each triangle: its position in cut.chosen
+};
+
+/// `levels` as above; their meshes must be resident. Without what cameras do not see. The same on
+/// any number of threads. Throws Error(Internal) for a mesh that is not resident, Error(Cancelled).
+Surface surface_of(const Model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
+                   const Job& job = {});
+
+/// How light a triangle is shown, .55 ... 1: lit from above and a little from the side, on both
+/// sides alike, so that shapes can be told in one color.
+double shade_of(const glm::vec3* corners);
+
+}  // namespace lodestone::view
