@@ -2,7 +2,7 @@
 // Models with all their levels, built in the running test's scratch folder.
 #pragma once
 
-#include "build/hierarchy.h"
+#include "hierarchy/hierarchy_build.h"
 #include "scratch.h"
 #include "segment/store.h"
 
@@ -10,6 +10,6 @@
 inline void build_in(lodestone::Model& model, const std::string& name) {
     lodestone::Problems problems;
     const lodestone::segment::Store store(scratch(name));
-    lodestone::build::build_hierarchy(model, store, {}, problems, {});
+    lodestone::hierarchy::build_hierarchy(model, store, {}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
 }

@@ -2,7 +2,7 @@
 // Closed forms: area and second moments of primitives (dissertation A.10-A.19), to test against.
 #pragma once
 
-#include "measure/surface_inertia.h"
+#include "measure/visible/surface_inertia.h"
 
 namespace lodestone::closed_forms {
 

@@ -3,9 +3,9 @@
 // rays. For tests and for tests/bench/replace_shapes.cpp.
 #pragma once
 
-#include "build/judge.h"
-#include "measure/agreement.h"
-#include "measure/visible.h"
+#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "measure/pictures/picture_agreement.h"
+#include "measure/visible/visible_attributes.h"
 #include "simplify/simplify.h"
 #include "solids/composite_replacement.h"
 #include "solids/solid_replacement.h"
@@ -48,8 +48,8 @@ inline std::vector<Material> paint(Mesh& mesh) {
 inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_solids = 32) {
     const std::vector<Material> materials = paint(mesh);
     image::TexelCache texels;
-    build::Settings settings;
-    build::Judge judge(mesh, materials, texels, settings, false, settings.seed, 0, {});
+    hierarchy::Settings settings;
+    hierarchy::Judge judge(mesh, materials, texels, settings, false, settings.seed, 0, {});
     judge.measure_finest(mesh, {});
     judge.take_pictures(mesh, coarse, {});
     const Attributes wanted = judge.attributes();
@@ -73,7 +73,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     };
 
     std::vector<Rematched> out;
-    const auto add = [&](const std::string& name, build::Candidate candidate, Mesh drawn) {
+    const auto add = [&](const std::string& name, hierarchy::Candidate candidate, Mesh drawn) {
         judge.match_brightness(candidate, mesh, std::numeric_limits<double>::infinity(), {});
         glm::dvec3 light(0.0);
         for (const measure::AgreementReference& picture : pictures)
@@ -84,7 +84,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     };
     const auto add_solid = [&](const std::string& name, Kind kind, const Primitive& primitive,
                                double opacity) {
-        build::Candidate candidate;
+        hierarchy::Candidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {solids::clear_material(solids::mean_material(wanted), opacity)};
@@ -104,7 +104,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
         for (const solids::Clustered& level : levels) {
             if (level.composite.solids.size() > most_solids)
                 break;
-            build::Candidate candidate;
+            hierarchy::Candidate candidate;
             candidate.kind = Kind::Composite;
             candidate.composite = std::make_shared<const Composite>(level.composite);
             for (size_t i = 0; i < level.attributes.size(); ++i)
@@ -118,7 +118,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     if (!solids::boxlike(wanted))
         add_composites("clear composite",
                        solids::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
-    build::Candidate collapsed;
+    hierarchy::Candidate collapsed;
     collapsed.mesh = std::make_shared<const Mesh>(
         simplify::simplify_mesh(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
     collapsed.materials = materials;

@@ -3,7 +3,7 @@
 #include "backend/foliage.h"
 #include "backend/with_rays.h"
 #include "base/parallel.h"
-#include "measure/agreement.h"
+#include "measure/pictures/picture_agreement.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include "backend/rematched.h"
 #include "backend/with_rays.h"
 #include "base/files.h"
-#include "build/hierarchy.h"
-#include "measure/agreement.h"
+#include "hierarchy/hierarchy_build.h"
+#include "measure/pictures/picture_agreement.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "solids/stand_in_material.h"
@@ -46,7 +46,8 @@ Mesh drawn(const Representation& level) {
 void expect_as_bright(Model& model, const std::string& name, size_t fewest_levels,
                       double uncovered) {
     Problems problems;
-    build::build_hierarchy(model, segment::Store(scratch(name)), build::Settings{}, problems, {});
+    hierarchy::build_hierarchy(model, segment::Store(scratch(name)), hierarchy::Settings{},
+                               problems, {});
     const Object& object = model.objects[model.root];
     const Representation& finest = object.representations[0];
     image::TexelCache texels;
@@ -174,7 +175,8 @@ TEST_F(Brightness, PagesShowAtTheSidesOfABookThatIsABox) {
     model.materials.push_back(models::colored("paper", glm::dvec3(0.8)));
     summarize(finest, model);
     Problems problems;
-    build::build_hierarchy(model, segment::Store(scratch("book")), build::Settings{}, problems, {});
+    hierarchy::build_hierarchy(model, segment::Store(scratch("book")), hierarchy::Settings{},
+                               problems, {});
     const Representation& last = model.objects[model.root].representations.back();
     ASSERT_EQ(last.summary.kind, Kind::Mesh);
     const Mesh& box = last.mesh();

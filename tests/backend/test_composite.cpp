@@ -2,7 +2,7 @@
 // Guards composites: as much surface as the original, nested, matched cluster by cluster.
 #include "backend/foliage.h"
 #include "backend/with_rays.h"
-#include "measure/visible.h"
+#include "measure/visible/visible_attributes.h"
 #include "ray/scene.h"
 #include "solids/composite_replacement.h"
 #include "solids/match_solids.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is said about convex meshes, and about solids inside and around them.
 #include "backend/shapes.h"
-#include "measure/convexity.h"
+#include "measure/visible/convex_shape.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

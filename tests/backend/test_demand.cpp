@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards building for one picture: what helps it first, within its share, and never another result.
 #include "backend/models.h"
-#include "build/demand.h"
-#include "build/effort.h"
-#include "build/hierarchy.h"
 #include "choose/cut.h"
+#include "hierarchy/hierarchy_build.h"
+#include "hierarchy/run/build_demand.h"
+#include "hierarchy/run/effort_estimate.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -22,16 +22,17 @@ View view_from(double distance) {
     return view;
 }
 
-build::Settings settings_for(double distance, double share) {
-    build::Settings settings;
-    settings.demand = build::Demand{view_from(distance), share};
+hierarchy::Settings settings_for(double distance, double share) {
+    hierarchy::Settings settings;
+    settings.demand = hierarchy::Demand{view_from(distance), share};
     return settings;
 }
 
-build::Report build_in(Model& model, const fs::path& folder, const build::Settings& settings) {
+hierarchy::Report build_in(Model& model, const fs::path& folder,
+                           const hierarchy::Settings& settings) {
     Problems problems;
-    const build::Report report =
-        build::build_hierarchy(model, segment::Store(folder), settings, problems, {});
+    const hierarchy::Report report =
+        hierarchy::build_hierarchy(model, segment::Store(folder), settings, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
 }
@@ -50,16 +51,16 @@ Model three(double near) {
     return model;
 }
 
-std::vector<build::Stale> everything(const Model& model) {
-    std::vector<build::Stale> stale;
+std::vector<hierarchy::Stale> everything(const Model& model) {
+    std::vector<hierarchy::Stale> stale;
     for (const ObjectIndex index : bottom_up(model))
         stale.push_back({index, {}});
     return stale;
 }
 
-std::vector<std::string> called_names(const Model& model, const build::Settings& settings) {
-    const std::vector<build::Stale> stale = everything(model);
-    const std::vector<uint8_t> called = build::called_for(model, stale, settings, {});
+std::vector<std::string> called_names(const Model& model, const hierarchy::Settings& settings) {
+    const std::vector<hierarchy::Stale> stale = everything(model);
+    const std::vector<uint8_t> called = hierarchy::called_for(model, stale, settings, {});
     std::vector<std::string> names;
     for (size_t i = 0; i < stale.size(); ++i) {
         if (called[i] != 0)
@@ -74,7 +75,7 @@ using Names = std::vector<std::string>;
 
 TEST(Demand, OfNothingStaleCallsForNothing) {
     const Model model = three(1.1);
-    EXPECT_TRUE(build::called_for(model, {}, settings_for(0, 1), {}).empty());
+    EXPECT_TRUE(hierarchy::called_for(model, {}, settings_for(0, 1), {}).empty());
 }
 
 TEST(Demand, WithoutTimeCallsForNothing) {
@@ -100,10 +101,10 @@ TEST(Demand, CallsForGroupsOnlyWhenAllBelowIsThere) {
     EXPECT_EQ(all, (Names{"ball", "pair", "row"}));
     // Half a share less than all of it takes leaves out the last, not the first.
     double seconds = 0;
-    for (const build::Stale& stale : everything(rows))
-        seconds += build::seconds_to_build(rows.objects[stale.index], {});
+    for (const hierarchy::Stale& stale : everything(rows))
+        seconds += hierarchy::seconds_to_build(rows.objects[stale.index], {});
     const View view = view_from(3000);
-    const double picture = build::seconds_to_draw(rows, choose::choose(rows, view), view);
+    const double picture = hierarchy::seconds_to_draw(rows, choose::choose(rows, view), view);
     EXPECT_EQ(called_names(rows, settings_for(3000, 0.9 * seconds / picture)),
               (Names{"ball", "pair"}));
 }
@@ -133,7 +134,7 @@ TEST(Demand, OfAViewOfNoDepthIsFinite) {
     // The camera in the middle of everything, a pixel as large as the world, one of no error.
     Model model = three(0);
     for (const double error : {0.0, 1e-300, 1e300}) {
-        build::Settings settings = settings_for(0, 1e9);
+        hierarchy::Settings settings = settings_for(0, 1e9);
         settings.demand->view.pixel_error = error;
         const Names names = called_names(model, settings);
         EXPECT_LE(names.size(), 4U);
@@ -147,7 +148,7 @@ TEST(Demand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
     const fs::path parts = scratch("parts");
     const fs::path once = scratch("once");
     Model first = three(1.1);
-    const build::Report helped = build_in(first, parts, settings_for(0, 1));
+    const hierarchy::Report helped = build_in(first, parts, settings_for(0, 1));
     EXPECT_EQ(helped.built, 1U);
     EXPECT_EQ(helped.left, 3U);
     EXPECT_EQ(first.objects[0].representations.size(), 1U);  // close
@@ -158,7 +159,7 @@ TEST(Demand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
     EXPECT_GT(again.objects[1].representations.size(), 1U);
 
     Model rest = three(1.1);
-    const build::Report full = build_in(rest, parts, {});
+    const hierarchy::Report full = build_in(rest, parts, {});
     EXPECT_EQ(full.built, 3U);
     EXPECT_EQ(full.left, 0U);
     Model whole = three(1.1);

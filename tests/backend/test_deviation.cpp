@@ -6,8 +6,8 @@
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "measure/deviation.h"
-#include "measure/point_tree.h"
+#include "measure/deviation/point_tree.h"
+#include "measure/deviation/surface_deviation.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 // triangles as one likes.
 #include "backend/shapes.h"
 #include "base/random.h"
-#include "measure/deviation.h"
-#include "measure/looks.h"
+#include "measure/deviation/distinct_looks.h"
+#include "measure/deviation/surface_deviation.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

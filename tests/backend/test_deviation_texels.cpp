@@ -4,7 +4,7 @@
 #include "backend/grids.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
-#include "measure/deviation.h"
+#include "measure/deviation/surface_deviation.h"
 
 #include <gtest/gtest.h>
 

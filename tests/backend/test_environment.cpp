@@ -4,7 +4,7 @@
 #include "backend/built.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/environment.h"
+#include "hierarchy/environment_objects.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -43,7 +43,8 @@ Plot plot(double height, double thickness = 0.2, Role role = Role::Automatic) {
 }
 
 std::optional<size_t> ground_in(const Model& model) {
-    return build::ground_of(model, model.root, build::marked_environment(model, bottom_up(model)));
+    return hierarchy::ground_of(model, model.root,
+                                hierarchy::marked_environment(model, bottom_up(model)));
 }
 
 class Environment : public WithRays {};
@@ -77,7 +78,7 @@ TEST(Ground, IsToldOfAllThatIsBelowIt) {
     const std::vector<ObjectIndex> order = bottom_up(now.model);
     summarize_assemblies(now.model, order);
     const std::vector<uint8_t> ground =
-        build::grounds_of(now.model, order, build::marked_environment(now.model, order));
+        hierarchy::grounds_of(now.model, order, hierarchy::marked_environment(now.model, order));
     EXPECT_EQ(ground[tiles], 1);
     EXPECT_EQ(ground[now.ground], 1);
     EXPECT_EQ(ground[now.stone], 0);

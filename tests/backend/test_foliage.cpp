@@ -5,11 +5,11 @@
 #include "backend/models.h"
 #include "backend/with_rays.h"
 #include "base/files.h"
-#include "build/candidate.h"
-#include "build/flatten.h"
-#include "build/hierarchy.h"
-#include "build/stand_ins.h"
-#include "measure/visible.h"
+#include "hierarchy/candidate.h"
+#include "hierarchy/flattened_group.h"
+#include "hierarchy/hierarchy_build.h"
+#include "hierarchy/object_stand_ins.h"
+#include "measure/visible/visible_attributes.h"
 #include "ray/scene.h"
 #include "scratch.h"
 
@@ -200,12 +200,12 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
     model.root = models::add_group(model, "both",
                                    {{0, Affine{}, "card"}, {1, models::moved(3, 0, 0), "bare"}});
     summarize_assemblies(model, bottom_up(model));
-    const build::MeshSource source = [](const Representation& representation) {
+    const hierarchy::MeshSource source = [](const Representation& representation) {
         return std::get<std::shared_ptr<const Mesh>>(representation.payload);
     };
     const std::vector<uint64_t> uses(model.objects.size(), 1);
-    build::OpenedGroup opened(model, model.root, uses);
-    const build::Flat flat = build::flatten(opened, 0, source, {});
+    hierarchy::OpenedGroup opened(model, model.root, uses);
+    const hierarchy::Flat flat = hierarchy::flatten(opened, 0, source, {});
     ASSERT_EQ(flat.materials.size(), 2u);
     EXPECT_EQ(flat.mesh.slots, (std::vector<uint16_t>{0, 0, 1, 1}));
     EXPECT_TRUE(textured(flat.materials[0]));
@@ -216,7 +216,7 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
 }
 
 TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) {
-    using build::Candidate;
+    using hierarchy::Candidate;
     Candidate mesh;
     mesh.mesh = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
     mesh.error = 0.1;
@@ -229,21 +229,21 @@ TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) 
     clear.composite = std::make_shared<const Composite>(solids);
     clear.materials.resize(1);
     clear.error = 0.15;
-    EXPECT_EQ(build::tracing_of(clear), 0) << "opaque";
-    EXPECT_EQ(build::tracing_of(mesh), 0);
+    EXPECT_EQ(hierarchy::tracing_of(clear), 0) << "opaque";
+    EXPECT_EQ(hierarchy::tracing_of(mesh), 0);
     clear.materials[0].alpha_mode = AlphaMode::Blend;
     clear.materials[0].alpha = 0.4;
-    const double once = build::tracing_of(clear);
+    const double once = hierarchy::tracing_of(clear);
     EXPECT_NEAR(once, 150 * 0.5 * 8 * 3.14159265 / (0.15 * 0.15), 1e-3 * once);
     clear.error *= 2;
-    EXPECT_NEAR(build::tracing_of(clear), once / 4, 1e-9 * once);
+    EXPECT_NEAR(hierarchy::tracing_of(clear), once / 4, 1e-9 * once);
     clear.error /= 2;
     for (const uint64_t uses : {1, 100}) {
         std::vector<Candidate> both{mesh, clear};
-        build::keep_useful(both, 100000000, uses);
+        hierarchy::keep_useful(both, 100000000, uses);
         EXPECT_EQ(both.size(), uses == 1 ? 2u : 1u);
         EXPECT_EQ(both[0].kind, Kind::Mesh);
     }
     clear.error = 0;
-    EXPECT_EQ(build::tracing_of(clear), 0);
+    EXPECT_EQ(hierarchy::tracing_of(clear), 0);
 }

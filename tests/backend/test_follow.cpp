@@ -4,7 +4,7 @@
 #include "backend/with_rays.h"
 #include "base/clock.h"
 #include "deform/level_binding.h"
-#include "measure/deviation.h"
+#include "measure/deviation/surface_deviation.h"
 #include "ray/scene.h"
 
 #include <cmath>

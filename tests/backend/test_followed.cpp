@@ -5,8 +5,8 @@
 #include "backend/with_rays.h"
 #include "base/files.h"
 #include "base/parallel.h"
-#include "build/hierarchy.h"
-#include "measure/deviation.h"
+#include "hierarchy/hierarchy_build.h"
+#include "measure/deviation/surface_deviation.h"
 #include "ray/scene.h"
 #include "scratch.h"
 
@@ -40,7 +40,7 @@ Model scene_at(int frame, uint32_t cells = 32) {
 
 struct Built {
     Model model;
-    build::Report report;
+    hierarchy::Report report;
     Problems problems;
 
     const Object& flag() const { return model.objects[0]; }
@@ -55,11 +55,11 @@ struct Built {
 Built build_frame(int frame, const fs::path& folder, const std::vector<Model>& poses,
                   uint32_t cells = 32) {
     Built built{scene_at(frame, cells), {}, {}};
-    build::Settings settings;
+    hierarchy::Settings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
-    built.report =
-        build::build_hierarchy(built.model, segment::Store(folder), settings, built.problems, {});
+    built.report = hierarchy::build_hierarchy(built.model, segment::Store(folder), settings,
+                                              built.problems, {});
     return built;
 }
 
@@ -236,26 +236,26 @@ TEST_F(Followed, PosesThatAreNoNumbersAreNotUsed) {
     // A frame's own broken point: nothing hangs on it, or the level is left out.
     Model model = scene_at(3);
     model.objects[0].pose = std::make_shared<const Pose>(broken);
-    build::Settings settings;
+    hierarchy::Settings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
     Problems problems;
-    build::build_hierarchy(model, segment::Store(folder), settings, problems, {});
+    hierarchy::build_hierarchy(model, segment::Store(folder), settings, problems, {});
     EXPECT_GE(model.objects[0].representations.size(), 1u);
 }
 
 TEST_F(Followed, ACancelledBuildLeavesTheModelAsItWas) {
     const std::vector<Model> poses = some_poses();
     Model model = scene_at(3);
-    build::Settings settings;
+    hierarchy::Settings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
     volatile int32_t cancel = 1;
     int32_t stage = 0;
     double fraction = 0;
     Problems problems;
-    EXPECT_THROW(build::build_hierarchy(model, segment::Store(scratch("cancel")), settings,
-                                        problems, Job(&cancel, &stage, &fraction)),
+    EXPECT_THROW(hierarchy::build_hierarchy(model, segment::Store(scratch("cancel")), settings,
+                                            problems, Job(&cancel, &stage, &fraction)),
                  Error);
     EXPECT_EQ(model.objects[0].representations.size(), 1u);
 }

@@ -4,9 +4,9 @@
 #include "backend/lamps.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/glow.h"
-#include "measure/agreement.h"
-#include "measure/deviation.h"
+#include "hierarchy/evaluators/lamp_glow.h"
+#include "measure/deviation/surface_deviation.h"
+#include "measure/pictures/picture_agreement.h"
 #include "simplify/simplify.h"
 
 #include <algorithm>
@@ -53,17 +53,18 @@ TEST_F(Glow, WithoutLampsLevelsAreThoseOfSimplification) {
     const Mesh ball = shapes::sphere(1, 3);
     const std::vector<size_t> targets{200, 20};
     const std::vector<Mesh> plain = simplify::simplify_chain(ball, targets);
-    const std::vector<Mesh> levels = build::simplify_with_lamps(ball, {}, targets, {});
+    const std::vector<Mesh> levels = hierarchy::simplify_with_lamps(ball, {}, targets, {});
     ASSERT_EQ(levels.size(), plain.size());
     for (size_t i = 0; i < levels.size(); ++i)
         EXPECT_EQ(levels[i].positions, plain[i].positions);
-    for (const Mesh& level : build::simplify_with_lamps(Mesh{}, materials(), targets, {}))
+    for (const Mesh& level : hierarchy::simplify_with_lamps(Mesh{}, materials(), targets, {}))
         EXPECT_TRUE(level.empty());
 }
 
 TEST_F(Glow, ABulbInItsGlobeIsThereInEveryLevel) {
     const std::vector<size_t> targets{700, 280, 112, 45, 24};
-    const std::vector<Mesh> levels = build::simplify_with_lamps(lamp(), materials(), targets, {});
+    const std::vector<Mesh> levels =
+        hierarchy::simplify_with_lamps(lamp(), materials(), targets, {});
     ASSERT_EQ(levels.size(), targets.size());
     for (size_t i = 0; i < levels.size(); ++i) {
         EXPECT_GE(triangles_of(levels[i], kBulb), 4u) << i;
@@ -76,7 +77,7 @@ TEST_F(Glow, WhatGlowsAllOverIsNoLampAmongOtherThings) {
     for (Material& material : all)
         material.emission = {0.1, 0.1, 0.1};
     const std::vector<size_t> targets{100};
-    EXPECT_EQ(build::simplify_with_lamps(lamp(), all, targets, {})[0].positions,
+    EXPECT_EQ(hierarchy::simplify_with_lamps(lamp(), all, targets, {})[0].positions,
               simplify::simplify_chain(lamp(), targets)[0].positions);
 }
 

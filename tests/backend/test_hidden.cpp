@@ -3,8 +3,8 @@
 // covered by a stand-in that other rays see.
 #include "backend/models.h"
 #include "base/files.h"
-#include "build/hierarchy.h"
 #include "choose/cut.h"
+#include "hierarchy/hierarchy_build.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "segment/json.h"
@@ -87,7 +87,7 @@ TEST(Hidden, OnlyGroupsWithNothingHiddenInThemHaveStandIns) {
     Model model = house(kReflectionRays, 0);
     Problems problems;
     const segment::Store store(scratch("build"));
-    build::build_hierarchy(model, store, {}, problems, {});
+    hierarchy::build_hierarchy(model, store, {}, problems, {});
     EXPECT_TRUE(problems.empty());
     for (const ObjectIndex index : {0u, 1u, 2u, 3u})
         EXPECT_GT(model.objects[index].representations.size(), 1u) << index;
@@ -98,9 +98,9 @@ TEST(Hidden, OnlyGroupsWithNothingHiddenInThemHaveStandIns) {
     EXPECT_EQ(cut.nodes[cut.chosen[0]].hidden, 0);
     EXPECT_EQ(cut.nodes[cut.chosen[1]].hidden, kReflectionRays);
     Model again = house(kReflectionRays, 0);
-    EXPECT_EQ(build::build_hierarchy(again, store, {}, problems, {}).built, 0u);
+    EXPECT_EQ(hierarchy::build_hierarchy(again, store, {}, problems, {}).built, 0u);
     Model shown = house(0, 0);
-    EXPECT_EQ(build::build_hierarchy(shown, store, {}, problems, {}).built, 1u);
+    EXPECT_EQ(hierarchy::build_hierarchy(shown, store, {}, problems, {}).built, 1u);
 }
 
 TEST(Hidden, StoreKeepsItAndTilesLeaveOutWhatNoCameraSees) {

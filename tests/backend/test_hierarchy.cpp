@@ -4,10 +4,10 @@
 #include "backend/with_rays.h"
 #include "base/files.h"
 #include "base/parallel.h"
-#include "build/flatten.h"
-#include "build/hierarchy.h"
-#include "build/surroundings.h"
 #include "choose/cut.h"
+#include "hierarchy/flattened_group.h"
+#include "hierarchy/hierarchy_build.h"
+#include "hierarchy/run/stand_in_surroundings.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "segment/json.h"
@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-build::Report build_in(Model& model, const fs::path& folder) {
+hierarchy::Report build_in(Model& model, const fs::path& folder) {
     Problems problems;
-    const build::Report report =
-        build::build_hierarchy(model, segment::Store(folder), build::Settings{}, problems, {});
+    const hierarchy::Report report = hierarchy::build_hierarchy(
+        model, segment::Store(folder), hierarchy::Settings{}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
 }
@@ -63,7 +63,7 @@ Model row_of_terrains(int count) {
 /// Builds in an empty folder and stops as soon as a store is there; false when it was done before.
 bool stopped_when_something_is_kept(Model model, const fs::path& folder) {
     const segment::Store store(folder);
-    build::Settings settings;
+    hierarchy::Settings settings;
     settings.keep_every_s = 0;
     volatile int32_t cancel = 0;
     std::atomic<bool> over{false};
@@ -75,7 +75,8 @@ bool stopped_when_something_is_kept(Model model, const fs::path& folder) {
     Problems problems;
     bool stopped = false;
     try {
-        build::build_hierarchy(model, store, settings, problems, Job(&cancel, nullptr, nullptr));
+        hierarchy::build_hierarchy(model, store, settings, problems,
+                                   Job(&cancel, nullptr, nullptr));
     } catch (const Error& error) {
         stopped = error.status == Status::Cancelled;
     }
@@ -121,7 +122,7 @@ class Hierarchy : public WithRays {};
 TEST_F(Hierarchy, EmptyModelBuildsAnEmptyStore) {
     Model model;
     model.root = models::add_group(model, "empty", {});
-    const build::Report report = build_in(model, scratch("empty"));
+    const hierarchy::Report report = build_in(model, scratch("empty"));
     EXPECT_EQ(model.objects[0].representations.size(), 1u);
     EXPECT_EQ(report.representations, 1u);
 }
@@ -153,7 +154,7 @@ TEST_F(Hierarchy, SmoothClosedMeshKeepsItsFineLevels) {
 
 TEST_F(Hierarchy, RoomHasListsInOrderAndAStandInEverywhere) {
     Model model = room();
-    const build::Report report = build_in(model, scratch("room"));
+    const hierarchy::Report report = build_in(model, scratch("room"));
     EXPECT_EQ(report.objects, 5u);
     EXPECT_EQ(report.built, 5u);
     expect_valid(model);
@@ -164,8 +165,8 @@ TEST_F(Hierarchy, AnEmptySceneIsNoObjectToBuild) {
     const ObjectIndex inside = models::add_group(model, "inside", {});
     model.root = models::add_group(model, "scene", {{inside, Affine{}, "inside"}});
     const fs::path folder = scratch("empty");
-    for (const build::Report& report :
-         {build::estimate(model, segment::Store(folder), {}), build_in(model, folder)}) {
+    for (const hierarchy::Report& report :
+         {hierarchy::estimate(model, segment::Store(folder), {}), build_in(model, folder)}) {
         EXPECT_EQ(report.objects, 0u);
         EXPECT_EQ(report.built, 0u);
     }
@@ -189,7 +190,7 @@ TEST_F(Hierarchy, NothingStandsInForWhatDeformsNorForItsGroups) {
     model.objects[index_of(model, "vase")].deforms = true;
     model.objects[index_of(model, "top")].role = Role::Ordinary;  // else it is the vase's ground
     const fs::path folder = scratch("deforms");
-    const build::Report report = build_in(model, folder);
+    const hierarchy::Report report = build_in(model, folder);
     const std::vector<uint8_t> deforming = with_deforming(model);
     for (const char* still : {"top", "wall"})
         EXPECT_EQ(deforming[index_of(model, still)], 0) << still;
@@ -220,7 +221,7 @@ TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
     const fs::path folder = scratch("again");
     build_in(model, folder);
     Model again = room();
-    const build::Report report = build_in(again, folder);
+    const hierarchy::Report report = build_in(again, folder);
     EXPECT_EQ(report.built, 0u);
     ASSERT_EQ(model.objects.size(), again.objects.size());
     for (size_t i = 0; i < model.objects.size(); ++i) {
@@ -274,8 +275,8 @@ TEST_F(Hierarchy, RenamedObjectsAreFoundByTheirSourceAndCostNothing) {
     for (Material& material : renamed.materials)
         material.name = "new " + material.name;
     const segment::Store store(folder);
-    EXPECT_EQ(build::estimate(renamed, store, {}).built, 0u);
-    const build::Report report = build_in(renamed, folder);
+    EXPECT_EQ(hierarchy::estimate(renamed, store, {}).built, 0u);
+    const hierarchy::Report report = build_in(renamed, folder);
     EXPECT_EQ(report.built, 0u);
     const Model stored = store.read();
     ASSERT_EQ(stored.objects.size(), before.objects.size());
@@ -302,7 +303,7 @@ TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
         std::make_shared<const Mesh>(shapes::sphere(0.12, 4));
     summarize(changed.objects[1].representations[0], changed);
     const segment::Store store(folder);
-    EXPECT_EQ(build::estimate(changed, store, {}).built, 3u);  // vase, table, room
+    EXPECT_EQ(hierarchy::estimate(changed, store, {}).built, 3u);  // vase, table, room
     EXPECT_EQ(build_in(changed, folder).built, 3u);
     expect_valid(changed);
 }
@@ -310,12 +311,13 @@ TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
 TEST_F(Hierarchy, ScopeBuildsWhatItReachesAndTheRestStaysStale) {
     Model model = room();
     const fs::path folder = scratch("scope");
-    build::Settings settings;
+    hierarchy::Settings settings;
     settings.scope = {3};  // the table
     Problems problems;
     const segment::Store store(folder);
-    EXPECT_EQ(build::estimate(model, store, settings).built, 3u);
-    const build::Report report = build::build_hierarchy(model, store, settings, problems, {});
+    EXPECT_EQ(hierarchy::estimate(model, store, settings).built, 3u);
+    const hierarchy::Report report =
+        hierarchy::build_hierarchy(model, store, settings, problems, {});
     EXPECT_EQ(report.built, 3u);  // table, top, vase
     EXPECT_EQ(model.objects[2].representations.size(), 1u);
     EXPECT_EQ(model.objects[model.root].representations.size(), 1u);
@@ -325,7 +327,7 @@ TEST_F(Hierarchy, ScopeBuildsWhatItReachesAndTheRestStaysStale) {
 
     settings.scope = {99};
     Model again = room();
-    EXPECT_THROW(build::build_hierarchy(again, store, settings, problems, {}), Error);
+    EXPECT_THROW(hierarchy::build_hierarchy(again, store, settings, problems, {}), Error);
 }
 
 TEST_F(Hierarchy, ContentEqualObjectsAreBuiltOnce) {
@@ -357,8 +359,8 @@ TEST_F(Hierarchy, CancelledBuildChangesNothing) {
     const fs::path folder = scratch("cancel");
     const int32_t cancel = 1;
     Problems problems;
-    EXPECT_THROW(build::build_hierarchy(model, segment::Store(folder), {}, problems,
-                                        Job(&cancel, nullptr, nullptr)),
+    EXPECT_THROW(hierarchy::build_hierarchy(model, segment::Store(folder), {}, problems,
+                                            Job(&cancel, nullptr, nullptr)),
                  Error);
     EXPECT_FALSE(segment::Store(folder).exists());
     for (const Object& object : model.objects)
@@ -391,10 +393,10 @@ TEST_F(Hierarchy, HowOftenItIsKeptChangesNoResult) {
     const fs::path by_once = scratch("once");
     const fs::path by_often = scratch("often");
     build_in(once, by_once);
-    build::Settings settings;
+    hierarchy::Settings settings;
     settings.keep_every_s = 0;
     Problems problems;
-    build::build_hierarchy(often, segment::Store(by_often), settings, problems, {});
+    hierarchy::build_hierarchy(often, segment::Store(by_often), settings, problems, {});
     EXPECT_EQ(read_file(by_once / "tileset.json"), read_file(by_often / "tileset.json"));
 }
 
@@ -422,10 +424,10 @@ TEST_F(Hierarchy, WhatGroupsShareIsFlattenedCoarserThanWhatOneHasForItself) {
         all.push_back({group, {}, model.objects[group].name});
     model.root = models::add_group(model, "all", all);
     build_in(model, scratch("shared"));
-    const std::vector<uint64_t> uses = build::uses_of(model);
+    const std::vector<uint64_t> uses = hierarchy::uses_of(model);
     const auto flattened = [&](ObjectIndex group, uint64_t most) {
-        build::OpenedGroup opened(model, group, uses);
-        const double error = build::error_to_flatten(opened, most, most, {});
+        hierarchy::OpenedGroup opened(model, group, uses);
+        const double error = hierarchy::error_to_flatten(opened, most, most, {});
         return opened.drawn_within(error, {}).triangles;
     };
     EXPECT_LT(5 * flattened(groups[0], 1000000), flattened(groups[9], 1000000));
@@ -476,9 +478,9 @@ TEST_F(Hierarchy, CutOfTheBuiltModelKeepsItsPromise) {
 }
 
 TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
-    std::vector<build::Candidate> candidates;
+    std::vector<hierarchy::Candidate> candidates;
     const auto add = [&](uint32_t side, double error) {
-        build::Candidate candidate;
+        hierarchy::Candidate candidate;
         candidate.mesh = std::make_shared<const Mesh>(shapes::terrain(side));
         candidate.error = error;
         candidates.push_back(candidate);
@@ -488,7 +490,7 @@ TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
     add(30, 0.25);  // worse than the cheaper one of 20
     add(40, 0.1);
     add(90, 0.01);  // no cheaper than the finest
-    build::keep_useful(candidates, uint64_t{2} * 90 * 90 * 245);
+    hierarchy::keep_useful(candidates, uint64_t{2} * 90 * 90 * 245);
     ASSERT_EQ(candidates.size(), 3u);
     EXPECT_EQ(candidates[0].error, 0.1);
     EXPECT_EQ(candidates[1].error, 0.2);

@@ -2,9 +2,9 @@
 // Guards decisions on placements: importance draws finer, limits open the groups around them.
 #include "backend/models.h"
 #include "base/files.h"
-#include "build/hierarchy.h"
 #include "choose/criterion.h"
 #include "choose/cut.h"
+#include "hierarchy/hierarchy_build.h"
 #include "ray/scene.h"
 #include "scratch.h"
 #include "segment/store.h"
@@ -238,13 +238,13 @@ TEST(Decisions, GroupThatIsAlwaysOpenedIsNotBuiltUntilItIsNoLonger) {
     Problems problems;
     Model model = models::row_of_balls(4);
     placement(model, kPair, 0).coarsest = 0;
-    build::build_hierarchy(model, store, {}, problems, {});
+    hierarchy::build_hierarchy(model, store, {}, problems, {});
     EXPECT_GT(model.objects[kBall].representations.size(), 1u);
     EXPECT_EQ(model.objects[kPair].representations.size(), 1u);
     EXPECT_EQ(model.objects[model.root].representations.size(), 1u);
     Model again = models::row_of_balls(4);
     placement(again, kPair, 0).importance = 2;  // its stand-in is the same for anybody
-    EXPECT_EQ(build::build_hierarchy(again, store, {}, problems, {}).built, 2u);
+    EXPECT_EQ(hierarchy::build_hierarchy(again, store, {}, problems, {}).built, 2u);
     EXPECT_GT(again.objects[kPair].representations.size(), 1u);
     EXPECT_TRUE(problems.empty());
 }

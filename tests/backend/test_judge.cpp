@@ -2,7 +2,7 @@
 // Guards what is said of a group's children that are drawn together: each may be right alone.
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/judge.h"
+#include "hierarchy/evaluators/stand_in_evaluator.h"
 
 using namespace lodestone;
 
@@ -40,7 +40,7 @@ TEST_F(Judge, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     const std::vector<Material> materials{models::colored("paper", paper),
                                           models::colored("cover", cover)};
     image::TexelCache texels;
-    build::Judge judge(pile, materials, texels, {}, false, 1, 0.001, {});
+    hierarchy::Judge judge(pile, materials, texels, {}, false, 1, 0.001, {});
     constexpr double kError = 0.2;  // metres: pixels of a third of the pile
     const auto alike = [&](const Mesh& drawn, double brightness, const glm::dvec3& other) {
         return judge.looks_alike(drawn,

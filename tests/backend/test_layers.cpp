@@ -3,11 +3,11 @@
 #include "backend/built.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/flatten.h"
-#include "build/hierarchy.h"
-#include "build/surroundings.h"
 #include "choose/cut.h"
-#include "measure/deviation.h"
+#include "hierarchy/flattened_group.h"
+#include "hierarchy/hierarchy_build.h"
+#include "hierarchy/run/stand_in_surroundings.h"
+#include "measure/deviation/surface_deviation.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -71,15 +71,15 @@ TEST_F(Layers, StartLineOnATrackDoesNotVanishAtOnePixel) {
     model.root =
         models::add_group(model, "race", {{track, Affine{}, "track"}, {start, Affine{}, "start"}});
     build_in(model, "race");
-    const std::vector<uint64_t> uses = build::uses_of(model);
-    build::OpenedGroup opened(model, model.root, uses);
+    const std::vector<uint64_t> uses = hierarchy::uses_of(model);
+    hierarchy::OpenedGroup opened(model, model.root, uses);
     for (const double pixel : {0.05, 0.1, 0.2}) {
-        const build::Flat shown =
-            build::flatten(opened, pixel,
-                           [](const Representation& r) {
-                               return std::get<std::shared_ptr<const Mesh>>(r.payload);
-                           },
-                           {});
+        const hierarchy::Flat shown =
+            hierarchy::flatten(opened, pixel,
+                               [](const Representation& r) {
+                                   return std::get<std::shared_ptr<const Mesh>>(r.payload);
+                               },
+                               {});
         const ray::Scene scene(shown.mesh);
         int white = 0;
         for (int i = 0; i < 100; ++i) {
@@ -131,8 +131,8 @@ TEST_F(Layers, WhatComesToLieOnAFlatThingBuildsItAgain) {
         model.root = root;
         summarize_assemblies(model, bottom_up(model));
         Problems problems;
-        const uint64_t stale = build::estimate(model, store, {}).built;
-        const build::Report report = build::build_hierarchy(model, store, {}, problems, {});
+        const uint64_t stale = hierarchy::estimate(model, store, {}).built;
+        const hierarchy::Report report = hierarchy::build_hierarchy(model, store, {}, problems, {});
         EXPECT_EQ(stale, report.built);
         return report.built;
     };
@@ -211,9 +211,9 @@ TEST_F(Layers, HouseUnderARoofOfBoxesIsNotAsWrongAsItIsLarge) {
     build_in(model, "house");
     const Object& house = model.objects[model.root];
     const double radius = house.bound().radius;
-    const std::vector<uint64_t> uses = build::uses_of(model);
-    build::OpenedGroup opened(model, model.root, uses);
-    EXPECT_LE(build::error_to_flatten(opened, 1000, 40000, {}), radius / 32);
+    const std::vector<uint64_t> uses = hierarchy::uses_of(model);
+    hierarchy::OpenedGroup opened(model, model.root, uses);
+    EXPECT_LE(hierarchy::error_to_flatten(opened, 1000, 40000, {}), radius / 32);
     ASSERT_GE(house.representations.size(), 2u);
     double least = radius;
     for (size_t lod = 1; lod < house.representations.size(); ++lod)

@@ -3,9 +3,9 @@
 #include "backend/models.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "build/hierarchy.h"
 #include "choose/cut.h"
 #include "group/loose_parts.h"
+#include "hierarchy/hierarchy_build.h"
 #include "scratch.h"
 
 #include <algorithm>
@@ -317,15 +317,15 @@ TEST(LooseParts, WhatIsNearDoesNotForceWhatIsFarToBeFine) {
     Model whole = model_of(strewn(24, 1000));
     Model parts = whole;
     split(parts, true, 640);
-    build::Settings settings;
+    hierarchy::Settings settings;
     settings.rays = 64;
     settings.samples = 64;
     const std::filesystem::path folder = own_scratch() / "loose_parts";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     Problems problems;
-    build::build_hierarchy(whole, segment::Store(folder / "whole"), settings, problems, {});
-    build::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
+    hierarchy::build_hierarchy(whole, segment::Store(folder / "whole"), settings, problems, {});
+    hierarchy::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
     EXPECT_TRUE(problems.empty());
     const Model stored = segment::Store(folder / "parts").read();
     EXPECT_EQ(totals(stored).occurrences, 1u);
@@ -340,7 +340,7 @@ TEST(LooseParts, WhatIsNearDoesNotForceWhatIsFarToBeFine) {
     EXPECT_EQ(choose::choose(stored, view).triangles, totals(whole).triangles_placed);
     view.pixel_error = 1;
     EXPECT_LT(2 * choose::choose(stored, view).triangles, choose::choose(whole, view).triangles);
-    const build::Report again =
-        build::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
+    const hierarchy::Report again =
+        hierarchy::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
     EXPECT_EQ(again.built, 0u);
 }

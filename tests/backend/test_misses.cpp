@@ -2,7 +2,7 @@
 // Guards how pictures are compared: what shows nothing is not looked at, and nothing else is left
 // out.
 #include "base/random.h"
-#include "measure/misses.h"
+#include "measure/pictures/picture_misses.h"
 
 #include <gtest/gtest.h>
 

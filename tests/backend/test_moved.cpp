@@ -2,8 +2,8 @@
 // Guards groups that are another one moved: they share its measuring, and nothing else does.
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/hierarchy.h"
-#include "build/moved.h"
+#include "hierarchy/hierarchy_build.h"
+#include "hierarchy/run/moved_copies.h"
 #include "scratch.h"
 
 #include <cmath>
@@ -53,12 +53,13 @@ Model rooms(const std::vector<Affine>& places, double last_ball = 1.5) {
     return model;
 }
 
-std::vector<build::Moved> moved_in(const Model& model) {
+std::vector<hierarchy::Moved> moved_in(const Model& model) {
     const std::vector<ObjectIndex> order = bottom_up(model);
-    const build::MeshSource resident = [](const Representation& level) {
+    const hierarchy::MeshSource resident = [](const Representation& level) {
         return std::get<std::shared_ptr<const Mesh>>(level.payload);
     };
-    return build::moved_groups(model, order, build::surroundings_of(model, order, resident, {}));
+    return hierarchy::moved_groups(model, order,
+                                   hierarchy::surroundings_of(model, order, resident, {}));
 }
 
 class MovedGroups : public WithRays {};
@@ -68,9 +69,9 @@ class MovedGroups : public WithRays {};
 TEST(Moved, AreThoseThatPlaceTheSameThingsInTheSameWay) {
     const Affine far = turned(0.5, {200, -300, 20});
     const Model same = rooms({Affine{}, far, turned(-2, {0, 50, 0})});
-    const std::vector<build::Moved> found = moved_in(same);
+    const std::vector<hierarchy::Moved> found = moved_in(same);
     ASSERT_EQ(found.size(), 2u);
-    for (const build::Moved& one : found) {
+    for (const hierarchy::Moved& one : found) {
         EXPECT_EQ(same.objects[one.original].name, "room 0");
         EXPECT_LT(one.off, 1e-9);
     }
@@ -99,8 +100,8 @@ TEST_F(MovedGroups, HaveTheStandInsOfTheOneThatIsMeasured) {
     const Affine far = turned(0.5, {20, -30, 2});
     Model model = rooms({Affine{}, far});
     Problems problems;
-    const build::Report report = build::build_hierarchy(model, segment::Store(scratch("moved")),
-                                                        build::Settings{}, problems, {});
+    const hierarchy::Report report = hierarchy::build_hierarchy(
+        model, segment::Store(scratch("moved")), hierarchy::Settings{}, problems, {});
     EXPECT_EQ(report.built, report.objects);
     const Object& first = model.objects[2];
     const Object& second = model.objects[3];
@@ -126,9 +127,9 @@ TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
     const auto built = [&](Model& model, const fs::path& store,
                            const std::vector<ObjectIndex>& scope) {
         Problems problems;
-        build::Settings settings;
+        hierarchy::Settings settings;
         settings.scope = scope;
-        return build::build_hierarchy(model, segment::Store(store), settings, problems, {});
+        return hierarchy::build_hierarchy(model, segment::Store(store), settings, problems, {});
     };
     Model whole = rooms(places);
     built(whole, scratch("whole"), {});
@@ -157,11 +158,11 @@ TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
 TEST_F(MovedGroups, ThatAPictureDoesNotCallForAreCountedAsLeft) {
     Model model = rooms({Affine{}, turned(0.5, {20, -30, 2}), turned(2, {9, 40, 0})});
     Problems problems;
-    build::Settings settings;
+    hierarchy::Settings settings;
     settings.demand.emplace();
     settings.demand->share = 0;  // for nothing at all
-    const build::Report report =
-        build::build_hierarchy(model, segment::Store(scratch("left")), settings, problems, {});
+    const hierarchy::Report report =
+        hierarchy::build_hierarchy(model, segment::Store(scratch("left")), settings, problems, {});
     EXPECT_EQ(report.built, 0u);
     EXPECT_EQ(report.left, report.objects);
 }

@@ -2,7 +2,7 @@
 // Guards what distances do not tell: what lies a little before something else, and how much of it.
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "measure/patches.h"
+#include "measure/pictures/patch_light.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 // closed forms, and measured again by rays as what they stand for was.
 #include "backend/shapes.h"
 #include "base/random.h"
-#include "measure/visible.h"
+#include "measure/visible/visible_attributes.h"
 #include "solids/solid_replacement.h"
 #include "solids/stand_in_material.h"
 

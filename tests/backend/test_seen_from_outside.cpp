@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards which triangles count as seen from outside: none that is, none missed between others.
 #include "backend/shapes.h"
-#include "measure/seen_from_outside.h"
+#include "measure/visible/seen_from_outside.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // can hide anything.
 #include "backend/foliage.h"
 #include "backend/shapes.h"
-#include "measure/sides.h"
+#include "measure/visible/outside_sides.h"
 
 #include <gtest/gtest.h>
 

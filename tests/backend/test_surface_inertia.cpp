@@ -2,7 +2,7 @@
 // Guards SurfaceInertia: closed forms against quadrature, traversal against closed forms.
 #include "backend/closed_forms.h"
 #include "backend/shapes.h"
-#include "measure/surface_inertia.h"
+#include "measure/visible/surface_inertia.h"
 
 #include <functional>
 #include <gtest/gtest.h>

@@ -4,14 +4,14 @@
 #include "backend/closed_forms.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
-#include "measure/principal_axes.h"
-#include "measure/seen_from_outside.h"
-#include "measure/sobol.h"
-#include "measure/strata.h"
-#include "measure/surface_inertia.h"
-#include "measure/surface_samples.h"
-#include "measure/visible.h"
-#include "measure/visible_sampler.h"
+#include "measure/deviation/surface_samples.h"
+#include "measure/visible/principal_axes.h"
+#include "measure/visible/seen_from_outside.h"
+#include "measure/visible/sobol_points.h"
+#include "measure/visible/stratified_points.h"
+#include "measure/visible/surface_inertia.h"
+#include "measure/visible/visible_attributes.h"
+#include "measure/visible/visible_sampler.h"
 
 #include <bit>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // Guards that measuring by rays sees alpha and texels: half a leaf is half as visible, and green.
 #include "backend/foliage.h"
 #include "base/parallel.h"
-#include "measure/opacity.h"
-#include "measure/visible.h"
+#include "measure/visible/surface_opacity.h"
+#include "measure/visible/visible_attributes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 #include "backend/closed_forms.h"
 #include "backend/shapes.h"
 #include "base/parallel.h"
-#include "measure/strata.h"
-#include "measure/surface_inertia.h"
-#include "measure/visible.h"
+#include "measure/visible/stratified_points.h"
+#include "measure/visible/surface_inertia.h"
+#include "measure/visible/visible_attributes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Guards what is seen of boxes and ellipsoids that hide parts of each other, found without
 // triangles.
 #include "backend/with_rays.h"
-#include "measure/visible.h"
+#include "measure/visible/visible_attributes.h"
 #include "solids/visible_solids.h"
 
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include "backend/lamps.h"
 #include "backend/models.h"
 #include "backend/with_rays.h"
-#include "build/widen.h"
-#include "measure/visible.h"
+#include "hierarchy/proposers/widened_levels.h"
+#include "measure/visible/visible_attributes.h"
 #include "simplify/simplify.h"
 #include "solids/stand_in_material.h"
 #include "solids/widened_boxes.h"
@@ -36,8 +36,8 @@ Attributes attributes_of(const Mesh& mesh) {
     return measure::measure_visible(mesh, std::span<const Material>{}, {}).attributes;
 }
 
-build::Candidate level_of(const Mesh& mesh, const std::vector<Material>& own, double error) {
-    build::Candidate out;
+hierarchy::Candidate level_of(const Mesh& mesh, const std::vector<Material>& own, double error) {
+    hierarchy::Candidate out;
     out.mesh = std::make_shared<const Mesh>(mesh);
     out.materials = own;
     out.error = out.max_error = error;
@@ -45,13 +45,13 @@ build::Candidate level_of(const Mesh& mesh, const std::vector<Material>& own, do
 }
 
 /// What becomes of one level of `finest` with that error.
-std::vector<build::Candidate> widened(const Mesh& finest, const std::vector<Material>& own,
-                                      const Mesh& level, double error) {
+std::vector<hierarchy::Candidate> widened(const Mesh& finest, const std::vector<Material>& own,
+                                          const Mesh& level, double error) {
     image::TexelCache texels;
-    build::Judge judge(finest, own, texels, {}, false, 1, 0, {});
+    hierarchy::Judge judge(finest, own, texels, {}, false, 1, 0, {});
     judge.measure_finest(finest, {});
-    std::vector<build::Candidate> kept{level_of(level, own, error)};
-    build::widen(kept, finest, own, texels, 1, judge, {});
+    std::vector<hierarchy::Candidate> kept{level_of(level, own, error)};
+    hierarchy::widen(kept, finest, own, texels, 1, judge, {});
     return kept;
 }
 
@@ -117,14 +117,14 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
     image::TexelCache texels;
     const std::vector<Material> own = materials();
     const Mesh finest = lamp();
-    build::Judge judge(finest, own, texels, {}, false, 1, 0, {});
+    hierarchy::Judge judge(finest, own, texels, {}, false, 1, 0, {});
     judge.measure_finest(finest, {});
     const std::vector<size_t> targets{90, 60, 40};
     const std::vector<Mesh> levels = simplify::simplify_chain(finest, targets);
-    std::vector<build::Candidate> kept{level_of(levels[0], own, 0.05),
-                                       level_of(levels[1], own, 0.2),
-                                       level_of(levels[2], own, 1.5)};
-    build::widen(kept, finest, own, texels, 1, judge, {});
+    std::vector<hierarchy::Candidate> kept{level_of(levels[0], own, 0.05),
+                                           level_of(levels[1], own, 0.2),
+                                           level_of(levels[2], own, 1.5)};
+    hierarchy::widen(kept, finest, own, texels, 1, judge, {});
     ASSERT_GE(kept.size(), 3u);
     EXPECT_EQ(kept[0].mesh->positions, levels[0].positions);
     for (size_t i = 1; i < kept.size(); ++i) {
@@ -190,7 +190,7 @@ TEST_F(Widen, PostsWithoutThicknessAreNoTrouble) {
     mesh.triangles.emplace_back(last - 2, last - 1, last);
     mesh.slots.push_back(kPost);
     mesh.normals.clear();
-    for (const build::Candidate& made : widened(mesh, materials(), lamp(), 0.25)) {
+    for (const hierarchy::Candidate& made : widened(mesh, materials(), lamp(), 0.25)) {
         EXPECT_TRUE(std::isfinite(made.error));
         for (const Material& material : made.materials)
             EXPECT_TRUE(material.alpha >= 0 && material.alpha <= 1) << material.alpha;

@@ -17,10 +17,10 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "build/hierarchy.h"
 #include "choose/cut.h"
 #include "group/position.h"
 #include "group/structure.h"
+#include "hierarchy/hierarchy_build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,8 @@ using namespace lodestone;
 namespace {
 
 constexpr int kViews = 20;
-constexpr uint64_t kTrianglesOfBox = 12;  // what primitives count as, as in build/flatten
+constexpr uint64_t kTrianglesOfBox =
+    12;  // what primitives count as, as in hierarchy/flattened_group
 constexpr uint64_t kTrianglesOfEllipsoid = 80;
 constexpr uint64_t kTrianglesOfComposite = 8 * kTrianglesOfEllipsoid;
 constexpr size_t kFewest = 8;    // groups of more children are structured
@@ -282,7 +283,7 @@ void by_octree(Model& model, const std::vector<ObjectIndex>& flat) {
 }
 
 Result measure(const Model& read, const std::string& store, const Way& way,
-               const build::Settings& settings, bool away, double* floor = nullptr) {
+               const hierarchy::Settings& settings, bool away, double* floor = nullptr) {
     namespace fs = std::filesystem;
     Result result;
     Model model = read;
@@ -297,7 +298,7 @@ Result measure(const Model& read, const std::string& store, const Way& way,
     fs::copy(store, scratch, fs::copy_options::recursive);
     Problems problems;
     cpu = cpu_seconds();
-    build::build_hierarchy(model, segment::Store(scratch), settings, problems, {});
+    hierarchy::build_hierarchy(model, segment::Store(scratch), settings, problems, {});
     result.build_s = cpu_seconds() - cpu;
     fs::remove_all(scratch);
     for (const ObjectIndex index : flat)
@@ -357,8 +358,8 @@ void print_times() {
 
 /// Builds levels of the leaves with little sampling, for scenes that are flattened: thousands of
 /// groups are compared with each other, not with what is shipped.
-build::Settings quick_settings() {
-    build::Settings settings;
+hierarchy::Settings quick_settings() {
+    hierarchy::Settings settings;
     settings.rays = 1024;
     settings.samples = 512;
     settings.group_triangles = 10000;
@@ -369,7 +370,7 @@ void compare(const std::string& path, size_t flat, bool away) {
     namespace fs = std::filesystem;
     std::string scene = fs::path(path).filename();
     Model model = read(path);
-    build::Settings settings;
+    hierarchy::Settings settings;
     const fs::path base = fs::temp_directory_path() / text("lodestone_leaves_", getpid());
     fs::remove_all(base);
     if (flat > 0) {
@@ -382,7 +383,7 @@ void compare(const std::string& path, size_t flat, bool away) {
     }
     Model leaves = model;
     Problems problems;
-    build::build_hierarchy(leaves, segment::Store(base), settings, problems, {});
+    hierarchy::build_hierarchy(leaves, segment::Store(base), settings, problems, {});
     double floor = 0;
     const auto by = [&](const Way& way, double* to = nullptr) {
         return measure(model, base, way, settings, away, to);

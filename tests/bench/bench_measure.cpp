@@ -8,8 +8,8 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "format/ply.h"
-#include "measure/deviation.h"
-#include "measure/visible.h"
+#include "measure/deviation/surface_deviation.h"
+#include "measure/visible/visible_attributes.h"
 
 #include <algorithm>
 #include <cmath>

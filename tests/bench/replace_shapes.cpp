@@ -5,10 +5,10 @@
 // other rays from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
 #include "backend/rematched.h"
 #include "base/files.h"
-#include "build/settings.h"
 #include "format/ply.h"
-#include "measure/deviation.h"
-#include "measure/visible.h"
+#include "hierarchy/build_settings.h"
+#include "measure/deviation/surface_deviation.h"
+#include "measure/visible/visible_attributes.h"
 #include "model/representation.h"
 #include "simplify/simplify.h"
 #include "solids/composite_replacement.h"
@@ -141,7 +141,7 @@ void measure_again(Found& found, const std::string& name, const Mesh& drawn, dou
 
 /// Single solids, of the attributes that a build finds: as they are matched, and as they stand.
 void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const Attributes& truth) {
-    const build::Settings settings;
+    const hierarchy::Settings settings;
     measure::VisibleOptions options;
     options.rays = settings.rays;
     options.seed = settings.seed;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
-#include "build/hierarchy.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "hierarchy/hierarchy_build.h"
 
 #include <cmath>
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace {
 constexpr size_t kFirstOptions = offsetof(lds_build_options, poses);
 constexpr size_t kFirstReport = offsetof(lds_build_report, left);
 
-build::Settings settings_of(const lds_model& model, const lds_build_options& options) {
-    build::Settings settings;
+hierarchy::Settings settings_of(const lds_model& model, const lds_build_options& options) {
+    hierarchy::Settings settings;
     settings.level_ratio = options.level_ratio;
     settings.rays = options.rays;
     settings.samples = options.samples;
@@ -42,12 +42,12 @@ build::Settings settings_of(const lds_model& model, const lds_build_options& opt
     if (options.view != nullptr) {
         if (!(options.share >= 0) || !std::isfinite(options.share))
             fail(Status::InvalidArgument, "share is ", options.share, "; it must be 0 or more");
-        settings.demand = build::Demand{view_of(options.view, &model), options.share};
+        settings.demand = hierarchy::Demand{view_of(options.view, &model), options.share};
     }
     return settings;
 }
 
-lds_build_report report_of(const build::Report& report) {
+lds_build_report report_of(const hierarchy::Report& report) {
     lds_build_report out{};
     out.objects = report.objects;
     out.built = report.built;
@@ -63,7 +63,7 @@ lds_build_report report_of(const build::Report& report) {
 }  // namespace
 
 lds_build_options lds_build_options_default(void) {
-    const build::Settings settings;
+    const hierarchy::Settings settings;
     lds_build_options options{};
     options.struct_size = sizeof options;
     options.level_ratio = settings.level_ratio;
@@ -71,7 +71,7 @@ lds_build_options lds_build_options_default(void) {
     options.samples = settings.samples;
     options.group_triangles = settings.group_triangles;
     options.seed = settings.seed;
-    options.share = build::Demand().share;
+    options.share = hierarchy::Demand().share;
     return options;
 }
 
@@ -84,8 +84,8 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
         const lds_build_options given = grown(options, kFirstOptions, "options");
         const ThreadLimit limit(given.threads);
         hand_out_grown(out_report,
-                       report_of(build::estimate(model->model, segment::Store(store),
-                                                 settings_of(*model, given))),
+                       report_of(hierarchy::estimate(model->model, segment::Store(store),
+                                                     settings_of(*model, given))),
                        kFirstReport, "out_report");
     });
 }
@@ -97,14 +97,14 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         require(store, "store");
         require_size(out_report, kFirstReport, "out_report");
         const lds_build_options given = grown(options, kFirstOptions, "options");
-        const build::Settings settings = settings_of(*model, given);
+        const hierarchy::Settings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();
         const segment::Store target(store);
         model->table.reset();
         const size_t before = model->model.objects.size();
-        const build::Report report =
-            build::build_hierarchy(model->model, target, settings, model->problems, job_of(job));
+        const hierarchy::Report report = hierarchy::build_hierarchy(model->model, target, settings,
+                                                                    model->problems, job_of(job));
         model->store.emplace(target);
         model->summarized = true;
         model->structured += model->model.objects.size() == before ? 0 : 1;

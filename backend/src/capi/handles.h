@@ -4,11 +4,11 @@
 
 #include "lodestone/lodestone.h"
 
-#include "build/settings.h"
 #include "choose/cut_budget.h"
 #include "choose/follow/cut_stepper.h"
 #include "choose/ray_class/ray_cut.h"
 #include "geometry/polygon_mesh.h"
+#include "hierarchy/build_settings.h"
 #include "segment/store.h"
 #include "view/viewer_batches.h"
 #include "view/viewer_surface.h"

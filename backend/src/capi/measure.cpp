@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "build/flatten.h"
-#include "build/reduce.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "measure/surface_inertia.h"
-#include "measure/visible.h"
+#include "hierarchy/flattened_group.h"
+#include "hierarchy/reduced_model.h"
+#include "measure/visible/surface_inertia.h"
+#include "measure/visible/visible_attributes.h"
 
 using namespace lodestone;
 using namespace lodestone::capi;
@@ -67,7 +67,7 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
         const ThreadLimit limit(given.threads);
         model->summarize();
         model->load_pictures();
-        const build::MeshSource source = [&](const Representation& representation) {
+        const hierarchy::MeshSource source = [&](const Representation& representation) {
             if (const auto* held =
                     std::get_if<std::shared_ptr<const Mesh>>(&representation.payload))
                 return *held;
@@ -76,8 +76,8 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
         const Job progress = job_of(job);
         progress.stage(Stage::Measure);
         const std::vector<uint64_t> uses(model->model.objects.size(), 1);
-        build::OpenedGroup opened(model->model, model->index_of(object), uses);
-        const build::Flat flat = build::flatten(opened, 0, source, progress);
+        hierarchy::OpenedGroup opened(model->model, model->index_of(object), uses);
+        const hierarchy::Flat flat = hierarchy::flatten(opened, 0, source, progress);
         measure::VisibleOptions wanted;
         wanted.rays = given.rays;
         wanted.relative_error = given.relative_error;
@@ -116,7 +116,7 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
         const ThreadLimit limit(given.threads);
         model->load_finest();
         model->summarize();  // its bound
-        build::Reduction wanted;
+        hierarchy::Reduction wanted;
         wanted.ratio = given.ratio;
         wanted.triangles = given.triangles;
         wanted.error = given.error;
@@ -124,9 +124,10 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
         wanted.height_px = given.height_px;
         wanted.measure = given.measure != 0;
         wanted.seed = given.seed;
-        wanted.mode = static_cast<build::ReductionMode>(given.mode);
+        wanted.mode = static_cast<hierarchy::ReductionMode>(given.mode);
         wanted.keep_topology = given.keep_topology != 0;
-        const build::ReductionReport done = build::reduce(model->model, wanted, job_of(job));
+        const hierarchy::ReductionReport done =
+            hierarchy::reduce(model->model, wanted, job_of(job));
         model->summarized = false;
         lds_simplify_report out{};
         out.triangles_before = done.triangles_before;

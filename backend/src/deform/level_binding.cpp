@@ -2,7 +2,7 @@
 #include "deform/level_binding.h"
 
 #include "base/maths.h"
-#include "measure/surface_samples.h"
+#include "measure/deviation/surface_samples.h"
 
 #include <algorithm>
 #include <cmath>

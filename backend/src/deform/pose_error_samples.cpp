@@ -8,7 +8,7 @@
 namespace lodestone::deform {
 namespace {
 
-constexpr double kErrorShare = 0.999;  // as in measure/deviation
+constexpr double kErrorShare = 0.999;  // as in measure/deviation/surface_deviation
 constexpr double kGrowthShare = 0.99;
 // Of a walk: farther than so many triangles, surfaces that slide along each other seem to be apart.
 constexpr int kSearchSteps = 24;

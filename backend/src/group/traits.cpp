@@ -2,7 +2,7 @@
 #include "group/traits.h"
 
 #include "base/parallel.h"
-#include "measure/surface_inertia.h"
+#include "measure/visible/surface_inertia.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solids/composite_replacement.h"
 
-#include "measure/visible.h"
-#include "measure/visible_sampler.h"
+#include "measure/visible/visible_attributes.h"
+#include "measure/visible/visible_sampler.h"
 #include "solids/keep_on_floor.h"
 #include "solids/match_solids.h"
 #include "solids/sample_clusters.h"

@@ -2,7 +2,7 @@
 // Least change: what to do to solids so that together they show what is wanted.
 #pragma once
 
-#include "measure/surface_inertia.h"
+#include "measure/visible/surface_inertia.h"
 #include "model/attributes.h"
 #include "model/composite.h"
 

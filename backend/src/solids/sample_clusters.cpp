@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solids/sample_clusters.h"
 
-#include "measure/principal_axes.h"
+#include "measure/visible/principal_axes.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solids/visible_solids.h"
 
-#include "measure/sobol.h"
+#include "measure/visible/sobol_points.h"
 #include "solids/solid_replacement.h"
 
 #include <glm/matrix.hpp>

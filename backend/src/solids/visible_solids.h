@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "measure/surface_inertia.h"
+#include "measure/visible/surface_inertia.h"
 #include "model/composite.h"
 
 #include <glm/vec2.hpp>

@@ -4,7 +4,7 @@
 
 #include "choose/cut.h"
 #include "choose/off_screen.h"
-#include "measure/convexity.h"
+#include "measure/visible/convex_shape.h"
 
 #include <functional>
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/candidate.h"
+
+#include "solids/solid_replacement.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lodestone::hierarchy {
+
+uint64_t bytes_of(const Candidate& candidate) {
+    switch (candidate.kind) {
+        case Kind::Mesh:
+            return candidate.mesh->triangles.size() * kBytesPerTriangle;
+        case Kind::Composite:
+            return candidate.composite->solids.size() * kBytesPerPrimitive;
+        default:
+            return kBytesPerPrimitive;
+    }
+}
+
+double tracing_of(const Candidate& candidate) {
+    constexpr double kBytesPerCrossing = 150;
+    const auto clear_area = [&](const Primitive& primitive, bool box, uint16_t slot) {
+        if (slot >= candidate.materials.size() || !(candidate.error > 0))
+            return 0.0;
+        const Material& material = candidate.materials[slot];
+        if (material.alpha_mode != AlphaMode::Blend || !(material.alpha < 1))
+            return 0.0;
+        return (box ? solids::box_shell(primitive.half_size)
+                    : solids::ellipsoid_shell(primitive.half_size))
+            .area;
+    };
+    double area = 0;
+    if (candidate.kind == Kind::Composite) {
+        for (const Solid& solid : candidate.composite->solids)
+            area += clear_area(solid.primitive, solid.box, solid.slot);
+    } else if (candidate.kind != Kind::Mesh) {
+        area = clear_area(candidate.primitive, candidate.kind == Kind::Box, 0);
+    } else {
+        area = candidate.error > 0 ? candidate.clear_area : 0;
+    }
+    if (!(area > 0))
+        return 0;
+    // A convex surface shows a quarter of its area from any side, in the mean, and is crossed
+    // twice.
+    return kBytesPerCrossing * 0.5 * area / (candidate.error * candidate.error);
+}
+
+double bytes_of(const Candidate& candidate, uint64_t uses) {
+    const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
+    return count * (bytes_each(candidate.kind, bytes_of(candidate), uses) + tracing_of(candidate));
+}
+
+double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses) {
+    double out = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.error <= error)
+            out = std::min(out, bytes_of(candidate, uses));
+    }
+    return out;
+}
+
+void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses) {
+    // A level that saves less than this over a better one is not worth its place on disk.
+    constexpr double kSameCost = 1.02;
+    const auto bytes = [&](const Candidate& candidate) { return bytes_of(candidate, uses); };
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const Candidate& a, const Candidate& b) {
+                         return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;
+                     });
+    std::vector<Candidate> front;  // cheapest first, errors falling
+    for (Candidate& candidate : candidates) {
+        if (bytes(candidate) >= static_cast<double>(finest_bytes) ||
+            (!front.empty() && candidate.error >= front.back().error))
+            continue;
+        if (!front.empty() && bytes(candidate) < kSameCost * bytes(front.back()))
+            front.back() = std::move(candidate);
+        else
+            front.push_back(std::move(candidate));
+    }
+    std::reverse(front.begin(), front.end());
+    candidates = std::move(front);
+}
+
+}  // namespace lodestone::hierarchy

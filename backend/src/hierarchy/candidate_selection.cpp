@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/candidate_selection.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace lodestone::hierarchy {
+namespace {
+
+/// Whether both stand for one thing that was tried.
+bool is_same(const Candidate& a, const Candidate& b) {
+    return a.kind == b.kind && a.mesh == b.mesh && a.composite == b.composite &&
+           a.primitive.center == b.primitive.center &&
+           a.primitive.half_size == b.primitive.half_size;
+}
+
+}  // namespace
+
+bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
+           const Job& job) {
+    bool changed = false;
+    for (size_t i = some.size(); i-- > 0;) {
+        if (!some[i].unproven)
+            continue;
+        Candidate proven = some[i];
+        const double next =
+            i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
+        const bool good = judge.prove(proven, next, job);
+        changed = changed || !good || proven.error > some[i].error;
+        for (size_t k = all.size(); k-- > 0;) {
+            if (!is_same(all[k], some[i]))
+                continue;
+            if (good)
+                all[k] = proven;
+            else
+                all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+        if (good)
+            some[i] = std::move(proven);
+        else
+            some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return changed;
+}
+
+std::vector<Candidate> kept_of(std::vector<Candidate>& all, const Keep& keep, Judge& judge,
+                               const Mesh& finest, const Job& job) {
+    for (;;) {
+        std::vector<Candidate> kept = all;
+        keep(kept);
+        if (prove(kept, all, judge, job))
+            continue;
+        bool farther = false;
+        for (size_t i = 0; i < kept.size(); ++i) {
+            const bool last = i + 1 == kept.size();
+            const Candidate before = kept[i];
+            judge.match_brightness(
+                kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
+                job);
+            farther = farther || kept[i].error > before.error;
+            if (before.kind != Kind::Mesh || before.matched == kept[i].matched)
+                continue;
+            for (Candidate& candidate : all) {
+                if (candidate.mesh == before.mesh)
+                    candidate = kept[i];
+            }
+        }
+        if (!farther)
+            return kept;
+    }
+}
+
+void paint(std::vector<Candidate>& kept, const Keep& keep, const Judge& judge) {
+    std::vector<Candidate> painted = kept;
+    for (Candidate& candidate : painted)
+        judge.paint(candidate);
+    keep(painted);
+    if (!painted.empty())
+        kept = std::move(painted);
+}
+
+}  // namespace lodestone::hierarchy

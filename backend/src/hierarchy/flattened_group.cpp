@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/flattened_group.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace lodestone::hierarchy {
+namespace {
+
+/// What a material shows on a mesh without texture coordinates: joined with one that has them, the
+/// mesh gets some too, but they mean nothing.
+Material without_textures(Material material) {
+    for_own_textures(material, [](Texture& texture) { texture = Texture{}; });
+    if (material.other)
+        material.other = std::make_shared<const Material>(without_textures(*material.other));
+    return material;
+}
+
+}  // namespace
+
+Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const Job& job) {
+    Flat flat;
+    const Model& model = group.model();
+    const choose::Cut cut = group.cut(error, job);
+    std::map<std::pair<uint32_t, bool>, uint16_t> slots;  // by material, and whether it is plain
+    const auto slot_of = [&](uint32_t index, bool has_uvs) {
+        const Material& material = model.materials.at(index);
+        const bool plain = !has_uvs && textured(material);
+        const auto [at, fresh] =
+            slots.try_emplace({index, plain}, static_cast<uint16_t>(slots.size()));
+        if (fresh)
+            flat.materials.push_back(plain ? without_textures(material) : material);
+        return at->second;
+    };
+    for (const uint32_t index : cut.chosen) {
+        job.check();
+        const choose::Node& node = cut.nodes[index];
+        const Object& object = model.objects[node.object];
+        const Representation& representation = object.representations[node.lod];
+        flat.child_error =
+            std::max(flat.child_error, representation.summary.error * stretch(cut.world(node)));
+        Mesh part = representation.summary.kind == Kind::Mesh
+                        ? *source(representation)
+                        : tessellated(representation, kDrawnSubdivisions);
+        part.slots.resize(part.triangles.size(), 0);
+        std::vector<uint16_t> moved;
+        for (const uint32_t material : representation.materials) {
+            if (slots.size() >= std::numeric_limits<uint16_t>::max())
+                fail(Status::InvalidArgument, "group '", model.objects[group.index()].name,
+                     "' uses more than 65535 materials");
+            moved.push_back(slot_of(material, !part.uvs.empty()));
+        }
+        for (uint16_t& slot : part.slots)
+            slot = slot < moved.size() ? moved[slot] : uint16_t{0};
+        append(flat.mesh, part, cut.world(node));
+        flat.occurrence.resize(flat.mesh.triangles.size(), static_cast<uint32_t>(flat.occurrences));
+        ++flat.occurrences;
+        flat.placement.push_back(0);
+        flat.environment.push_back(0);
+        for (uint32_t at = index; cut.nodes[at].parent != choose::kNoParent;
+             at = cut.nodes[at].parent) {
+            flat.placement.back() = cut.nodes[at].placement;
+            if (model.objects[cut.nodes[at].object].role == Role::Environment)
+                flat.environment.back() = 1;
+        }
+    }
+    if (flat.materials.empty())
+        flat.materials.emplace_back();
+    return flat;
+}
+
+double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, const Job& job) {
+    constexpr int kFinest = -12;  // powers of two, over the radius
+    constexpr int kCoarsest = 3;
+    // One mesh for a group has fewer triangles than its children at the same error, by this or
+    // more. (Kept ones: by 1.4 in the worst case of 105, by 4 in the middle.)
+    constexpr double kJoined = 1.5;
+    constexpr double kFiner = 1.0 / 8;   // than the stand-ins
+    constexpr double kLeast = 1.0 / 16;  // over the radius: for what only solids can stand for
+    constexpr uint64_t kFewTriangles = 1000;
+    // What is larger than this part of the size is not fine: what is measured against it would look
+    // as far off. And what saves little is not worth an error: a roof of boxes stays one.
+    constexpr int kLastFine = -5;
+    const double size = group.model().objects[group.index()].bound().radius;
+    const double sharing = static_cast<double>(std::max<uint64_t>(1, group.uses()));
+    const auto error_of = [&](int power) { return power < kFinest ? 0 : std::ldexp(size, power); };
+    const auto drawn_at = [&](int power) { return group.drawn_within(error_of(power), job); };
+    uint64_t enough = std::max(wanted, drawn_at(kLastFine).triangles * 5 / 4);
+    if (enough > most)
+        enough = std::max(most, drawn_at(kCoarsest - 1).triangles);
+    double reference = kLeast * size;
+    for (int power = kFinest - 1; power < kCoarsest; ++power) {
+        const Drawn drawn = drawn_at(power);
+        const double stand_in =
+            static_cast<double>(drawn.triangles * kBytesPerTriangle) / (kJoined * sharing) +
+            static_cast<double>(kBytesPerOccurrence);
+        if (stand_in < drawn.bytes) {
+            reference = std::min(reference, kFiner * error_of(power));
+            break;
+        }
+    }
+    int power = kFinest - 1;
+    for (; power + 1 < kCoarsest; ++power) {
+        const uint64_t triangles = drawn_at(power).triangles;
+        if (triangles <= enough && (triangles <= kFewTriangles || error_of(power) >= reference))
+            break;
+    }
+    return error_of(power);
+}
+
+}  // namespace lodestone::hierarchy

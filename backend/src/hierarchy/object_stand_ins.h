@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stand-ins of one object: which are tried, and the list that is kept.
+#pragma once
+
+#include "base/job.h"
+#include "hierarchy/build_settings.h"
+#include "hierarchy/candidate.h"
+#include "image/texels.h"
+#include "model/model.h"
+
+#include <functional>
+
+namespace lodestone::hierarchy {
+
+struct StandIns {
+    Attributes attributes;
+    std::vector<Candidate> candidates;  // errors rise strictly, costs fall
+};
+
+struct Surroundings;  // hierarchy/run/stand_in_surroundings.h
+
+/// Gives the mesh of a representation, resident or not. Called from several threads.
+using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
+
+/// Levels and primitives of an object whose finest representation is a mesh. Something see-through
+/// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
+/// all objects of a build.
+StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
+                           const Settings& settings, const MeshSource& source,
+                           image::TexelCache& texels, const Job& job);
+
+/// Of a group whose children have theirs: flattened as finely as a stand-in can pay,
+/// without what cannot be seen from outside, simplified and replaced. Never empty when anything
+/// below can be drawn.
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
+                            const Settings& settings, const MeshSource& source,
+                            image::TexelCache& texels, const Job& job);
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/opened_group.h"
+
+namespace lodestone::hierarchy {
+namespace {
+
+constexpr uint64_t kTrianglesOfBox = 12;
+constexpr uint64_t kTrianglesOfEllipsoid = 80;
+
+/// A view in which a representation is good enough when its error is at most `error`.
+View view_within(double error) {
+    View view;
+    view.camera.orthographic = true;
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 1, 0};
+    view.width = view.height = 1;
+    view.pixel_error = error;
+    return view;
+}
+
+uint64_t triangles_of(const Model& model, const choose::Cut& cut) {
+    uint64_t triangles = cut.triangles;
+    for (const uint32_t index : cut.chosen) {
+        const choose::Node& node = cut.nodes[index];
+        const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
+        if (kind == Kind::Box)
+            triangles += kTrianglesOfBox;
+        else if (kind == Kind::Ellipsoid)
+            triangles += kTrianglesOfEllipsoid;
+        else if (kind == Kind::Composite)  // mostly ellipsoids
+            triangles +=
+                model.objects[node.object].representations[node.lod].composite().solids.size() *
+                kTrianglesOfEllipsoid;
+    }
+    return triangles;
+}
+
+}  // namespace
+
+OpenedGroup::OpenedGroup(const Model& model, ObjectIndex group, const std::vector<uint64_t>& uses)
+    : table_(model, View{}.kinds), group_(group), uses_(uses) {}
+
+choose::Cut OpenedGroup::cut(double error, const Job& job) {
+    return choose::choose_below(table_, group_, view_within(error), job);
+}
+
+Drawn OpenedGroup::drawn_within(double error, const Job& job) {
+    if (const auto known = drawn_.find(error); known != drawn_.end())
+        return known->second;
+    Drawn drawn;
+    const choose::Cut cut = this->cut(error, job);
+    drawn.triangles = triangles_of(model(), cut);
+    for (const uint32_t index : cut.chosen) {
+        const choose::Node& node = cut.nodes[index];
+        const Summary& summary = model().objects[node.object].representations[node.lod].summary;
+        drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
+                       bytes_each(summary.kind, summary.cost.bytes, uses_[node.object]);
+        drawn.alone += static_cast<double>(kBytesPerOccurrence + summary.cost.bytes);
+    }
+    drawn_.emplace(error, drawn);
+    return drawn;
+}
+
+}  // namespace lodestone::hierarchy

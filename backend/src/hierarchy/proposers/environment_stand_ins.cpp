@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/environment_stand_ins.h"
+
+#include "measure/visible/visible_attributes.h"
+#include "simplify/simplify.h"
+#include "solids/composite_replacement.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lodestone::hierarchy {
+namespace {
+
+constexpr int kBesideSubdivisions = 1;  // an ellipsoid of 80 triangles
+constexpr size_t kMostBeside = 8;       // solids
+
+struct Beside {
+    Composite composite;
+    std::vector<Attributes> attributes;  // by slot
+};
+
+/// A box and an ellipsoid of all that is no environment, standing where it stands.
+std::vector<Beside> singles(const Attributes& attributes, const Bound& bound) {
+    std::vector<Beside> out;
+    for (const bool box : {true, false}) {
+        const auto found =
+            box ? solids::fit_box(attributes, bound) : solids::fit_ellipsoid(attributes, bound);
+        if (!found)
+            continue;
+        const Primitive standing = solids::kept_above(*found, box, bound.box.low.z);
+        out.push_back({{{{box, standing, 0}}}, {attributes}});
+    }
+    return out;
+}
+
+}  // namespace
+
+void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh,
+                            const std::vector<uint8_t>& environment,
+                            const std::vector<Material>& materials, const Settings& settings,
+                            uint64_t seed, Judge& judge, const Job& job) {
+    std::vector<uint8_t> others;
+    others.reserve(environment.size());
+    for (const uint8_t one : environment)
+        others.push_back(one != 0 ? 0 : 1);
+    const Mesh around = subset(mesh, environment);
+    const Mesh rest = subset(mesh, others);
+    if (around.empty() || rest.empty() || judge.refracts())
+        return;
+    measure::VisibleOptions options;
+    options.rays = settings.rays;
+    options.seed = seed;
+    const Attributes attributes = measure::measure_visible(rest, ray::Scene(rest, judge.skin()),
+                                                           judge.skin(), options, {}, job)
+                                      .attributes;
+    if (attributes.empty())
+        return;
+    std::vector<Beside> all = singles(attributes, bound_of(rest.positions));
+    solids::CompositeOptions rough{seed};
+    rough.shape = false;
+    rough.rounds = 0;
+    rough.rays = static_cast<uint32_t>(settings.rays / 4);
+    rough.most = kMostBeside;
+    for (solids::Clustered& level : solids::composites(rest, judge.skin(), attributes, rough, job))
+        all.push_back({std::move(level.composite), std::move(level.attributes)});
+    for (const Beside& beside : all) {
+        job.check();
+        if (materials.size() + beside.attributes.size() > std::numeric_limits<uint16_t>::max())
+            return;
+        const Mesh solids = tessellate(beside.composite, kBesideSubdivisions);
+        Mesh both = around.triangles.size() > solids.triangles.size()
+                        ? simplify::simplify_mesh(around, solids.triangles.size(), {}, job)
+                        : around;
+        both.slots.resize(both.triangles.size(), 0);
+        append(both, solids, {}, static_cast<uint16_t>(materials.size()));
+        Candidate candidate;
+        candidate.mesh = std::make_shared<const Mesh>(std::move(both));
+        candidate.unproven = true;
+        candidate.materials = materials;
+        for (const Attributes& own : beside.attributes)
+            candidate.materials.push_back(solids::mean_material(own));
+        judge.measure_mesh(candidate, job);
+        candidates.push_back(std::move(candidate));
+    }
+}
+
+}  // namespace lodestone::hierarchy

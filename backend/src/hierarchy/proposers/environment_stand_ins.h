@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beside: the environment of a group as a mesh of few triangles, and solids for everything else in
+// it.
+#pragma once
+
+#include "hierarchy/candidate.h"
+#include "hierarchy/evaluators/stand_in_evaluator.h"
+
+namespace lodestone::hierarchy {
+
+/// One mesh each: the environment simplified to about as many triangles as what stands on it has,
+/// which is a box, an ellipsoid, or a composite of four or eight. Judged by distance, to be proven
+/// by patches. `mesh`: the finest; `environment`: by triangle. Nothing where it has no environment,
+/// or nothing else.
+void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh,
+                            const std::vector<uint8_t>& environment,
+                            const std::vector<Material>& materials, const Settings& settings,
+                            uint64_t seed, Judge& judge, const Job& job);
+
+}  // namespace lodestone::hierarchy

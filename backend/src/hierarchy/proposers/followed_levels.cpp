@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/followed_levels.h"
+
+#include "deform/level_binding.h"
+#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/proposers/collapse_levels.h"
+#include "simplify/simplify.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace lodestone::hierarchy {
+namespace {
+
+/// Tells whether a level's error is one of materials: larger than that of the bare shape.
+class LookError {
+public:
+    LookError(const Mesh& finest, const std::vector<Material>& materials, const Settings& settings,
+              uint64_t seed, const Job& job) {
+        const bool alike = materials.size() == 1 && finest.colors.empty() &&
+                           !textured(materials[0]) && !materials[0].other;
+        if (!alike)
+            bare_.emplace(finest,
+                          measure::DeviationOptions{settings.samples, settings.samples, seed},
+                          measure::Surface{}, job);
+    }
+
+    /// Metres; 0 where the shape decides.
+    double of(const Mesh& level, const std::vector<Material>& materials, Judge& judge,
+              const Job& job) const {
+        if (!bare_)
+            return 0;
+        Candidate candidate;
+        candidate.mesh = std::make_shared<Mesh>(level);
+        candidate.materials = materials;
+        judge.measure_mesh(candidate, job);
+        const double bare = bare_->of(level, {}, job).error;
+        return candidate.error > 1.01 * bare ? candidate.error : 0;
+    }
+
+private:
+    std::optional<measure::DeviationReference> bare_;
+};
+
+}  // namespace
+
+segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
+                                          const MeshSource& source, image::TexelCache& texels,
+                                          const Job& job) {
+    segment::BoundLevels out;
+    const Representation& finest = bind.object->representations.at(0);
+    const std::shared_ptr<const Mesh> mesh = source(finest);
+    if (mesh->empty())
+        return out;
+    const std::vector<size_t> targets = targets_of(*mesh, settings);
+    if (targets.empty())
+        return out;
+    const std::vector<Material> materials = materials_of(*bind.model, finest);
+    Judge judge(*mesh, materials, texels, settings, bind.object->role == Role::Environment,
+                bind.hash, 0, job);
+    judge.measure_finest(*mesh, job);
+    if (judge.attributes().empty())
+        return out;
+    std::vector<std::vector<glm::vec3>> others;
+    const std::vector<uint32_t> points = deform::points_of(*mesh, *bind.object->pose);
+    for (const Pose* pose : bind.others) {
+        std::vector<glm::vec3>& positions = others.emplace_back();
+        for (const uint32_t point : points)
+            positions.push_back(pose->points.at(point));
+    }
+    Mesh plain;
+    const Mesh& visible = without_unseen_colors(*mesh, materials, plain);
+    const deform::PoseSurface surface(*bind.object->pose);
+    const deform::Binder binder(visible, surface);
+    const LookError look_error(visible, materials, settings, bind.hash, job);
+    for (simplify::TracedLevel& level :
+         simplify::simplify_traced(visible, others, targets, {}, job)) {
+        if (level.mesh.empty())
+            continue;
+        judge.repaint(level.mesh, job);
+        if (!judge.shows_as_much(level.mesh, job))
+            continue;
+        std::optional<deform::BoundLevel> bound = binder.bind(std::move(level));
+        if (!bound)
+            continue;
+        bound->look_error = look_error.of(bound->mesh, materials, judge, job);
+        out.push_back(std::move(*bound));
+    }
+    return out;
+}
+
+std::vector<Candidate> followed_levels(const Model& model, const Object& object,
+                                       const segment::BoundLevels& levels, const Job& job) {
+    // A coarser level may be the better one in some frame, but levels keep their numbers.
+    constexpr double kRise = 1 + 1e-9;
+    std::vector<Candidate> out;
+    const Representation& finest = object.representations.at(0);
+    if (levels.empty() || object.pose == nullptr)
+        return out;
+    const std::vector<Material> materials = materials_of(model, finest);
+    const deform::PoseSurface surface(*object.pose);
+    const auto counted = [&](double error) {
+        return counted_error(error, object.role == Role::Environment, finest.summary.bound.radius);
+    };
+    for (const deform::BoundLevel& level : levels) {
+        job.check();
+        std::optional<Mesh> followed = deform::follow(level, surface);
+        if (!followed || followed->triangles.size() >= finest.summary.cost.triangles)
+            continue;
+        const deform::Strayed strayed = deform::strayed(level, *followed, surface);
+        Candidate candidate;
+        candidate.mesh = std::make_shared<Mesh>(std::move(*followed));
+        candidate.materials = materials;
+        candidate.error =
+            counted(std::max(strayed.error, level.look_error * std::max(1.0, strayed.growth)));
+        if (!out.empty())
+            candidate.error = std::max(candidate.error, kRise * out.back().error);
+        candidate.max_error = std::max(counted(strayed.max), candidate.error);
+        out.push_back(std::move(candidate));
+    }
+    return out;
+}
+
+}  // namespace lodestone::hierarchy

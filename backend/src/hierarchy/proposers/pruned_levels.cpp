@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/pruned_levels.h"
+
+#include "hierarchy/proposers/collapse_levels.h"
+#include "simplify/simplify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace lodestone::hierarchy {
+namespace {
+
+using prune::Crowd;
+
+constexpr size_t kFewestParts = 8;
+// Parts of more triangles than this are simplified as well as thinned.
+constexpr size_t kPlainPart = 12;
+constexpr double kMostGrowth = 64;
+// Enlarged parts hide more of each other: growth is corrected by what is seen, so often.
+constexpr int kCorrections = 3;
+
+/// What is kept at one level.
+struct Step {
+    size_t parts;
+    size_t crowd_triangles;  // after simplification
+    size_t rest_triangles;
+};
+
+std::vector<Step> steps_of(const Crowd& crowd, size_t rest, double ratio) {
+    const bool plain = crowd.triangles <= kPlainPart * crowd.parts.size();
+    std::vector<Step> out;
+    for (double share = ratio;; share *= ratio) {
+        // Half the way each, on a scale of powers.
+        const double kept = plain ? share : std::sqrt(share);
+        const auto of = [](double part, size_t whole) {
+            return static_cast<size_t>(std::round(part * static_cast<double>(whole)));
+        };
+        const Step step{of(kept, crowd.parts.size()), of(share, crowd.triangles), of(share, rest)};
+        if (step.parts < std::max(kFewestParts, crowd.slots.size()))
+            return out;
+        out.push_back(step);
+    }
+}
+
+/// The rest at each step's triangles; the mesh itself where it cannot get simpler.
+std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<Step>& steps, const Job& job) {
+    std::vector<size_t> targets;
+    for (const Step& step : steps) {
+        const size_t target = std::max(step.rest_triangles, kFewestTriangles);
+        if (target < rest.triangles.size() && (targets.empty() || target < targets.back()))
+            targets.push_back(target);
+    }
+    std::vector<Mesh> levels;
+    if (!targets.empty())
+        levels = simplify::simplify_chain(rest, targets, {}, job);
+    std::vector<Mesh> out;
+    for (const Step& step : steps) {
+        const Mesh* best = &rest;
+        for (const Mesh& level : levels) {
+            if (best->triangles.size() > std::max(step.rest_triangles, kFewestTriangles))
+                best = &level;
+        }
+        out.push_back(*best);
+    }
+    return out;
+}
+
+/// Materials of the crowd's slots, if only parts use them: as different from each other as pixels
+/// of the whole crowd are.
+std::vector<Material> contrasted(const std::vector<Material>& materials, const Crowd& crowd,
+                                 const std::set<uint16_t>& rest_slots,
+                                 const std::vector<double>& visible, double variance) {
+    std::vector<Material> out = materials;
+    glm::dvec3 mean(0.0);
+    double all = 0;
+    for (size_t kind = 0; kind < crowd.slots.size(); ++kind) {
+        if (crowd.slots[kind] >= materials.size())
+            return out;
+        mean += visible[kind] * materials[crowd.slots[kind]].base_color;
+        all += visible[kind];
+    }
+    if (!(all > 0) || crowd.slots.size() < 2)
+        return out;
+    mean /= all;
+    for (const uint16_t slot : crowd.slots) {
+        Material& material = out[slot];
+        if (rest_slots.count(slot) == 0 && !material.base_color_texture && !material.other)
+            material.base_color = prune::with_contrast(material.base_color, mean, variance);
+    }
+    return out;
+}
+
+class Thinner {
+public:
+    Thinner(const Mesh& mesh, const std::vector<Material>& materials, const Crowd& crowd,
+            const Judge& judge, const Job& job)
+        : mesh_(mesh), materials_(materials), crowd_(crowd), judge_(judge), job_(job) {
+        std::vector<uint8_t> keep(mesh.triangles.size(), 0);
+        std::vector<uint32_t> tags(mesh.triangles.size(), 0);
+        for (size_t i = 0; i < keep.size(); ++i) {
+            const uint32_t part = crowd.part_of[i];
+            if (part != prune::kNoPart) {
+                tags[i] = 1 + crowd.parts[part].kind;
+                continue;
+            }
+            keep[i] = 1;
+            rest_slots_.insert(mesh.slot(i));
+        }
+        rest_ = subset(mesh, keep);
+        visible_ = judge.visible_by_tag(mesh, tags, 1 + crowd.slots.size(), job);
+        visible_.erase(visible_.begin());
+    }
+
+    const Mesh& rest() const { return rest_; }
+    /// Slots that only parts use: their colors may change.
+    std::vector<uint16_t> own_slots() const {
+        std::vector<uint16_t> out;
+        for (const uint16_t slot : crowd_.slots) {
+            if (rest_slots_.count(slot) == 0)
+                out.push_back(slot);
+        }
+        return out;
+    }
+
+    /// With these parts kept, and the rest already simplified.
+    Candidate thinned(const std::vector<uint32_t>& order, const Step& step,
+                      const Mesh& rest) const {
+        std::vector<double> growth = first_growth(order, step.parts);
+        Candidate out;
+        for (int i = 0;; ++i) {
+            prune::Pruned crowd = prune::pruned(mesh_, crowd_, order, step.parts, growth);
+            if (crowd_.triangles > kPlainPart * crowd_.parts.size() &&
+                step.crowd_triangles < crowd.mesh.triangles.size())
+                simplify(crowd, step.crowd_triangles);
+            // The crowd comes first, so that its kinds are the tags of the first triangles.
+            Mesh level = crowd.mesh;
+            if (!rest.empty())
+                append(level, rest, {});
+            std::vector<uint32_t> tags(level.triangles.size(), 0);
+            for (size_t t = 0; t < crowd.kind_of.size(); ++t)
+                tags[t] = 1 + crowd.kind_of[t];
+            if (i == kCorrections || correct(growth, judge_.visible_by_tag_of_level(
+                                                         level, tags, 1 + growth.size(), job_))) {
+                out.mesh = std::make_shared<Mesh>(std::move(level));
+                out.materials =
+                    contrasted(materials_, crowd_, rest_slots_, visible_, crowd.variance);
+                return out;
+            }
+        }
+    }
+
+private:
+    std::vector<double> first_growth(const std::vector<uint32_t>& order, size_t keep) const {
+        std::vector<double> all(crowd_.slots.size(), 0);
+        std::vector<double> kept(crowd_.slots.size(), 0);
+        for (size_t i = 0; i < order.size(); ++i) {
+            const Crowd::Part& part = crowd_.parts[order[i]];
+            all[part.kind] += part.area;
+            if (i < std::max(keep, crowd_.slots.size()))
+                kept[part.kind] += part.area;
+        }
+        for (size_t kind = 0; kind < all.size(); ++kind)
+            all[kind] = kept[kind] > 0 ? std::clamp(all[kind] / kept[kind], 1.0, kMostGrowth) : 1;
+        return all;
+    }
+
+    /// Moves growth towards what shows as much as the whole crowd; true when it does already.
+    bool correct(std::vector<double>& growth, const std::vector<double>& now) const {
+        constexpr double kSameArea = 0.02;
+        bool right = true;
+        for (size_t kind = 0; kind < growth.size(); ++kind) {
+            if (!(now[kind + 1] > 0) || !(visible_[kind] > 0))
+                continue;
+            const double ratio = visible_[kind] / now[kind + 1];
+            right = right && std::abs(ratio - 1) <= kSameArea;
+            growth[kind] =
+                std::clamp(growth[kind] * std::clamp(ratio, 0.5, 2.0), 0.25, kMostGrowth);
+        }
+        return right;
+    }
+
+    /// Kinds are told by slots, which simplification keeps.
+    void simplify(prune::Pruned& crowd, size_t triangles) const {
+        std::vector<uint32_t> kind_of_slot;
+        for (size_t kind = 0; kind < crowd_.slots.size(); ++kind) {
+            kind_of_slot.resize(std::max<size_t>(kind_of_slot.size(), crowd_.slots[kind] + 1u), 0);
+            kind_of_slot[crowd_.slots[kind]] = static_cast<uint32_t>(kind);
+        }
+        Mesh level = simplify::simplify_mesh(crowd.mesh, triangles, {}, job_);
+        if (level.empty())
+            return;
+        crowd.mesh = std::move(level);
+        crowd.kind_of.assign(crowd.mesh.triangles.size(), 0);
+        for (size_t i = 0; i < crowd.kind_of.size(); ++i) {
+            const uint16_t slot = crowd.mesh.slot(i);
+            crowd.kind_of[i] = slot < kind_of_slot.size() ? kind_of_slot[slot] : 0;
+        }
+    }
+
+    const Mesh& mesh_;
+    const std::vector<Material>& materials_;
+    const Crowd& crowd_;
+    const Judge& judge_;
+    const Job& job_;
+    Mesh rest_;
+    std::set<uint16_t> rest_slots_;
+    std::vector<double> visible_;  // by kind, of the whole crowd
+};
+
+}  // namespace
+
+void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
+                       const std::vector<Material>& materials, const Crowd& crowd,
+                       double level_ratio, size_t most, uint64_t seed, Judge& judge,
+                       const Job& job) {
+    const Thinner thinner(mesh, materials, crowd, judge, job);
+    const std::vector<Step> steps = steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
+    const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
+    const std::vector<uint16_t> own = thinner.own_slots();
+    const Bound bound = bound_of(mesh.positions);
+    std::vector<prune::PruneOrder> orders{prune::PruneOrder::Random};
+    if (crowd.sizes_differ())
+        orders.push_back(prune::PruneOrder::Largest);
+    for (const prune::PruneOrder kind : orders) {
+        const std::vector<uint32_t> order = prune::prune_order(crowd, kind, seed);
+        for (size_t i = 0; i < steps.size(); ++i) {
+            job.check();
+            if (steps[i].crowd_triangles + rests[i].triangles.size() > most)
+                continue;
+            Candidate candidate = thinner.thinned(order, steps[i], rests[i]);
+            if (candidate.mesh->triangles.size() >= mesh.triangles.size())
+                continue;
+            judge.compare_pictures(candidate, own, job);
+            const bool enough = candidate.error >= bound.radius;  // any solid will do
+            candidates.push_back(std::move(candidate));
+            if (enough)
+                break;
+        }
+    }
+}
+
+}  // namespace lodestone::hierarchy

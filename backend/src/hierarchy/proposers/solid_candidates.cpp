@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/solid_candidates.h"
+
+#include "hierarchy/proposers/pruned_levels.h"
+#include "solids/composite_replacement.h"
+#include "solids/keep_on_floor.h"
+#include "solids/solid_replacement.h"
+#include "solids/stand_in_material.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::hierarchy {
+namespace {
+
+/// Many parts of a few triangles each: how far their points are from those of fewer tells little.
+bool is_foliage(const prune::Crowd& crowd) {
+    constexpr size_t kFewestLeaves = 256;
+    constexpr size_t kTriangles = 8;  // of a leaf, in the mean
+    return crowd.parts.size() >= kFewestLeaves &&
+           crowd.triangles <= kTriangles * crowd.parts.size();
+}
+
+/// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
+void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
+                    Judge& judge, const Job& job) {
+    const Material material = solids::mean_material(judge.attributes());
+    const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
+        Candidate candidate;
+        candidate.kind = kind;
+        candidate.primitive = primitive;
+        candidate.materials = {solids::clear_material(material, opacity)};
+        candidate.unproven = !by_pictures;
+        candidate.unsettled = true;
+        if (by_pictures)
+            judge.compare_pictures(candidate, {}, job);
+        else
+            judge.measure_primitive(candidate, job);
+        candidates.push_back(std::move(candidate));
+    };
+    // Nothing sinks into the plane that its original stands on. What floats above it may be the
+    // better one (a tree's crown), or not (a table's top): the error decides.
+    const double floor = bound.box.low.z;
+    const auto add_standing = [&](Kind kind, const Primitive& primitive) {
+        const bool is_box = kind == Kind::Box;
+        const solids::Reach reach = solids::reach_of(primitive, is_box);
+        add(kind, solids::kept_above(primitive, is_box, floor), 1);
+        constexpr double kStands = 0.01;  // over its height
+        if (reach.low - floor > kStands * (reach.high - reach.low))
+            add(kind, solids::standing_on(primitive, is_box, floor), 1);
+    };
+    if (const auto box = solids::fit_box(judge.attributes(), bound))
+        add_standing(Kind::Box, *box);
+    if (const auto ellipsoid = solids::fit_ellipsoid(judge.attributes(), bound))
+        add_standing(Kind::Ellipsoid, *ellipsoid);
+    if (!by_pictures)
+        return;
+    if (const auto box = solids::fit_clear_box(judge.attributes(), bound))
+        add(Kind::Box, solids::kept_above(box->primitive, true, floor), box->opacity);
+    if (const auto ellipsoid = solids::fit_clear_ellipsoid(judge.attributes(), bound))
+        add(Kind::Ellipsoid, solids::kept_above(ellipsoid->primitive, false, floor),
+            ellipsoid->opacity);
+}
+
+/// How many solids may be of use beside the parts of the whole.
+size_t most_solids(const std::vector<Candidate>& candidates, const Whole& whole) {
+    constexpr size_t kMost = 32;
+    // It is used up to the error of the next one, and what its parts cost is asked for half way.
+    double next = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.kind != Kind::Mesh)
+            next = std::min(next, candidate.error);
+    }
+    const double least = kOff * whole.bound.radius;
+    const double used = std::isfinite(next) ? std::sqrt(least * std::max(next, least)) : least;
+    size_t out = kMost;
+    const auto useless = [&](size_t solids) {
+        const auto bytes = static_cast<double>(solids * kBytesPerPrimitive);
+        return bytes > whole.most || (whole.cheaper_from && whole.cheaper_from(bytes) <= used);
+    };
+    while (out > 0 && useless(out))
+        out /= 2;
+    return out;
+}
+
+Candidate candidate_of(const solids::Clustered& level) {
+    Candidate out;
+    out.kind = Kind::Composite;
+    out.composite = std::make_shared<const Composite>(level.composite);
+    for (size_t i = 0; i < level.attributes.size(); ++i)
+        out.materials.push_back(
+            solids::clear_material(solids::mean_material(level.attributes[i]), level.opacities[i]));
+    return out;
+}
+
+/// Whether a composite of that error would be of use beside the others, and beside the parts of the
+/// whole.
+bool would_pay(const Candidate& composite, double error, const std::vector<Candidate>& others,
+               const Whole& whole) {
+    const double own = bytes_of(composite, whole.uses);
+    double next = std::numeric_limits<double>::infinity();  // the cheaper one that takes over
+    for (const Candidate& other : others) {
+        if (bytes_of(other, whole.uses) <= own)
+            next = std::min(next, other.error);
+    }
+    if (error >= next)
+        return false;
+    if (!whole.cheaper_from)
+        return true;
+    const double used = std::isfinite(next) ? std::sqrt(error * next) : error;
+    return whole.cheaper_from(static_cast<double>(bytes_of(composite))) > used;
+}
+
+/// `airy`: clear ones too, of these parts, of at most so many solids.
+void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
+                    const prune::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
+                    const Whole& whole, const Job& job) {
+    // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
+    // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
+    // more): only those that may pay by these are matched. Fewer solids are hardly ever much
+    // nearer: where not even that would pay, one picture is enough.
+    constexpr double kNearer = 0.7;
+    constexpr double kFewerNearer = 0.75;
+    constexpr uint32_t kFewRays = 1024;
+    constexpr uint32_t kFewSamples = 2048;
+    // Between leaves one sees far into a crown: a solid with the same variances would be too small.
+    solids::CompositeOptions options{seed};
+    options.shape = !airy;
+    options.most = most;
+    solids::CompositeOptions few = options;
+    few.shape = false;
+    few.rounds = 0;
+    few.rays = kFewRays;
+    few.samples = kFewSamples;
+    solids::CompositeOptions exact = options;
+    exact.settled = 0;  // those that are kept are
+    exact.least = exact.most = 0;
+    std::vector<Candidate> rough;  // fewest solids first
+    for (const solids::Clustered& level :
+         solids::composites(mesh, judge.skin(), judge.attributes(), few, job))
+        rough.push_back(candidate_of(level));
+    for (bool more = true; more && !rough.empty(); rough.pop_back()) {
+        judge.compare_pictures(rough.back(), {}, job);
+        const double error = kNearer * rough.back().error;
+        if (would_pay(rough.back(), error, candidates, whole)) {
+            // It may be one of fewer than were asked for.
+            exact.least = std::bit_ceil(rough.back().composite->solids.size());
+            exact.most = std::max(exact.most, exact.least);
+            continue;
+        }
+        more =
+            exact.most == 0 && std::any_of(rough.begin(), rough.end(), [&](const Candidate& other) {
+                return would_pay(other, kFewerNearer * error, candidates, whole);
+            });
+    }
+    std::vector<solids::Clustered> levels;
+    if (exact.most > 0)
+        levels = solids::composites(mesh, judge.skin(), judge.attributes(), exact, job);
+    if (airy) {
+        for (solids::Clustered& level : solids::clear_composites(mesh, judge.skin(), crowd.part_of,
+                                                                 judge.attributes(), options, job))
+            levels.push_back(std::move(level));
+    }
+    for (const solids::Clustered& level : levels) {
+        Candidate candidate = candidate_of(level);
+        candidate.unsettled = options.shape;
+        judge.compare_pictures(candidate, {}, job);
+        candidates.push_back(std::move(candidate));
+    }
+}
+
+}  // namespace
+
+Replacements::Replacements(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
+                           const Whole& whole, Judge& judge, const Job& job)
+    : mesh_(mesh), whole_(whole), judge_(judge) {
+    // Less than so many solids would cost is not worth a tenth of a second of pictures.
+    constexpr double kFewSolids = 32;
+    if (whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts()) {
+        crowd_ = crowd_in_mesh();
+        by_pictures_ = !judge.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
+    }
+    if (!by_pictures_ && !whole.ground && judge.solid())
+        add_primitives(solids_, whole.bound, false, judge, job);
+}
+
+double Replacements::nearest_solid() const {
+    double out = std::numeric_limits<double>::infinity();
+    for (const Candidate& solid : solids_)
+        out = std::min(out, solid.error);
+    return out;
+}
+
+void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
+                       const Settings& settings, uint64_t seed, const Job& job) {
+    const double radius = whole_.bound.radius;
+    const bool dear =
+        bytes_within(candidates, kNear * radius, whole_.uses) > kCollapsed * whole_.bytes;
+    const bool thinned = !crowd_.empty() && (whole_.many || is_foliage(crowd_) || dear);
+    const bool by_pictures = by_pictures_ || thinned;
+    if (by_pictures)
+        judge_.take_pictures(mesh_, !thinned, job);
+    if (thinned)
+        add_pruned_levels(candidates, mesh_, materials, crowd_, settings.level_ratio,
+                          triangles_for(whole_.most, whole_.uses), seed, judge_, job);
+    if (!by_pictures)
+        candidates.insert(candidates.end(), solids_.begin(), solids_.end());
+    else if (!whole_.ground)
+        add_primitives(candidates, whole_.bound, true, judge_, job);
+    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
+    // good, and comparing pictures takes long.
+    const double solids = by_pictures ? 16 : 64;
+    const double dearer =
+        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole_.uses));
+    constexpr size_t kFewest = 4;  // solids of the cheapest
+    const size_t most = whole_.ground ? 0 : most_solids(candidates, whole_);
+    if (most >= kFewest && !judge_.refracts() && whole_.bytes > 2 * dearer &&
+        bytes_within(candidates, kOff * radius, whole_.uses) > dearer) {
+        if (!by_pictures)
+            judge_.take_pictures(mesh_, true, job);
+        add_composites(candidates, mesh_, by_pictures, thinned ? crowd_ : prune::Crowd{}, most,
+                       seed, judge_, whole_, job);
+    }
+}
+
+size_t triangles_for(double bytes, uint64_t uses) {
+    const double all = bytes * static_cast<double>(std::max<uint64_t>(1, uses));
+    return static_cast<size_t>(std::clamp(all / kBytesPerTriangle, 0.0, 1e9));
+}
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/widened_levels.h"
+
+#include "group/surfaces.h"
+#include "hierarchy/evaluators/lamp_glow.h"
+#include "measure/pictures/picture_agreement.h"
+#include "measure/visible/visible_attributes.h"
+#include "solids/stand_in_material.h"
+#include "solids/widened_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace lodestone::hierarchy {
+namespace {
+
+// What is mostly thin shows less than this share of its bound's surface, ...
+constexpr double kSparsest = 0.08;
+// ... and so much of it at least in thin parts, ...
+constexpr double kMostlyThin = 0.25;
+constexpr size_t kMostThin = 16;  // ... of which each is a box in every level.
+constexpr double kWidest = 0.3;   // over the radius: wider ones are crossed by too many rays
+constexpr double kRatio = 1.6;    // of widths
+constexpr int kMostWidths = 8;    // of a level
+constexpr double kNext = 1.01;    // of errors, at least
+constexpr uint64_t kRaysOfPart = 4096;
+
+/// The thin parts of a mesh.
+struct ThinParts {
+    std::vector<solids::Thin> parts;
+    std::vector<Attributes> attributes;
+    std::vector<uint8_t> is_thin;  // by triangle
+    double thickness = 0;          // the largest
+};
+
+bool is_plain(const Mesh& mesh, size_t triangle, const std::vector<Material>& materials) {
+    const uint16_t slot = mesh.slot(triangle);
+    if (slot >= materials.size())
+        return true;
+    const Material& material = materials[slot];
+    return material.alpha_mode == AlphaMode::Opaque && !(material.transmission > 0) &&
+           !material.other && !emits(material);
+}
+
+/// By part: whether it may be thin, which takes no rays to say.
+std::vector<uint8_t> perhaps_thin(const Mesh& mesh, const std::vector<uint32_t>& part_of,
+                                  const std::vector<Material>& materials) {
+    // The area of what is twelve times longer than thick is a third of its diagonal's square.
+    constexpr double kMostArea = 0.5;
+    struct Part {
+        glm::dvec3 low{std::numeric_limits<double>::infinity()};
+        glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+        double area = 0;
+        bool plain = true;
+    };
+    std::vector<Part> parts;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (part_of[i] >= parts.size())
+            parts.resize(part_of[i] + size_t{1});
+        Part& part = parts[part_of[i]];
+        const Triangle& t = mesh.triangles[i];
+        for (const uint32_t corner : {t.x, t.y, t.z}) {
+            part.low = glm::min(part.low, glm::dvec3(mesh.positions[corner]));
+            part.high = glm::max(part.high, glm::dvec3(mesh.positions[corner]));
+        }
+        part.area += 0.5 * glm::length(area_vector(mesh, static_cast<uint32_t>(i)));
+        part.plain = part.plain && is_plain(mesh, i, materials);
+    }
+    std::vector<uint8_t> out;
+    for (const Part& part : parts) {
+        const glm::dvec3 diagonal = part.high - part.low;
+        out.push_back(part.plain && part.area > 0 &&
+                              part.area < kMostArea * glm::dot(diagonal, diagonal)
+                          ? 1
+                          : 0);
+    }
+    return out;
+}
+
+ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
+                     image::TexelCache& texels, uint64_t seed, double enough, const Job& job) {
+    ThinParts out;
+    const std::vector<uint32_t> part_of = group::loose_parts(mesh);
+    const std::vector<uint8_t> perhaps = perhaps_thin(mesh, part_of, materials);
+    if (static_cast<size_t>(std::count(perhaps.begin(), perhaps.end(), 1)) > kMostThin)
+        return out;
+    out.is_thin.assign(mesh.triangles.size(), 0);
+    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
+    double area = 0;
+    for (uint32_t number = 0; number < perhaps.size(); ++number) {
+        if (perhaps[number] == 0)
+            continue;
+        std::vector<uint8_t> keep(part_of.size());
+        for (size_t i = 0; i < keep.size(); ++i)
+            keep[i] = part_of[i] == number ? 1 : 0;
+        const Mesh part = subset(mesh, keep);
+        measure::VisibleOptions options;
+        options.rays = kRaysOfPart;
+        options.seed = seed;
+        const Attributes attributes =
+            measure::measure_visible(part, ray::Scene(part, skin), skin, options, {}, job)
+                .attributes;
+        const std::optional<solids::Thin> thin =
+            attributes.empty() ? std::nullopt : solids::thin_of(part, attributes);
+        if (!thin)
+            continue;
+        out.parts.push_back(*thin);
+        out.attributes.push_back(attributes);
+        out.thickness = std::max(out.thickness, thin->thickness());
+        area += attributes.visible_area;
+        for (size_t i = 0; i < keep.size(); ++i)
+            out.is_thin[i] = out.is_thin[i] != 0 || keep[i] != 0 ? 1 : 0;
+    }
+    if (!(area >= enough))
+        out.parts.clear();
+    return out;
+}
+
+std::vector<uint8_t> not_of(std::vector<uint8_t> marks) {
+    for (uint8_t& mark : marks)
+        mark = mark != 0 ? 0 : 1;
+    return marks;
+}
+
+/// Of a level all loose parts but those that stand for thin ones.
+Mesh rest_of(const Mesh& level, const ThinParts& thin, const Judge& judge) {
+    const std::vector<uint32_t> part_of = group::loose_parts(level);
+    std::vector<double> thin_area;  // by part, less what is not
+    for (size_t i = 0; i < level.triangles.size(); ++i) {
+        if (part_of[i] >= thin_area.size())
+            thin_area.resize(part_of[i] + size_t{1}, 0.0);
+        const Triangle& t = level.triangles[i];
+        const glm::dvec3 middle =
+            (glm::dvec3(level.positions[t.x]) + glm::dvec3(level.positions[t.y]) +
+             glm::dvec3(level.positions[t.z])) /
+            3.0;
+        const ray::Closest found = judge.finest_scene().closest_point(middle);
+        const double area = glm::length(area_vector(level, static_cast<uint32_t>(i)));
+        if (found.triangle != ray::kNoTriangle)
+            thin_area[part_of[i]] += thin.is_thin[found.triangle] != 0 ? area : -area;
+    }
+    std::vector<uint8_t> keep(part_of.size());
+    for (size_t i = 0; i < keep.size(); ++i)
+        keep[i] = thin_area[part_of[i]] > 0 ? 0 : 1;
+    return subset(level, keep);
+}
+
+/// A level's other parts, and boxes so wide in slots of their own.
+Candidate widened_level(const Candidate& level, const Mesh& others, const ThinParts& thin,
+                        double width, double floor) {
+    Candidate out = level;
+    Composite boxes;
+    out.clear_area = 0;
+    for (size_t i = 0; i < thin.parts.size(); ++i) {
+        const solids::Clear clear = solids::widened(thin.parts[i], width, floor);
+        boxes.solids.push_back(
+            {true, clear.primitive, static_cast<uint16_t>(out.materials.size())});
+        out.materials.push_back(
+            solids::clear_material(solids::mean_material(thin.attributes[i]), clear.opacity));
+        out.clear_area += solids::box_shell(clear.primitive.half_size).area;
+    }
+    Mesh mesh = others;
+    append(mesh, tessellate(boxes), Affine());
+    out.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    return out;
+}
+
+}  // namespace
+
+void widen(std::vector<Candidate>& kept, const Mesh& finest, const std::vector<Material>& materials,
+           image::TexelCache& texels, uint64_t seed, Judge& judge, const Job& job) {
+    const double radius = bound_of(finest.positions).radius;
+    const double visible = judge.attributes().visible_area;
+    const double widest = kWidest * radius;
+    const double floor = bound_of(finest.positions).box.low.z;
+    const auto is_level = [&](const Candidate& candidate) {  // no pruned mesh and no painted box
+        return candidate.kind == Kind::Mesh && !candidate.pictured &&
+               candidate.materials.size() == materials.size() &&
+               candidate.mesh->colors.empty() == finest.colors.empty();
+    };
+    if (!(visible < kSparsest * 4 * std::numbers::pi * radius * radius) ||
+        materials.size() + kMostThin > std::numeric_limits<uint16_t>::max() ||
+        std::none_of(kept.begin(), kept.end(), is_level))
+        return;
+    const ThinParts thin = thin_parts(finest, materials, texels, seed, kMostlyThin * visible, job);
+    if (thin.parts.empty())
+        return;
+    const Mesh beside = subset(finest, not_of(thin.is_thin));
+    std::optional<measure::AgreementReference> pictures;
+    const auto seen_from = [&](double width) {
+        if (!pictures)
+            pictures.emplace(finest, judge.finest_scene(), judge.skin(), seed,
+                             measure::AgreementReference::kSide, job);
+        Candidate exact;  // but for what is widened
+        exact.materials = materials;
+        exact = widened_level(exact, beside, thin, width, floor);
+        const auto skin = std::make_shared<const ray::Skin>(exact.materials, texels);
+        return pictures->of(*exact.mesh, skin, job).error;
+    };
+    std::vector<Candidate> out;
+    size_t most = finest.triangles.size();
+    bool wide = false;
+    for (size_t i = 0; i < kept.size(); ++i) {
+        const Candidate& level = kept[i];
+        if (!is_level(level) || !(level.error > thin.thickness && (wide || level.error < widest))) {
+            if (is_level(level))
+                most = level.mesh->triangles.size();
+            out.push_back(level);
+            continue;
+        }
+        const double next =
+            i + 1 < kept.size() ? kept[i + 1].error : std::numeric_limits<double>::infinity();
+        const Mesh others = rest_of(*level.mesh, thin, judge);
+        double error = level.error;
+        bool any = false;
+        double width = std::min(level.error, widest);
+        for (int step = 0; step < kMostWidths && width <= widest; ++step) {
+            Candidate made = widened_level(level, others, thin, width, floor);
+            error = std::max({error, 0.5 * width, seen_from(width)});
+            if (made.mesh->triangles.size() > most || !(error < next))
+                break;
+            made.matched = false;
+            judge.match_brightness(made, finest, next, job);
+            made.error = error;
+            made.max_error = std::max(level.max_error, error);
+            out.push_back(std::move(made));
+            any = true;
+            error *= kNext;
+            width *= kRatio;
+        }
+        if (any)
+            most = out.back().mesh->triangles.size();
+        else if (!wide)
+            out.push_back(level);  // else what is wide already serves instead
+        wide = wide || any;
+    }
+    kept = std::move(out);
+}
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plan: of everything a model draws, what its store has already, and what is to be built.
+#pragma once
+
+#include "hierarchy/build_settings.h"
+#include "hierarchy/run/build_demand.h"
+#include "hierarchy/run/deforming_poses.h"
+#include "hierarchy/run/moved_copies.h"
+#include "hierarchy/run/stand_in_surroundings.h"
+#include "hierarchy/run/stored_stand_ins.h"
+#include "model/model.h"
+
+#include <optional>
+#include <utility>
+
+namespace lodestone::hierarchy {
+
+/// Something stale that is to be built, for itself, for its copies (objects of the same content)
+/// and for what is the same group moved.
+struct Task : Stale {
+    std::optional<Bind> bind;  // of what deforms
+    std::vector<Moved> moved;
+};
+
+struct Plan {
+    uint64_t objects = 0;                                       // that show anything
+    std::vector<Hash> wanted;                                   // build hashes, by object
+    std::vector<std::pair<ObjectIndex, const Object*>> stored;  // what the shelf has for which
+    std::vector<Moved> moved;                                   // whose originals the shelf has
+    std::vector<Task> tasks;                                    // children before parents
+    std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
+};
+
+/// Of the objects of `order` (children before parents), within the scope of the settings. Valid as
+/// long as the shelf and the models of poses. Throws Error(InvalidArgument) for a scope that names
+/// no object.
+Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
+             const Surroundings& surroundings, const Shelf& shelf, const Settings& settings);
+
+}  // namespace lodestone::hierarchy

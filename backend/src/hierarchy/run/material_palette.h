@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Palette: the materials of a model, each content once.
+#pragma once
+
+#include "base/hash.h"
+#include "model/model.h"
+
+#include <cstdint>
+#include <map>
+
+namespace lodestone::hierarchy {
+
+/// Not safe from several threads.
+class Palette {
+public:
+    /// Of the materials that the model has already; it must outlive the palette.
+    explicit Palette(Model& model);
+
+    /// Its place in the model's list, where it is added when its content is new; the name of the
+    /// first stays.
+    uint32_t index_of(const Material& material);
+
+private:
+    Model& model_;
+    std::map<Hash, uint32_t> by_hash_;
+};
+
+}  // namespace lodestone::hierarchy

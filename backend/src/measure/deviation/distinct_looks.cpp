@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/deviation/distinct_looks.h"
+
+#include "base/maths.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::measure {
+namespace {
+
+double encode(double linear) {
+    const double x = std::clamp(linear, 0.0, 1.0);
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+double decode(double encoded) {
+    const double x = std::clamp(encoded, 0.0, 1.0);
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
+/// What a material shows where nothing is looked up: what it mixes is mixed.
+struct Mean {
+    glm::dvec3 light;  // color and emission
+    glm::dvec3 emission;
+    double opacity;
+
+    explicit Mean(const Material& material)
+        : light(material.base_color + material.emission), emission(material.emission), opacity(1) {
+        if (material.alpha_mode == AlphaMode::Blend)
+            opacity = material.alpha;
+        else if (material.alpha_mode == AlphaMode::Clip)
+            opacity = material.alpha_texture || material.alpha >= material.alpha_cutoff ? 1 : 0;
+        opacity *= 1 - material.transmission * (1 - material.metallic);
+        if (material.other) {
+            const Mean second(*material.other);
+            light = glm::mix(light, second.light, material.mix);
+            emission = glm::mix(emission, second.emission, material.mix);
+            opacity = glm::mix(opacity, second.opacity, material.mix);
+        }
+    }
+};
+
+/// Lamps may be brighter than any picture shows: twice as bright is another one.
+bool emit_alike(const glm::dvec3& a, const glm::dvec3& b) {
+    constexpr double kSameLamp = 2;
+    for (int i = 0; i < 3; ++i) {
+        const double less = std::min(a[i], b[i]);
+        const double more = std::max(a[i], b[i]);
+        if (more > kSameLamp * less &&
+            (more >= 1 || encode(more) - encode(less) > Looks::kSameLook))
+            return false;
+    }
+    return true;
+}
+
+bool varies_by_texture(const Material& material) {
+    return material.base_color_texture || material.emission_texture ||
+           (material.other && (material.mix_texture || varies_by_texture(*material.other)));
+}
+
+bool varies_by_vertex(const Material& material) {
+    return material.vertex_colors || (material.other && varies_by_vertex(*material.other));
+}
+
+}  // namespace
+
+glm::dvec3 Looks::color_of(const ray::Shown& shown) {
+    return encoded(shown.color + shown.emission);
+}
+
+glm::dvec3 Looks::encoded(const glm::dvec3& light) {
+    return {encode(light.x), encode(light.y), encode(light.z)};
+}
+
+glm::dvec3 Looks::light_of(const glm::dvec3& color) {
+    return {decode(color.x), decode(color.y), decode(color.z)};
+}
+
+Looks::Lights Looks::lights_alike(const glm::dvec3& color) {
+    Lights out;
+    for (int i = 0; i < 3; ++i) {
+        // Encoding rises with light, and shows all that is above 1 as 1.
+        out.least[i] = color[i] - kSameLook > 0 ? decode(color[i] - kSameLook) : -kInfinity;
+        out.most[i] = color[i] + kSameLook < 1 ? decode(color[i] + kSameLook) : kInfinity;
+    }
+    return out;
+}
+
+bool Looks::alike(const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 off = glm::abs(a - b);
+    return std::max({off.x, off.y, off.z}) <= kSameLook;
+}
+
+uint16_t Looks::add(const Look& look) {
+    if (looks_.size() < std::numeric_limits<uint16_t>::max())
+        looks_.push_back(look);
+    return static_cast<uint16_t>(looks_.size() - 1);
+}
+
+uint16_t Looks::of(const Material& material) {
+    const Mean mean(material);
+    const glm::dvec3 color = encoded(mean.light);
+    for (size_t i = 0; i < looks_.size(); ++i) {
+        const Look& known = looks_[i];
+        if (!known.varies && alike(color, known.color) &&
+            emit_alike(mean.emission, known.emission) &&
+            std::abs(mean.opacity - known.opacity) <= kSameLook)
+            return static_cast<uint16_t>(i);
+    }
+    return add({color, mean.emission, mean.opacity, false});
+}
+
+std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> materials) {
+    std::vector<uint16_t> by_slot;
+    for (const Material& material : materials) {
+        if (!(varies_by_texture(material) && !mesh.uvs.empty()) &&
+            !(varies_by_vertex(material) && !mesh.colors.empty())) {
+            by_slot.push_back(of(material));
+            continue;
+        }
+        const auto [at, fresh] = by_texture_.try_emplace(hash_of(material), uint16_t{0});
+        if (fresh) {
+            const Mean mean(material);
+            at->second = add({encoded(mean.light), mean.emission, mean.opacity, true});
+        }
+        by_slot.push_back(at->second);
+    }
+    const uint16_t otherwise = of(Material{});
+    std::vector<uint16_t> looks(mesh.triangles.size());
+    for (size_t i = 0; i < looks.size(); ++i) {
+        const uint16_t slot = mesh.slot(i);
+        looks[i] = slot < by_slot.size() ? by_slot[slot] : otherwise;
+    }
+    return looks;
+}
+
+}  // namespace lodestone::measure

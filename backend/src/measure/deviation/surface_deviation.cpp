@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/deviation/surface_deviation.h"
+
+#include "base/parallel.h"
+#include "geometry/primitive_distance.h"
+#include "measure/deviation/sample_errors.h"
+#include "measure/deviation/visible_looks.h"
+#include "measure/visible/seen_from_outside.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <set>
+#include <tuple>
+
+namespace lodestone::measure {
+namespace {
+
+using Sample = SurfaceSample;
+
+// Of levels as fine as scans a few vertices decide the quantile: those of the stand-in are taken
+// all, up to so many at least.
+constexpr uint32_t kLevelVertices = 16384;
+// At so many samples of each look, if it has them, what became of it is asked; what solids of a
+// mean color miss changes little from one sample to the next, and takes long.
+constexpr size_t kAsked = 512;
+constexpr size_t kAskedOfMixed = 256;
+// One point of so many is asked for a rough answer.
+constexpr uint32_t kFew = 2;
+
+/// A stand-in of few triangles is not asked at more points than some of each, or than a quarter of
+/// `all`: what it hides, or has lost, the points of the finest tell.
+uint32_t samples_for(const Mesh& stand_in, uint32_t most, uint32_t all) {
+    constexpr uint64_t kOfTriangle = 8;
+    const uint64_t enough = std::max<uint64_t>(all / 4, kOfTriangle * stand_in.triangles.size());
+    return static_cast<uint32_t>(std::min<uint64_t>(most, enough));
+}
+
+/// About the surface of a solid, for points of it: of an ellipsoid 162 vertices.
+Mesh tessellated(const lodestone::Solid& solid) {
+    constexpr int kSubdivisions = 2;
+    return solid.box ? tessellate_box(solid.primitive)
+                     : tessellate_ellipsoid(solid.primitive, kSubdivisions);
+}
+
+/// From the center out onto the surface.
+void move_onto(const Primitive& ellipsoid, std::vector<Sample>& samples) {
+    for (Sample& sample : samples) {
+        const glm::dvec3 arm = sample.point - ellipsoid.center;
+        const double length = glm::length((arm * ellipsoid.axes) / ellipsoid.half_size);
+        if (length > 0 && std::isfinite(length))
+            sample.point = ellipsoid.center + arm / length;
+    }
+}
+
+}  // namespace
+
+/// What the samples of one mesh are compared with.
+struct DeviationReference::Against {
+    const LookScenes& other;
+    const VisibleLooks& seen;  // of the finest
+    const LookScenes& finest;
+    const Looks* palette;
+    double none;                    // the answer where there is nothing to find
+    const Mesh& mesh;               // the other's
+    const ray::Skin* skin;          // likewise
+    const lodestone::Solid* exact;  // the solid that the mesh is about; null: none
+
+    /// As ray::Scene::closest_point(), of the other.
+    ray::Closest closest_point(const glm::dvec3& point, uint32_t perhaps, double enough) const {
+        if (exact == nullptr)
+            return other.whole().closest_point(point, std::numeric_limits<double>::infinity(),
+                                               perhaps, enough);
+        ray::Closest out;
+        out.distance = exact->box ? distance_to_box(exact->primitive, point)
+                                  : distance_to_ellipsoid(exact->primitive, point);
+        out.triangle = 0;  // all are alike
+        return out;
+    }
+    /// What the other shows at a point of its own; `varies`: elsewhere on the triangle other
+    /// things.
+    glm::dvec3 color_at(const ray::Closest& at, bool& varies) const {
+        varies = skin != nullptr && skin->varies(mesh, mesh.slot(at.triangle));
+        return varies ? Looks::color_of(skin->at(mesh, at.triangle, at.u, at.v))
+                      : palette->color(other.look_of(at.triangle));
+    }
+    /// Whether what the other shows does not depend on where.
+    bool shows_one_thing() const {
+        if (palette == nullptr)
+            return true;
+        if (other.several())
+            return false;
+        if (skin == nullptr)
+            return true;
+        const std::set<uint16_t> slots(mesh.slots.begin(), mesh.slots.end());
+        return !skin->varies(mesh, 0) &&
+               std::none_of(slots.begin(), slots.end(),
+                            [&](uint16_t slot) { return skin->varies(mesh, slot); });
+    }
+    /// Whether it shows a look that the finest has nowhere.
+    bool is_mixed() const {
+        return palette != nullptr && other.whole().triangles() > 0 && !finest.has(other.look_of(0));
+    }
+    /// How far a look was moved at a sample where the other mesh shows the look `theirs`.
+    double moved_by(const std::vector<Sample>& samples, size_t number, uint16_t theirs,
+                    const glm::dvec3& color) const {
+        const Sample& sample = samples[number];
+        const bool mixed = !finest.has(theirs);
+        double least = none;
+        // A lamp that is gone is missed from as far as anything is seen, though what is there
+        // instead is near.
+        const bool glows = seen.glows(sample.look);
+        if (!mixed && !glows)
+            least = seen.nearest(sample, theirs, least);
+        least = std::min(least, other.nearest(sample.look, sample.point, least).distance);
+        if (glows && !(glm::length(palette->emission(theirs)) > 0))
+            return least;
+        if (!mixed)
+            return least;
+        // Whatever shows it, the same color mixes in the same place: solids share their color.
+        if (least < none || !seen.holds(samples))
+            return seen.mixing_radius(sample, color, least);
+        return std::min(least, seen.mixing_radius_at(number, color));
+    }
+    /// How far the same texture slid along the surface at a sample where the other shows another
+    /// color.
+    double slid_by(const Sample& sample, const ray::Closest& at, const glm::dvec3& color) const {
+        double least = none;
+        if (sample.metres_per_uv > 0 && !mesh.uvs.empty()) {
+            const glm::dvec2 there = ray::uv_at(mesh, at.triangle, at.u, at.v);
+            least = std::min(least, glm::length(there - sample.uv) * sample.metres_per_uv);
+        }
+        return seen.mixing_radius(sample, color, seen.nearest_of_color(sample, color, least));
+    }
+    /// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
+    double move_of(const std::vector<Sample>& samples, size_t number,
+                   const ray::Closest& at) const {
+        const Sample& sample = samples[number];
+        const uint16_t theirs = other.look_of(at.triangle);
+        if (palette == nullptr)
+            return 0;
+        if (theirs == sample.look && !sample.varies)
+            return 0;
+        bool varies = false;
+        const glm::dvec3 color = color_at(at, varies);
+        const bool lamp = theirs != sample.look && seen.glows(sample.look);
+        if ((varies || sample.varies) && !lamp && Looks::alike(color, sample.color))
+            return 0;
+        return theirs == sample.look ? slid_by(sample, at, color)
+                                     : moved_by(samples, number, theirs, color);
+    }
+};
+
+/// From the samples to the nearest points of the other mesh. What is not near the quantile is found
+/// out no further than that it is below, and looks are asked for at some samples for all. Numbers
+/// up to `least` may be too large, but not above it: the other way they are no less.
+Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
+                                      std::span<const ray::Closest> nearest, double least,
+                                      double useless, const Job& job) {
+    constexpr size_t kFewSamples = 512;
+    constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
+    std::vector<double> places(samples.size(), 0);
+    std::vector<double> moves(samples.size(), 0);
+    // What hides in part was not asked for as such.
+    const bool known_before =
+        nearest.size() == samples.size() && !against.other.whole().see_through();
+    const bool one_thing = against.shows_one_thing();
+    const std::vector<uint8_t> asked =
+        asked_for_looks(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
+    // `before`: what was near enough the last time, and has to be found out better.
+    const auto visit = [&](size_t step, double enough, double before) {
+        const bool again = before < std::numeric_limits<double>::infinity();
+        const size_t count = (samples.size() + step - 1) / step;
+        parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
+            job.check();
+            uint32_t last = ray::kNoTriangle;
+            size_t known = samples.size();  // whose place was found before
+            for (size_t k = block * kBlock; k < std::min(count, (block + 1) * kBlock); ++k) {
+                const size_t i = k * step;
+                const Sample& sample = samples[i];
+                bool looks = asked[i] != 0;
+                if ((step == 1 && i % kEvery == 0) ||
+                    (again && ((looks && !one_thing) || places[i] > before)))
+                    continue;
+                looks = looks && !again;
+                const bool given = known_before && std::isfinite(nearest[i].distance);
+                if (!given && !looks && known < samples.size()) {
+                    // What is beside something that is near is near.
+                    const double most =
+                        places[known] + glm::length(sample.point - samples[known].point);
+                    if (most <= enough) {
+                        places[i] = most;
+                        continue;
+                    }
+                }
+                // Neighbors in the list are mostly neighbors in space. Where only the distance
+                // counts, any point that is near enough will do.
+                const ray::Closest closest =
+                    given ? nearest[i]
+                          : against.closest_point(sample.point, last,
+                                                  looks && !one_thing ? 0 : enough);
+                // Nothing in reach at all: a scene of triangles that have no finite corners.
+                const bool found = std::isfinite(closest.distance);
+                places[i] = found ? closest.distance : against.none;
+                last = closest.triangle;
+                known = i;
+                if (looks && found)
+                    moves[i] = against.move_of(samples, i, closest);
+            }
+        });
+    };
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    visit(kEvery, least, kNever);
+    std::vector<size_t> some;
+    for (size_t i = 0; i < samples.size(); i += kEvery)
+        some.push_back(i);
+    if (surely_above(useless, samples, some, places, moves))
+        return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    const bool many = samples.size() >= kFewSamples;
+    double enough = least;
+    if (many) {
+        const double most = (1 - kBelow) * weight_of(samples, some);
+        enough = std::max(enough, quantile(samples, places, std::move(some), most));
+    }
+    visit(1, enough, kNever);
+    for (const double less : {0.8, 0.5, 0.0}) {
+        if (!(enough > least) || is_above(samples, places, enough))
+            break;
+        const double before = enough;
+        enough = std::max(less * enough, least);
+        visit(1, enough, before);
+    }
+    spread(samples, asked, moves);
+    return deviation_of(samples, places, moves, enough);
+}
+
+DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
+                                       const Surface& surface, const Job& job)
+    : options_(options),
+      scenes_(finest, surface.looks, surface.skin, ray::Uses::Everything),
+      sampler_(finest, scenes_.whole(), options.seed),
+      palette_(surface.palette),
+      diameter_(2 * radius_of(finest)) {
+    std::vector<Sample>& points = seen_.points;
+    if (!sampler_.empty()) {
+        cast_ = add_visible_points(finest, sampler_, surface, options.samples, job, points);
+        const std::vector<WeightedVertex> vertices =
+            weighted_vertices(finest, options.most_vertices, options.seed);
+        if (surface.skin && surface.skin->transmits()) {
+            add_vertex_samples(finest, scenes_.whole(), vertices, points);
+        } else {
+            if (options.rays_of_triangle > 0)
+                seen_triangles_ = seen_from_outside(finest, scenes_.whole(), sampler_.sides(),
+                                                    options.rays_of_triangle, options.seed, job);
+            add_visible_vertices(finest, scenes_.whole(), sampler_.sides(), seen_triangles_,
+                                 vertices, ray_lift(diameter_ / 2), options.seed, job, points);
+        }
+    }
+    seen_.looks = std::make_unique<const VisibleLooks>(points, palette_);
+}
+
+DeviationReference::~DeviationReference() = default;
+
+const DeviationReference::Seen& DeviationReference::few() const {
+    std::call_once(once_, [&] {
+        for (size_t i = 0; i < seen_.points.size(); ++i) {
+            if (is_of_few(i))
+                few_.points.push_back(seen_.points[i]);
+        }
+        few_.looks = std::make_unique<const VisibleLooks>(few_.points, palette_);
+    });
+    return few_;
+}
+
+Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
+                                 const Repainted& known, double useless, const Job& job) const {
+    return compare(seen_,
+                   {stand_in, surface, samples_for(stand_in, options_.samples, options_.samples),
+                    std::max(options_.most_vertices, kLevelVertices)},
+                   known, useless, job);
+}
+
+Deviation DeviationReference::of(const lodestone::Solid& stand_in, uint16_t look, double useless,
+                                 const Job& job) const {
+    const Mesh mesh = tessellated(stand_in);
+    const std::vector<uint16_t> looks(mesh.triangles.size(), look);
+    return compare(
+        seen_, {mesh, {looks, palette_, nullptr}, options_.samples / 4, kLevelVertices, &stand_in},
+        {}, useless, job);
+}
+
+Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surface,
+                                      const Repainted& known, double useless,
+                                      const Job& job) const {
+    Repainted half{known.scene, {}, known.useless};
+    for (size_t i = 0; i < known.nearest.size(); ++i) {
+        if (is_of_few(i))
+            half.nearest.push_back(known.nearest[i]);
+    }
+    return compare(
+        few(),
+        {stand_in, surface, samples_for(stand_in, options_.samples / kFew, options_.samples),
+         std::max(options_.most_vertices, kLevelVertices) / kFew},
+        half, useless, job);
+}
+
+Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
+                                      const Repainted& known, double useless,
+                                      const Job& job) const {
+    const Mesh& mesh = stand_in.mesh;
+    const ray::SkinPtr& skin = stand_in.surface.skin;
+    const LookScenes scenes(mesh, stand_in.surface.looks, skin, ray::Uses::ClosestPoints,
+                            known.scene);
+    const double none = std::max(diameter_, 2 * radius_of(mesh));
+    if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
+        return {none, none};
+    const Against to_stand_in{scenes, *seen.looks, scenes_,    palette_,
+                              none,   mesh,        skin.get(), stand_in.exact};
+    const Deviation there = measure(seen.points, to_stand_in, known.nearest, 0, useless, job);
+    if (there.error > useless)
+        return there;
+    std::vector<Sample> samples;
+    add_area_samples(mesh, scenes.whole(), stand_in.samples, options_.seed, samples);
+    add_vertex_samples(mesh, scenes.whole(),
+                       weighted_vertices(mesh, stand_in.vertices, options_.seed), samples);
+    if (stand_in.exact != nullptr && !stand_in.exact->box)
+        move_onto(stand_in.exact->primitive, samples);
+    // What the stand-in shows where, the visible points have asked already.
+    const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,
+                            none,    mesh,        skin.get(), nullptr};
+    const Deviation back = measure(samples, to_finest, {}, there.error, useless, job);
+    return {std::max(there.error, back.error), std::max(there.max, back.max)};
+}
+
+}  // namespace lodestone::measure

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Deviation: how far a solid stand-in is from the finest surface, as far as that can be seen.
+#pragma once
+
+#include "measure/deviation/surface_samples.h"
+#include "model/composite.h"
+
+#include <mutex>
+
+namespace lodestone::measure {
+
+class VisibleLooks;
+
+/// How far apart two surfaces and their looks are, in metres. Surfaces are compared both ways: from
+/// the visible surface of the finest to the whole stand-in, and from the whole stand-in to the
+/// whole finest.
+///
+/// If the nearest point of the stand-in has another look than the visible point, that look was
+/// moved, by the least of: the distance to the missing look on the stand-in; the distance to where
+/// the finest shows the look that is there instead; and, for a look that the finest has nowhere (a
+/// mean color), the radius within which the finest's own colors mix to it. If the same textured
+/// material shows another color there, it was moved by as much as its texture slid. Every look that
+/// at least .2 % of the area shows has its own quantile, so a lost road is wrong by half its width,
+/// however large the field around it is. Transparent points are neither sampled nor matched.
+struct Deviation {
+    double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
+    double max = 0;    // the largest distance that was seen
+};
+
+struct DeviationOptions {
+    uint32_t samples = 8192;        // points uniform in area, each direction
+    uint32_t most_vertices = 8192;  // of the finest; a larger one is represented by so many
+    uint64_t seed = 1;
+    /// Not 0: it is told which triangles of the finest can be seen, by so many rays of each
+    /// (seen_from_outside()), and vertices of hidden ones alone are hidden without rays of their
+    /// own. Of what refracts nothing is hidden.
+    int rays_of_triangle = 0;
+};
+
+/// The finest surface made ready to be compared with. The quantile of each direction is over two
+/// sets of the same total weight: points uniform in (visible) area, with equal weights, and
+/// (visible) vertices, each with a third of its triangles' area. Of a stand-in up to 16,384
+/// vertices are taken, because a few of them decide. A point of the finest is visible if a ray from
+/// outside its bound hits it; a vertex if one of 16 rays from beside it reaches infinity.
+class DeviationReference {
+public:
+    /// Keeps what it needs of the mesh, of the looks and of the skin, and a reference to their
+    /// palette. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+    DeviationReference(const Mesh& finest, const DeviationOptions& options,
+                       const Surface& surface = {}, const Job& job = {});
+    ~DeviationReference();
+    /// What repaint() found on its way; empty where there was nothing to vote on.
+    struct Repainted {
+        std::shared_ptr<const ray::Scene> scene;  // of the level, opaque, for closest points
+        std::vector<ray::Closest> nearest;  // to each visible point; infinitely far: not searched
+        bool useless = false;
+    };
+    DeviationReference(const DeviationReference&) = delete;
+    DeviationReference& operator=(const DeviationReference&) = delete;
+
+    /// `surface` is numbered by the same palette. Same bits on any number of threads, and may be
+    /// called from any. If one of the two meshes has nothing to measure to, both numbers are the
+    /// diameter of the other's bounding sphere; two empty meshes agree. Of an error larger than
+    /// `useless` it may be told no more than that it is, which takes less time: by any number above
+    /// `useless`, infinite where that is very sure.
+    Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
+                 double useless = std::numeric_limits<double>::infinity()) const {
+        return of(stand_in, surface, {}, useless, job);
+    }
+    /// The same for a level after repaint(), whose result is `known`, or without it (empty). No
+    /// triangle of the level may have moved since.
+    Deviation of(const Mesh& stand_in, const Surface& surface, const Repainted& known,
+                 double useless, const Job& job) const;
+
+    /// The same of a box or an ellipsoid that shows one look everywhere. Distances to it are exact;
+    /// it is asked at a quarter of the points, and at its corners or as many as tell an ellipsoid.
+    Deviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
+                 const Job& job) const;
+
+    /// The same with half of all points: less exact, in half of the time.
+    Deviation roughly(const Mesh& stand_in, const Surface& surface, const Repainted& known,
+                      double useless, const Job& job) const;
+
+    /// Gives each triangle of a level (with the finest's slots and skin) the slot that most of the
+    /// visible points nearest to it show, if enough of them agree: boards look like the tiles that
+    /// lay on them. A textured slot is given only with texture coordinates that show what those
+    /// points show. A level whose error is surely above `useless` is left as it is; `rough`: that
+    /// of roughly().
+    Repainted repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {},
+                      bool rough = false,
+                      double useless = std::numeric_limits<double>::infinity()) const;
+
+    /// Of the finest, as it was made for this.
+    const ray::Scene& scene() const { return scenes_.whole(); }
+    /// Likewise; of the mesh it was made from, which must still be there.
+    const VisibleSampler& sampler() const { return sampler_; }
+    /// By triangle of the finest, 1 where it can be seen; empty where that was not asked for, or
+    /// where the finest refracts.
+    const std::vector<uint8_t>& seen_triangles() const { return seen_triangles_; }
+    /// What the first rays of sampler() found, once.
+    std::vector<Cast> take_cast() { return std::move(cast_); }
+
+    /// How many visible points and vertices of the finest there are.
+    size_t visible_points() const { return seen_.points.size(); }
+
+private:
+    /// Points of the finest.
+    struct Seen {
+        std::vector<SurfaceSample> points;  // neighbors in the list are mostly neighbors in space
+        std::unique_ptr<const VisibleLooks> looks;  // the same, to be searched
+    };
+    struct Against;
+    /// Asked at so many points and vertices; `exact`: the solid that the mesh is about.
+    struct StandIn {
+        const Mesh& mesh;
+        const Surface& surface;
+        uint32_t samples, vertices;
+        const lodestone::Solid* exact = nullptr;
+    };
+    static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
+                             std::span<const ray::Closest> nearest, double least, double useless,
+                             const Job& job);
+    const Seen& few() const;
+    Deviation compare(const Seen& seen, const StandIn& stand_in, const Repainted& known,
+                      double useless, const Job& job) const;
+
+    DeviationOptions options_;
+    LookScenes scenes_;
+    VisibleSampler sampler_;
+    std::vector<Cast> cast_;
+    std::vector<uint8_t> seen_triangles_;
+    const Looks* palette_;
+    Seen seen_;
+    mutable std::once_flag once_;  // of half of them: nobody may ask
+    mutable Seen few_;
+    double diameter_ = 0;
+};
+
+}  // namespace lodestone::measure

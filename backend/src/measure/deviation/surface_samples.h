@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surface samples: points of a mesh that distances are measured from.
+#pragma once
+
+#include "base/job.h"
+#include "measure/deviation/distinct_looks.h"
+#include "measure/deviation/look_scenes.h"
+#include "measure/visible/visible_sampler.h"
+
+#include <limits>
+
+namespace lodestone::measure {
+
+/// Only the place of a sample counts (vertices lie on borders of looks).
+inline constexpr uint16_t kAnyLook = 0xffff;
+
+/// A point, its share of a direction's weight, and what it looks like.
+struct SurfaceSample {
+    glm::dvec3 point;
+    double weight;
+    uint16_t look = kAnyLook;
+    uint16_t slot = 0;         // the material slot it shows
+    bool varies = false;       // its triangle shows other things elsewhere
+    glm::dvec3 side{0.0};      // unit normal towards whoever sees it; 0: not known
+    glm::dvec3 color{0.0};     // what it shows, display-encoded
+    glm::dvec2 uv{0.0};        // of a mesh that has any
+    double metres_per_uv = 0;  // at least so far apart are points whose uv differ by 1
+};
+
+/// What a mesh looks like: one look a triangle, its skin, and what looks mean. Empty looks: all
+/// alike. Without a skin everything is opaque and of its slot's mean color.
+struct Surface {
+    std::span<const uint16_t> looks;
+    const Looks* palette = nullptr;
+    ray::SkinPtr skin;
+};
+
+/// A vertex that draws something, and its share of the mesh's area: a third of its triangles'.
+struct WeightedVertex {
+    uint32_t vertex;
+    double weight;
+};
+
+/// At most `most` vertices with weight, chosen evenly over the list; the weights of those left out
+/// go to the rest, so that their sum is the mesh's area.
+std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, uint64_t seed);
+
+/// Points uniform in area, one in each of `count` equal steps along the list of triangles; only
+/// their places count. Where the scene shows nothing there is none.
+void add_area_samples(const Mesh& mesh, const ray::Scene& scene, uint32_t count, uint64_t seed,
+                      std::vector<SurfaceSample>& out);
+
+/// The vertices themselves, where the scene shows anything at them.
+void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
+                        const std::vector<WeightedVertex>& vertices,
+                        std::vector<SurfaceSample>& out);
+
+/// Points that rays from outside hit, sharing the visible area of one side equally. Of something
+/// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found,
+/// up to twice as many as points were wanted; with glass none.
+std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
+                                     const Surface& surface, uint32_t count, const Job& job,
+                                     std::vector<SurfaceSample>& out);
+
+/// Vertices from beside which some ray sees infinity. `seen`: the triangles that can be seen, if
+/// that is known (else empty); a vertex of none of them is not asked for.
+void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
+                          std::span<const uint8_t> seen,
+                          const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
+                          const Job& job, std::vector<SurfaceSample>& out);
+
+}  // namespace lodestone::measure

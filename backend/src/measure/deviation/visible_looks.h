@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Visible looks: where the finest surface shows which look, in the orders that are asked for.
+#pragma once
+
+#include "measure/deviation/point_tree.h"
+#include "measure/deviation/surface_samples.h"
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// Of samples that can be seen, which must outlive it. "From the same side": both are seen at once,
+/// not the grass from above and the road from below. Any thread.
+class VisibleLooks {
+public:
+    VisibleLooks(const std::vector<SurfaceSample>& visible, const Looks* palette);
+
+    /// Whether a look is a lamp among the others: much brighter by itself than the whole is in the
+    /// mean.
+    bool glows(uint16_t look) const { return look < glowing_.size() && glowing_[look] != 0; }
+
+    /// The distance to the nearest point of look `look` that can be seen, from the same side;
+    /// `most` where it is not less.
+    double nearest(const SurfaceSample& from, uint16_t look, double most) const;
+
+    /// The same for what shows a color.
+    double nearest_of_color(const SurfaceSample& from, const glm::dvec3& color, double most) const;
+
+    /// The radius around a point within which the visible colors mix (as light does, in a pixel
+    /// that shows them all) to `color`; `most` where it is not less, or not even all of them do.
+    double mixing_radius(const SurfaceSample& from, const glm::dvec3& color, double most) const;
+
+    /// Whether these are the samples that numbers are of.
+    bool holds(const std::vector<SurfaceSample>& samples) const { return &samples == &visible_; }
+
+    /// The same of visible point `number`, however far; infinite where they never mix to it. Kept
+    /// for the next stand-in of that color.
+    double mixing_radius_at(size_t number, const glm::dvec3& color) const;
+
+private:
+    /// Mixing radii for one color, by visible point; negative where not asked for yet.
+    struct Radii {
+        glm::dvec3 color;
+        std::unique_ptr<std::atomic<double>[]> by_number;
+    };
+    struct Mixed {
+        glm::dvec3 point;
+        glm::dvec3 side;
+        glm::dvec3 light;
+        bool sided;
+    };
+
+    const std::map<uint16_t, PointTree>& by_look() const;
+    std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const;
+
+    const std::vector<SurfaceSample>& visible_;
+    std::vector<uint8_t> glowing_;  // by look
+    std::vector<Mixed> mixed_;
+    mutable std::once_flag once_;  // of the trees: most are never asked for
+    mutable std::map<uint16_t, PointTree> by_look_;
+    mutable std::mutex mutex_;
+    mutable std::shared_ptr<const Radii> radii_;
+};
+
+}  // namespace lodestone::measure

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/pictures/patch_light.h"
+
+#include "measure/pictures/glass_rays.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::measure {
+namespace {
+
+// As in pictures (agreement): of the light on a surface that faces the lamp.
+constexpr double kAmbient = 0.25;
+// The smallest patches are so many times half as wide as the bound.
+constexpr int kHalvings = 10;
+
+// Of the colors seen, over their mean, the root of the mean square: less is one color.
+constexpr double kOneColor = 0.1;
+
+ray::Shown shown_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit) {
+    const uint16_t slot = mesh.slot(hit.triangle);
+    return skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
+}
+
+/// Of all light on a surface that faces a lamp; `facing`: the cosine.
+double light_of(double facing) {
+    return kAmbient + (1 - kAmbient) * facing;
+}
+
+glm::dvec3 light_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit,
+                    const glm::dvec3& towards) {
+    const ray::Shown shown = shown_at(mesh, skin, hit);
+    const double facing = std::abs(glm::dot(normal_at(mesh, hit, towards), towards));
+    return light_of(facing) * shown.color + shown.emission;
+}
+
+/// Obliquely beside the eye, around it by the golden angle, not below it.
+glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
+    const double turn = kGoldenAngle * static_cast<double>(number);
+    const glm::dvec3 other = std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
+    const glm::dvec3 up = glm::cross(towards, right);
+    return glm::normalize(towards + std::cos(turn) * right + std::abs(std::sin(turn)) * up);
+}
+
+/// Which of six sides something is seen from.
+uint64_t side_of(const glm::dvec3& towards) {
+    int most = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        most = std::abs(towards[axis]) > std::abs(towards[most]) ? axis : most;
+    return 2 * static_cast<uint64_t>(most) + (towards[most] < 0 ? 1 : 0);
+}
+
+/// The side, then for each halving three bits of the place (0...1 along each axis).
+uint64_t patch_of(const glm::dvec3& towards, const glm::dvec3& place) {
+    constexpr int kCells = 1 << kHalvings;
+    const glm::ivec3 cell(
+        glm::clamp(place * double{kCells}, glm::dvec3(0.0), glm::dvec3(kCells - 1)));
+    uint64_t patch = side_of(towards);
+    for (int bit = kHalvings; bit-- > 0;) {
+        for (int axis = 0; axis < 3; ++axis)
+            patch = patch << 1u | (static_cast<uint32_t>(cell[axis]) >> bit & 1u);
+    }
+    return patch;
+}
+
+}  // namespace
+
+Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::Skin& skin,
+                 std::span<const Cast> cast, uint64_t seed)
+    : radius_(radius_of(finest)) {
+    constexpr size_t kMost = 2048;
+    const Sobol numbers(seed);
+    glm::dvec3 low(std::numeric_limits<double>::infinity());
+    for (size_t i = 0; i < cast.size() && seen_.size() < kMost; ++i) {
+        for (int k = 0; k < cast[i].count; ++k) {
+            const VisiblePoint& at = cast[i].points[static_cast<size_t>(k)];
+            glm::dvec3 towards = at.seen_from;
+            if (sampler.from_surface()) {
+                const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
+                towards = cosine_direction(at.seen_from, u[2], u[3]);
+            }
+            const ray::Hit hit{true, at.triangle, at.u, at.v, 0, at.point};
+            seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards),
+                             shown_at(finest, skin, hit), light_at(finest, skin, hit, towards)});
+            low = glm::min(low, at.point);
+            mean_ += seen_.back().light;
+        }
+    }
+    glm::dvec3 color(0.0);
+    for (const Seen& seen : seen_)
+        color += seen.shown.color / static_cast<double>(seen_.size());
+    double off = 0;
+    for (const Seen& seen : seen_) {
+        const glm::dvec3 from_mean = seen.shown.color - color;
+        off += glm::dot(from_mean, from_mean) / static_cast<double>(seen_.size());
+    }
+    colored_ = off > kOneColor * kOneColor * glm::dot(color, color);
+    for (Seen& seen : seen_)
+        seen.patch = patch_of(seen.towards, (seen.point - low) / (2 * radius_));
+    std::stable_sort(seen_.begin(), seen_.end(),
+                     [](const Seen& a, const Seen& b) { return a.patch < b.patch; });
+    mean_ /= static_cast<double>(std::max<size_t>(seen_.size(), 1));
+}
+
+Patches::Difference Patches::difference(const std::vector<glm::dvec3>& off, int halvings) const {
+    const int shift = 3 * (kHalvings - halvings);
+    double squares = 0;
+    double count = 0;
+    for (size_t begin = 0, end = 0; begin < seen_.size(); begin = end) {
+        glm::dvec3 sum(0.0);
+        double alone = 0;
+        for (end = begin;
+             end < seen_.size() && seen_[end].patch >> shift == seen_[begin].patch >> shift;
+             ++end) {
+            sum += off[end];
+            alone += glm::dot(off[end], off[end]);
+        }
+        const auto rays = static_cast<double>(end - begin);
+        if (rays < 2)
+            continue;
+        squares += (glm::dot(sum, sum) - alone) / (rays - 1);
+        count += rays;
+    }
+    if (!(count > 0))
+        return {};
+    return {std::sqrt(std::max(0.0, squares / count)) / glm::length(mean_),
+            count / static_cast<double>(seen_.size())};
+}
+
+double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, const ray::Skin& skin,
+                             bool matched, double least) const {
+    constexpr double kMostBrighter = 2;
+    constexpr double kMostFarther = 2;  // as pictures that differ as a whole
+    constexpr double kLeastKnown = 0.5;
+    if (!(glm::length(mean_) > 0) || !(2 * radius_ > least))
+        return 0;
+    const ray::Burst burst;
+    std::vector<glm::dvec3> off(seen_.size(), glm::dvec3(0.0));
+    glm::dvec3 theirs(0.0);
+    for (size_t i = 0; i < seen_.size(); ++i) {
+        const Seen& seen = seen_[i];
+        const ray::Hit hit =
+            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+        if (hit.hit)
+            off[i] = light_at(stand_in, skin, hit, seen.towards);
+        theirs += off[i] / static_cast<double>(seen_.size());
+    }
+    glm::dvec3 brighter(1.0);
+    for (int i = 0; i < 3; ++i) {
+        if (matched && theirs[i] > 0)
+            brighter[i] = std::clamp(mean_[i] / theirs[i], 1 / kMostBrighter, kMostBrighter);
+    }
+    for (size_t i = 0; i < seen_.size(); ++i)
+        off[i] = brighter * off[i] - seen_[i].light;
+    double side = 2 * radius_;
+    for (int halvings = 0; halvings <= kHalvings && side > least; ++halvings, side /= 2) {
+        const Difference found = difference(off, halvings);
+        if (found.known < kLeastKnown)
+            break;
+        if (found.off > kMostOff)
+            return side * (halvings == 0 ? std::min(found.off / kMostOff, kMostFarther) : 1);
+    }
+    return 0;
+}
+
+std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene& finest) const {
+    // More would take steps (dark trousers under a bright shirt) for slopes that go on.
+    constexpr int kRounds = 2;
+    constexpr double kFromBelow = 0.125;  // how much eyes below the horizon count
+    struct Sample {
+        std::array<uint32_t, 3> vertices;  // of the stand-in
+        glm::dvec3 near;                   // how near to each, 1 in all
+        glm::dvec3 wanted;                 // light of the finest
+        double light;                      // on the stand-in
+        double weight;
+    };
+    std::vector<glm::dvec4> out(stand_in.positions.size(), glm::dvec4(0.0));
+    if (!colored_)
+        return out;
+    const ray::Burst burst;
+    const ray::Scene scene(stand_in);
+    const double lift = ray_lift(radius_);
+    std::vector<Sample> samples;
+    glm::dvec4 all(0.0);
+    glm::dvec4 both(0.0);  // where the stand-in is seen, too
+    for (size_t i = 0; i < seen_.size(); ++i) {
+        const Seen& seen = seen_[i];
+        const glm::dvec3 sun = sun_beside(seen.towards, i);
+        double facing = std::max(0.0, glm::dot(seen.normal, sun));
+        if (facing > 0 && finest.occluded(seen.point + lift * seen.normal, sun))
+            facing = 0;
+        const glm::dvec3 wanted = light_of(facing) * seen.shown.color;
+        const double weight = seen.towards.z >= 0 ? 1 : kFromBelow;
+        all += glm::dvec4(weight * wanted, weight);
+        const ray::Hit hit =
+            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+        if (!hit.hit)
+            continue;
+        both += glm::dvec4(weight * wanted, weight);
+        const Triangle& t = stand_in.triangles[hit.triangle];
+        const double on_it = glm::dot(normal_at(stand_in, hit, seen.towards), sun);
+        samples.push_back({{t.x, t.y, t.z},
+                           {1 - hit.u - hit.v, hit.u, hit.v},
+                           wanted,
+                           light_of(std::max(0.0, on_it)),
+                           weight});
+    }
+    // What is seen beside the stand-in is in the mean of all.
+    glm::dvec3 more(1.0);
+    for (int i = 0; i < 3; ++i) {
+        if (both[i] > 0)
+            more[i] = all[i] / all.w / (both[i] / both.w);
+    }
+    // Likeliest colors by expectation and maximization (Richardson 1972, Lucy 1974): none gets
+    // below 0, and all light together is right in each round.
+    std::fill(out.begin(), out.end(), glm::dvec4(1.0));
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<glm::dvec4> sums(out.size(), glm::dvec4(0.0));
+        for (const Sample& sample : samples) {
+            glm::dvec3 color(0.0);
+            for (int k = 0; k < 3; ++k)
+                color += sample.near[k] * glm::dvec3(out[sample.vertices[k]]);
+            const glm::dvec3 ratio = sample.wanted / glm::max(color, glm::dvec3(1e-9));
+            for (int k = 0; k < 3; ++k)
+                sums[sample.vertices[k]] +=
+                    sample.weight * sample.near[k] * glm::dvec4(ratio, sample.light);
+        }
+        for (size_t i = 0; i < out.size(); ++i) {
+            const double light = sums[i].w;
+            out[i] = light > 0 ? glm::dvec4(glm::dvec3(out[i]) * glm::dvec3(sums[i]) / light, light)
+                               : glm::dvec4(0.0);
+        }
+    }
+    for (glm::dvec4& one : out)
+        one = glm::dvec4(more * glm::dvec3(one), one.w);
+    return out;
+}
+
+}  // namespace lodestone::measure

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/pictures/picture_agreement.h"
+
+#include "base/parallel.h"
+#include "measure/pictures/glass_rays.h"
+#include "measure/pictures/picture_misses.h"
+#include "measure/visible/sobol_points.h"
+#include "measure/visible/visible_sampler.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace lodestone::measure {
+namespace {
+
+// Samples along a side of the pixels that are tried, where they divide that of the picture.
+constexpr std::array<int, 11> kPixelSides{2, 3, 5, 6, 9, 10, 15, 18, 30, 45, 90};
+// Of the light on a surface that faces the sun, as on a clear day. Nothing shades the sky: pictures
+// show it so, as one ambient light.
+constexpr double kSky = 0.25;
+// What differs as a whole is never more than this farther off than it is large.
+constexpr double kMostMisses = 2;
+// Bounds of the finest and of larger stand-ins: pictures show this much around.
+constexpr double kMargin = 1.1;
+
+/// Towards 13 faces, edges and corners of a cube from its middle: of each opposite pair one, in
+/// turns.
+std::vector<glm::dvec3> directions() {
+    std::vector<glm::dvec3> out;
+    for (int number = 0; number < 13; ++number) {
+        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
+        out.push_back((number % 2 == 0 ? 1.0 : -1.0) * glm::normalize(along));
+    }
+    return out;
+}
+
+/// Where a picture is taken from. Columns of the frame: right, up, towards the viewer.
+struct View {
+    glm::dmat3 frame{1.0};
+    glm::dvec3 sun{0.0};
+
+    View(const glm::dvec3& towards, size_t number) {
+        const glm::dvec3 other =
+            std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+        const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
+        const glm::dvec3 up = glm::cross(towards, right);
+        frame = glm::dmat3(right, up, towards);
+        // Around the views by the golden angle: each has its own.
+        const double turn = kGoldenAngle * static_cast<double>(number);
+        sun = glm::normalize(towards + std::cos(turn) * right + std::sin(turn) * up);
+    }
+};
+
+/// Where in its cell a sample lies. Points of a sequence that fills space evenly would lie in one
+/// half of all cells of even columns and in the other half of the odd ones, and miss what lies
+/// between.
+std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
+    constexpr double kUnit = 1.0 / 4294967296.0;
+    const uint64_t bits = scramble(scramble(seed) + number);
+    return {kUnit * static_cast<double>(bits >> 32u),
+            kUnit * static_cast<double>(bits & 0xffffffffu)};
+}
+
+/// Around all that a mesh has in a view, in half sides of the picture from its middle.
+struct Frame {
+    glm::dvec2 low{std::numeric_limits<double>::infinity()};
+    glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+
+    Frame(const Mesh& mesh, const View& view, const glm::dvec3& center, double radius) {
+        constexpr double kRounding = 1e-5;  // of what rays hit
+        for (const glm::vec3& position : mesh.positions) {
+            const glm::dvec3 arm = glm::dvec3(position) - center;
+            const glm::dvec2 at(glm::dot(arm, view.frame[0]), glm::dot(arm, view.frame[1]));
+            if (!std::isfinite(at.x + at.y))
+                continue;
+            low = glm::min(low, at / radius - kRounding);
+            high = glm::max(high, at / radius + kRounding);
+        }
+    }
+    bool has(double x, double y) const {
+        return x >= low.x && x <= high.x && y >= low.y && y <= high.y;
+    }
+};
+
+/// What a slot shows where nothing is looked up, and whether something is.
+struct Shows {
+    ray::Shown mean;
+    bool varies = false;
+
+    Shows(const Mesh& mesh, const ray::Skin* skin, size_t slot) {
+        if (skin == nullptr)
+            return;
+        const auto number = static_cast<uint16_t>(slot);
+        mean = skin->mean(number);
+        varies = skin->varies(mesh, number);
+    }
+};
+
+glm::dvec4 light_of(const ray::Shown& shown, double light) {
+    return {light * shown.color + shown.emission, 1};
+}
+
+}  // namespace
+
+AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
+                                       int side, const Job& job)
+    : AgreementReference(finest, ray::Scene(finest, skin), skin, seed, side, job) {}
+
+AgreementReference::AgreementReference(const Mesh& finest, const ray::Scene& scene,
+                                       const ray::SkinPtr& skin, uint64_t seed, int side,
+                                       const Job& job)
+    : side_(side) {
+    Box3 box;
+    for (const Triangle& t : finest.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 point(finest.positions[t[corner]]);
+            if (std::isfinite(point.x + point.y + point.z))
+                box.add(point);
+        }
+    }
+    if (!box.empty()) {
+        center_ = box.center();
+        radius_ = kMargin * 0.5 * glm::length(box.size());
+    }
+    const auto row = static_cast<size_t>(side_);
+    places_.resize(kViews * row * row);
+    for (size_t number = 0; number < places_.size(); ++number) {
+        const std::array<double, 2> u = jitter(seed, number);
+        const auto column = static_cast<double>(number % row);
+        const auto line = static_cast<double>(number / row % row);
+        places_[number] = {2 * (column + u[0]) / side_ - 1, 2 * (line + u[1]) / side_ - 1};
+    }
+    const Traced traced = trace(finest, scene, skin, job);
+    finest_ = shown(traced, skin.get());
+    finest_points_ = points_of(traced);
+    finest_total_ = total(traced, skin.get());
+}
+
+AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::SkinPtr& skin,
+                                                     const Job& job) const {
+    return trace(mesh, ray::Scene(mesh, skin), skin, job);
+}
+
+AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::Scene& scene,
+                                                     const ray::SkinPtr& skin,
+                                                     const Job& job) const {
+    Traced out(mesh);
+    const auto row = static_cast<size_t>(side_);
+    out.samples_.resize(kViews * row * row);
+    if (mesh.empty() || !(radius_ > 0))
+        return out;
+    const std::vector<glm::dvec3> views = directions();
+    const double lift = ray_lift(radius_);
+    const Glass glass(mesh, skin, scene, lift);
+    // Of most things nine of ten rays would miss: they are long and narrow, and their bound is
+    // round.
+    std::vector<std::optional<Frame>> frames(kViews);
+    parallel_for(kViews, [&](size_t number) {
+        frames[number].emplace(mesh, View(views[number], number), center_, radius_);
+    });
+    parallel_for(kViews * row, [&](size_t line) {
+        job.check();
+        const ray::Burst burst;
+        ray::Blockers blockers;
+        const View view(views[line / row], line / row);
+        const Frame& frame = *frames[line / row];
+        for (size_t column = 0; column < row; ++column) {
+            const size_t number = line * row + column;
+            const double x = places_[number].x;
+            const double y = places_[number].y;
+            if (x * x + y * y > 1 || !frame.has(x, y))
+                continue;
+            glm::dvec3 along = -view.frame[2];
+            const ray::Hit hit =
+                glass.first_hit(center_ + radius_ * (view.frame * glm::dvec3(x, y, 2)), along);
+            if (!hit.hit)
+                continue;
+            const glm::dvec3 viewer = -along;
+            const glm::dvec3 normal = normal_at(mesh, hit, viewer);
+            glm::dvec3 flat = area_vector(mesh, hit.triangle);
+            const double area = glm::length(flat);
+            flat = area > 0 ? flat / area : viewer;
+            const glm::dvec3 from = hit.point + lift * (glm::dot(flat, viewer) < 0 ? -flat : flat);
+            double light = kSky;
+            const double facing = glm::dot(normal, view.sun);
+            if (facing > 0 && !glass.opaque().occluded(from, view.sun, blockers))
+                light += (1 - kSky) * facing;
+            out.samples_[number] = {hit.triangle, static_cast<float>(hit.u),
+                                    static_cast<float>(hit.v), static_cast<float>(light)};
+        }
+    });
+    for (const Traced::Sample& sample : out.samples_) {
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const uint16_t slot = mesh.slot(sample.triangle);
+        if (out.by_slot_.size() <= slot)
+            out.by_slot_.resize(slot + size_t{1});
+        out.by_slot_[slot].light += sample.light;
+        ++out.by_slot_[slot].count;
+    }
+    return out;
+}
+
+AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
+                                                       const ray::Skin* skin) const {
+    Pictures out(traced.samples_.size(), glm::vec4(0.0f));
+    const Mesh& mesh = *traced.mesh_;
+    std::vector<Shows> slots;
+    for (size_t slot = 0; slot < traced.by_slot_.size(); ++slot)
+        slots.emplace_back(mesh, skin, slot);
+    for (size_t i = 0; i < out.size(); ++i) {
+        const Traced::Sample& sample = traced.samples_[i];
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const Shows& slot = slots[mesh.slot(sample.triangle)];
+        out[i] = glm::vec4(
+            light_of(slot.varies ? skin->at(mesh, sample.triangle, sample.u, sample.v) : slot.mean,
+                     sample.light));
+    }
+    return out;
+}
+
+glm::dvec4 AgreementReference::total(const Traced& traced, const ray::Skin* skin) {
+    const Mesh& mesh = *traced.mesh_;
+    glm::dvec4 out(0.0);
+    std::vector<uint8_t> varies;
+    for (size_t number = 0; number < traced.by_slot_.size(); ++number) {
+        const Shows slot(mesh, skin, number);
+        const Traced::Sum& sum = traced.by_slot_[number];
+        varies.push_back(slot.varies ? 1 : 0);
+        if (!slot.varies)
+            out +=
+                glm::dvec4(sum.light * slot.mean.color + sum.count * slot.mean.emission, sum.count);
+    }
+    if (std::find(varies.begin(), varies.end(), 1) == varies.end())
+        return out;
+    for (const Traced::Sample& sample : traced.samples_) {
+        if (sample.triangle != ray::kNoTriangle && varies[mesh.slot(sample.triangle)] != 0)
+            out += light_of(skin->at(mesh, sample.triangle, sample.u, sample.v), sample.light);
+    }
+    return out;
+}
+
+Agreement AgreementReference::brightness_of(const Traced& stand_in,
+                                            const ray::SkinPtr& skin) const {
+    Agreement out;
+    const glm::dvec4 theirs = total(stand_in, skin.get());
+    out.coverage = finest_total_.w > 0 ? theirs.w / finest_total_.w : 1;
+    for (int i = 0; i < 3; ++i)
+        out.light[i] = theirs[i] > 0 ? finest_total_[i] / theirs[i] : 1;
+    return out;
+}
+
+Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
+                                 const Job& job) const {
+    return of(trace(stand_in, skin, job), skin);
+}
+
+Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& skin) const {
+    Agreement out = brightness_of(stand_in, skin);
+    out.error = agree_from(shown(stand_in, skin.get())).error;
+    return out;
+}
+
+AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) const {
+    const double sample = 2 * radius_ / side_;
+    const std::vector<Part> parts = parts_of(finest_, other, kViews, side_);
+    // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
+    // power of the size, nearly. Pictures of a pixel each are few: by chance they may differ alone.
+    double last_misses = 0;
+    int last = 0;
+    Sizes out{2 * radius_, false};
+    for (size_t i = kPixelSides.size(); i-- > 0;) {
+        const int pixel = kPixelSides[i];
+        if (side_ % pixel != 0)
+            continue;
+        const double misses = misses_of(finest_, other, parts, side_, pixel).worst();
+        if (misses > 1) {
+            if (last > 0) {
+                const double part =
+                    last_misses > 0 ? std::log(misses) / std::log(misses / last_misses) : 0.0;
+                const double ratio = static_cast<double>(last) / pixel;
+                out.error = pixel * sample * std::pow(ratio, std::clamp(part, 0.0, 1.0));
+            } else if (pixel == side_) {
+                // Seen whole it looks different: it has to be smaller than a pixel.
+                out.error = 2 * radius_ * std::min(misses, kMostMisses);
+                continue;
+            }
+            return out;
+        }
+        last_misses = misses;
+        last = pixel;
+        out.error = pixel * sample;
+    }
+    out.smallest = true;
+    return out;
+}
+
+std::vector<glm::vec3> AgreementReference::points_of(const Traced& traced) const {
+    std::vector<glm::vec3> out(traced.samples_.size(),
+                               glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+    const Mesh& mesh = *traced.mesh_;
+    for (size_t i = 0; i < out.size(); ++i) {
+        const Traced::Sample& sample = traced.samples_[i];
+        if (sample.triangle == ray::kNoTriangle)
+            continue;
+        const Triangle& t = mesh.triangles[sample.triangle];
+        const glm::dvec3 a(mesh.positions[t.x]);
+        out[i] = glm::vec3(a + double(sample.u) * (glm::dvec3(mesh.positions[t.y]) - a) +
+                           double(sample.v) * (glm::dvec3(mesh.positions[t.z]) - a) - center_);
+    }
+    return out;
+}
+
+double AgreementReference::gaps_of(const Traced& stand_in, const ray::SkinPtr& skin,
+                                   double off) const {
+    constexpr double kTimes = 2;
+    constexpr int kMostAround = 6;  // samples
+    if (!(radius_ > 0))
+        return 0;
+    const double spacing = 2 * radius_ / side_;
+    const auto reach = static_cast<float>(kTimes * off + 1.5 * spacing);
+    const auto around = static_cast<int>(
+        std::clamp(std::ceil(kTimes * off / spacing), 1.0, static_cast<double>(kMostAround)));
+    const std::vector<glm::vec3> theirs = points_of(stand_in);
+    const auto is_near = [&](size_t at, const glm::vec3& point) {
+        const glm::vec3 arm = theirs[at] - point;
+        return glm::dot(arm, arm) <= reach * reach;  // not where there is nothing
+    };
+    const auto seen = [&](size_t number) {
+        const glm::vec3& point = finest_points_[number];
+        if (is_near(number, point))
+            return true;
+        const auto row = static_cast<size_t>(side_);
+        const size_t first = number - number % (row * row);  // of its picture
+        const auto column = static_cast<int>(number % row);
+        const auto line = static_cast<int>(number / row % row);
+        for (int y = std::max(line - around, 0); y <= std::min(line + around, side_ - 1); ++y) {
+            for (int x = std::max(column - around, 0); x <= std::min(column + around, side_ - 1);
+                 ++x) {
+                if (is_near(first + static_cast<size_t>(y) * row + static_cast<size_t>(x), point))
+                    return true;
+            }
+        }
+        return false;
+    };
+    std::vector<size_t> gaps;
+    for (size_t i = 0; i < finest_points_.size(); ++i) {
+        if (std::isfinite(finest_points_[i].x) && !seen(i))
+            gaps.push_back(i);
+    }
+    const Pictures all = shown(stand_in, skin.get());
+    // Where much less is covered in all, what is gone was nowhere near.
+    if (brightness_of(stand_in, skin).coverage < 1 - kMostCoverageOff)
+        return agree_from(all).error;
+    if (gaps.empty())
+        return 0;
+    Pictures other = finest_;
+    for (const size_t i : gaps)
+        other[i] = all[i];
+    const Sizes sizes = agree_from(other);
+    return sizes.smallest ? 0 : sizes.error;
+}
+
+}  // namespace lodestone::measure

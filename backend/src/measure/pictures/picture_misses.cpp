@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/pictures/picture_misses.h"
+
+#include <glm/common.hpp>
+
+#include <array>
+#include <utility>
+
+namespace lodestone::measure {
+namespace {
+
+/// A pixel: means over every other sample, and over those between.
+struct Pixel {
+    std::array<glm::dvec4, 2> halves;
+
+    Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
+        using Two = double __attribute__((vector_size(16)));
+        struct Sum {
+            Two low{};
+            Two high{};
+
+            void add(const glm::vec4& sample) {
+                low += Two{static_cast<double>(sample.x), static_cast<double>(sample.y)};
+                high += Two{static_cast<double>(sample.z), static_cast<double>(sample.w)};
+            }
+            glm::dvec4 mean(int count) const {
+                return glm::dvec4(low[0], low[1], high[0], high[1]) / static_cast<double>(count);
+            }
+        };
+        Sum first;  // of the half that the row begins with
+        Sum second;
+        for (int y = 0; y < side; ++y) {
+            const glm::vec4* const row = corner + static_cast<ptrdiff_t>(y) * stride;
+            for (int x = 0; x < side; x += 2)
+                first.add(row[x]);
+            for (int x = 1; x < side; x += 2)
+                second.add(row[x]);
+            std::swap(first, second);
+        }
+        if (side % 2 != 0)
+            std::swap(first, second);
+        const int count = side * side / 2;
+        halves[odd ? 1 : 0] = first.mean(side * side - count);
+        halves[odd ? 0 : 1] = second.mean(count);
+    }
+};
+
+}  // namespace
+
+std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                           size_t views, int side) {
+    std::vector<Part> out(views, {glm::ivec2(side), glm::ivec2(0)});
+    size_t at = 0;
+    for (Part& part : out) {
+        for (int row = 0; row < side; ++row) {
+            for (int column = 0; column < side; ++column, ++at) {
+                if (!(a[at].w > 0 || b[at].w > 0))
+                    continue;
+                const glm::ivec2 here(column, row);
+                part.low = glm::min(part.low, here);
+                part.high = glm::max(part.high, here + 1);
+            }
+        }
+    }
+    return out;
+}
+
+Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                 const std::vector<Part>& parts, int side, int pixel) {
+    constexpr double kCovered = 1.0 / 255;
+    Misses out;
+    for (size_t view = 0; view < parts.size(); ++view) {
+        const glm::ivec2 low = parts[view].low / pixel * pixel;
+        for (int row = low.y; row < parts[view].high.y; row += pixel) {
+            for (int column = low.x; column < parts[view].high.x; column += pixel) {
+                const size_t at = (view * static_cast<size_t>(side) + static_cast<size_t>(row)) *
+                                      static_cast<size_t>(side) +
+                                  static_cast<size_t>(column);
+                const bool odd = (row / pixel + column / pixel) % 2 != 0;
+                const Pixel first(&a[at], side, pixel, odd);
+                const Pixel second(&b[at], side, pixel, odd);
+                if (std::max(first.halves[0].w + first.halves[1].w,
+                             second.halves[0].w + second.halves[1].w) <= 2 * kCovered)
+                    continue;
+                ++out.covered;
+                const std::array<glm::dvec4, 2> off{first.halves[0] - second.halves[0],
+                                                    first.halves[1] - second.halves[1]};
+                out.coverage.add(off[0].w, off[1].w);
+                for (int i = 0; i < 3; ++i)
+                    out.light.add(off[0][i], off[1][i]);
+                for (const glm::dvec4& half : first.halves)
+                    out.finest_light += 0.5 * (half.x + half.y + half.z);
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace lodestone::measure

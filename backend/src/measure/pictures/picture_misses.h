@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Misses: how much two sets of pictures differ at one size of their pixels.
+#pragma once
+
+#include "measure/pictures/picture_agreement.h"
+
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// Differences between pixels of one size, with the noise of their samples and without.
+struct Difference {
+    double sum = 0;       // of magnitudes
+    double squares = 0;   // likewise
+    double products = 0;  // of the differences of both halves of the samples
+
+    void add(double first, double second) {
+        const double both = 0.5 * (first + second);
+        sum += std::abs(both);
+        squares += both * both;
+        products += first * second;
+    }
+    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent
+    /// between the halves, so their products know what it added to the squares.
+    double mean(double count) const {
+        const double real = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0;
+        return sum / count * std::sqrt(real);
+    }
+};
+
+/// What pixels of one size tell.
+struct Misses {
+    size_t covered = 0;  // pixels that either picture covers
+    Difference coverage;
+    Difference light;         // of three colors
+    double finest_light = 0;  // sum
+
+    /// Over what may be missed.
+    double worst() const {
+        if (covered == 0)
+            return 0;
+        const auto count = static_cast<double>(covered);
+        const double bright = finest_light / (3 * count);
+        return std::max(coverage.mean(count) / kMostCoverageOff,
+                        bright > 0 ? light.mean(3 * count) / bright / kMostLightOff : 0);
+    }
+};
+
+/// The part of a picture where either shows something: from `low` to below `high` (column, row).
+struct Part {
+    glm::ivec2 low{0};
+    glm::ivec2 high{0};
+};
+
+/// Of each view of pictures of `side` by `side` samples (light, coverage), one a view.
+std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                           size_t views, int side);
+
+/// Of such pictures, in pixels of `pixel` by `pixel` samples, which divides the side. `a` is the
+/// finest's; `parts` are theirs.
+Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                 const std::vector<Part>& parts, int side, int pixel);
+
+}  // namespace lodestone::measure
