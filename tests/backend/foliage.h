@@ -5,7 +5,7 @@
 #include "backend/shapes.h"
 #include "base/random.h"
 #include "image/image.h"
-#include "image/sampler.h"
+#include "image/texture_sampler.h"
 #include "model/material.h"
 
 #include <functional>

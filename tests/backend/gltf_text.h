@@ -2,7 +2,7 @@
 // Small glTF files written out as text, and what reading them says.
 #pragma once
 
-#include "format/glb.h"
+#include "format/gltf/glb.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "backend/shapes.h"
-#include "image/sampler.h"
+#include "image/texture_sampler.h"
 #include "model/model.h"
 
 namespace lodestone::models {

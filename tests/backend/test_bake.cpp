@@ -2,8 +2,8 @@
 // Guards baked pictures: every operation's known answer, where texels come from, hostile steps.
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/bake.h"
-#include "image/sampler.h"
+#include "image/baked_image.h"
+#include "image/texture_sampler.h"
 
 #include <gtest/gtest.h>
 #include <limits>

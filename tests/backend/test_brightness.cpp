@@ -8,7 +8,7 @@
 #include "base/files.h"
 #include "hierarchy/hierarchy_build.h"
 #include "measure/pictures/picture_agreement.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
 #include "solids/stand_in_material.h"
 

@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "ray/closest_search.h"
 #include "ray/closest_tree.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -19,8 +19,8 @@
 #include <utility>
 
 using namespace lodestone;
-using simplify::simplify_mesh;
 using simplify::simplify_chain;
+using simplify::simplify_mesh;
 using simplify::SimplifyMode;
 using simplify::SimplifyOptions;
 using namespace lodestone::shapes;

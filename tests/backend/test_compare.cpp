@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "image/compare.h"
+#include "image/compare_images.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

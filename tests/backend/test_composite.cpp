@@ -3,7 +3,7 @@
 #include "backend/foliage.h"
 #include "backend/with_rays.h"
 #include "measure/visible/visible_attributes.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "solids/composite_replacement.h"
 #include "solids/match_solids.h"
 #include "solids/stand_in_material.h"

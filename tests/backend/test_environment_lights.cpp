@@ -2,7 +2,7 @@
 // Guards that few suns light surfaces as the whole picture of a sky does, whichever way they face.
 #include "base/parallel.h"
 #include "image/image.h"
-#include "image/sampler.h"
+#include "image/texture_sampler.h"
 #include "light/environment_lights.h"
 
 #include <cmath>

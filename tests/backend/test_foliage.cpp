@@ -10,7 +10,7 @@
 #include "hierarchy/hierarchy_build.h"
 #include "hierarchy/object_stand_ins.h"
 #include "measure/visible/visible_attributes.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "base/clock.h"
 #include "deform/level_binding.h"
 #include "measure/deviation/surface_deviation.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <cmath>
 #include <functional>

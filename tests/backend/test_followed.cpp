@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "hierarchy/hierarchy_build.h"
 #include "measure/deviation/surface_deviation.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 // file can crash us or lead us elsewhere.
 #include "base/error.h"
 #include "base/files.h"
-#include "format/format.h"
+#include "format/model_file.h"
 #include "gltf_text.h"
 #include "image/image.h"
 #include "mutate.h"

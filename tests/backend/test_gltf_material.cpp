@@ -3,7 +3,7 @@
 // colors, and that no picture crashes us or comes from elsewhere.
 #include "base/error.h"
 #include "base/files.h"
-#include "format/format.h"
+#include "format/model_file.h"
 #include "gltf_textured.h"
 #include "mutate.h"
 #include "scratch.h"

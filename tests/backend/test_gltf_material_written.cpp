@@ -2,7 +2,7 @@
 // Guards materials in our own glTF files: they come back bit for bit, strangers see the same
 // surface, pictures are there once.
 #include "base/error.h"
-#include "format/format.h"
+#include "format/model_file.h"
 #include "gltf_textured.h"
 #include "mutate.h"
 #include "scratch.h"

@@ -5,9 +5,9 @@
 #include "base/files.h"
 #include "choose/cut.h"
 #include "hierarchy/hierarchy_build.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
-#include "segment/json.h"
+#include "segment/store_json.h"
 
 #include <nlohmann/json.hpp>
 

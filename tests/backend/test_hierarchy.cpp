@@ -8,9 +8,9 @@
 #include "hierarchy/flattened_group.h"
 #include "hierarchy/hierarchy_build.h"
 #include "hierarchy/run/stand_in_surroundings.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
-#include "segment/json.h"
+#include "segment/store_json.h"
 
 #include <atomic>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "choose/criterion.h"
 #include "choose/cut.h"
 #include "hierarchy/hierarchy_build.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "scratch.h"
 #include "segment/store.h"
 

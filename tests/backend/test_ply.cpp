@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards PLY: all encodings and number types, exact round trips, counts that lie.
 #include "base/files.h"
-#include "format/format.h"
+#include "format/model_file.h"
 #include "format/ply.h"
 #include "mutate.h"
 #include "scratch.h"

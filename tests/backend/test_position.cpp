@@ -2,7 +2,7 @@
 // Guards grouping by position: small groups of neighbors, occurrences exactly where they were.
 #include "backend/models.h"
 #include "base/random.h"
-#include "group/position.h"
+#include "group/position_groups.h"
 
 #include <algorithm>
 #include <cmath>

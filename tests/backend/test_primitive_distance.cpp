@@ -2,7 +2,7 @@
 // Guards distances to boxes and ellipsoids against the nearest of many triangles and closed forms.
 #include "base/random.h"
 #include "geometry/primitive_distance.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "backend/shapes.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards texture look-ups: which texel, which channel, in which light, outside the picture too.
 #include "base/error.h"
-#include "image/sampler.h"
+#include "image/texture_sampler.h"
 
 #include <gtest/gtest.h>
 #include <limits>

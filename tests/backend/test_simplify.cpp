@@ -14,8 +14,8 @@
 #include <map>
 
 using namespace lodestone;
-using simplify::simplify_mesh;
 using simplify::simplify_chain;
+using simplify::simplify_mesh;
 using simplify::SimplifyOptions;
 using namespace lodestone::shapes;
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using simplify::simplify_mesh;
 using simplify::simplify_chain;
+using simplify::simplify_mesh;
 
 TEST(SimplifyParts, ThousandsOfTilesGoBeforeThePlatesTheyLieOnLoseTheirShape) {
     Mesh mesh;

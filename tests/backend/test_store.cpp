@@ -3,8 +3,8 @@
 #include "backend/models.h"
 #include "base/files.h"
 #include "scratch.h"
-#include "segment/json.h"
 #include "segment/store.h"
+#include "segment/store_json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 #include "backend/models.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "group/structure.h"
+#include "group/group_structure.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

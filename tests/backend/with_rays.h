@@ -2,7 +2,7 @@
 // Tests that cast rays: skipped, with the reason, where Embree is missing.
 #pragma once
 
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <gtest/gtest.h>
 #include <string>

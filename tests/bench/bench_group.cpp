@@ -18,8 +18,8 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "choose/cut.h"
-#include "group/position.h"
-#include "group/structure.h"
+#include "group/group_structure.h"
+#include "group/position_groups.h"
 #include "hierarchy/hierarchy_build.h"
 
 #include <algorithm>

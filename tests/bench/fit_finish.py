@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fits POV-Ray's finish to Cycles' principled surfaces; povray_export/finish.cpp holds the result.
+"""Fits POV-Ray's finish to Cycles' principled surfaces.
+
+povray_export/texture/surface_finish.cpp holds the result.
 
     blender -b --factory-startup --python tests/bench/fit_finish.py -- FOLDER
 

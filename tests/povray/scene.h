@@ -4,9 +4,9 @@
 
 #include "backend/shapes.h"
 #include "base/files.h"
-#include "image/sampler.h"
-#include "povray_export/runner.h"
-#include "povray_export/scene_writer.h"
+#include "image/texture_sampler.h"
+#include "povray_export/run/povray_runner.h"
+#include "povray_export/scene/scene_writer.h"
 #include "scratch.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Guards the text of cameras and of the part of the picture that is drawn. That the blur is Cycles'
 // is tests/blender/blender_test_camera.py's to prove.
 #include "povray/scene.h"
-#include "povray_export/camera_writer.h"
+#include "povray_export/scene/camera_writer.h"
 
 using namespace lodestone;
 using namespace lodestone::povray;

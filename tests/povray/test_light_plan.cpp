@@ -3,8 +3,8 @@
 // walls, floors of many rooms are cut, and what the number allows is all that differs.
 #include "base/parallel.h"
 #include "povray/scene.h"
-#include "povray_export/light_plan.h"
-#include "ray/scene.h"
+#include "povray_export/lamp/light_plan.h"
+#include "ray/mesh_scene.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the text of lights: what POV-Ray gets for each kind, and what is named instead. That their
 // energy is Cycles' is tests/blender/blender_test_lights.py's to prove.
-#include "povray_export/light_writer.h"
+#include "povray_export/lamp/light_writer.h"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards when a sun's shadows are drawn soft: where a pixel could tell, and nowhere else.
-#include "povray_export/penumbra.h"
+#include "povray_export/lamp/penumbra.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // counted twice, rooms behind windows are not black, and nothing of it is there where nobody asked.
 #include "image/image.h"
 #include "povray/scene.h"
-#include "povray_export/radiosity.h"
+#include "povray_export/lamp/radiosity.h"
 
 using namespace lodestone;
 using namespace lodestone::povray;

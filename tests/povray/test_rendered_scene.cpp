@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what POV-Ray makes of the exported text: light, finish, camera, primitives, false colors.
 #include "povray/scene.h"
-#include "povray_export/finish.h"
+#include "povray_export/texture/surface_finish.h"
 
 #include <fstream>
 #include <limits>

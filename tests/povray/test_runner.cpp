@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards running POV-Ray: its sentence when it fails, stopping it, and nothing left behind.
 #include "povray/scene.h"
-#include "povray_export/empty_scene.h"
-#include "povray_export/messages.h"
+#include "povray_export/run/empty_scene.h"
+#include "povray_export/run/povray_messages.h"
 
 #include <chrono>
 #include <csignal>

@@ -2,9 +2,9 @@
 // Guards the exported text: sharing, rounding, hostile input.
 #include "base/parallel.h"
 #include "povray/scene.h"
-#include "povray_export/finish.h"
-#include "povray_export/number.h"
-#include "povray_export/representation_writer.h"
+#include "povray_export/scene/povray_number.h"
+#include "povray_export/scene/representation_writer.h"
+#include "povray_export/texture/surface_finish.h"
 
 #include <fstream>
 #include <limits>

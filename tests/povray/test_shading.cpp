@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what the controls of shading become where they say nothing, or nonsense.
-#include "povray_export/shading.h"
+#include "povray_export/scene/shading.h"
 
 #include <gtest/gtest.h>
 

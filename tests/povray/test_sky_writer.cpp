@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards which lights stand for a sky: those that a picture can tell, for each casts a ray a point.
 #include "image/image.h"
-#include "image/sampler.h"
-#include "povray_export/sky_writer.h"
+#include "image/texture_sampler.h"
+#include "povray_export/lamp/sky_writer.h"
 #include "scratch.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how far image textures are made smaller: never so that a pixel could tell more than asked.
 #include "povray/scene.h"
-#include "povray_export/picture_writer.h"
+#include "povray_export/texture/picture_writer.h"
 
 #include <optional>
 #include <tuple>

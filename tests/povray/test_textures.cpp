@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards pictures on surfaces: what POV-Ray shows is what the texture's own sampler says.
 #include "povray/scene.h"
-#include "povray_export/representation_writer.h"
+#include "povray_export/scene/representation_writer.h"
 
 #include <limits>
 

@@ -4,9 +4,9 @@
 #include "base/parallel.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "group/group_structure.h"
 #include "group/loose_parts.h"
-#include "group/position.h"
-#include "group/structure.h"
+#include "group/position_groups.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "capi/guard.h"
-#include "image/compare.h"
+#include "image/compare_images.h"
 #include "image/compare_shown.h"
 #include "image/png_text.h"
 

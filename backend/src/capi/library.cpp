@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capi/guard.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 using namespace lodestone;
 

@@ -3,8 +3,8 @@
 #include "base/files.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "image/bake.h"
-#include "image/sampler.h"
+#include "image/baked_image.h"
+#include "image/texture_sampler.h"
 
 #include <algorithm>
 #include <cmath>

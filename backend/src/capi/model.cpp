@@ -3,7 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/pose.h"
-#include "format/format.h"
+#include "format/model_file.h"
 #include "geometry/strand_tubes.h"
 
 #include <algorithm>

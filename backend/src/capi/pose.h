@@ -5,7 +5,7 @@
 #include "lodestone/lodestone.h"
 
 #include "geometry/polygon_mesh.h"
-#include "model/pose.h"
+#include "model/posed_surface.h"
 
 #include <memory>
 

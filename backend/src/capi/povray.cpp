@@ -5,10 +5,10 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/rays.h"
-#include "povray_export/empty_scene.h"
-#include "povray_export/finish.h"
-#include "povray_export/runner.h"
-#include "povray_export/scene_writer.h"
+#include "povray_export/run/empty_scene.h"
+#include "povray_export/run/povray_runner.h"
+#include "povray_export/scene/scene_writer.h"
+#include "povray_export/texture/surface_finish.h"
 
 #include <cmath>
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include "capi/chosen.h"
 #include "capi/guard.h"
 #include "image/compare_shown.h"
-#include "povray_export/finish.h"
+#include "povray_export/texture/surface_finish.h"
 #include "view/viewer_surface.h"
 
 #include <cmath>

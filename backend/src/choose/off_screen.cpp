@@ -12,7 +12,7 @@
 namespace lodestone::choose {
 namespace {
 
-// Rougher surfaces show no images (povray_export/finish fades them out before)
+// Rougher surfaces show no images (povray_export/texture/surface_finish fades them out before)
 constexpr double kRoughMetal = 0.35;
 constexpr double kRoughCoat = 0.25;
 // Fresnel's reflectance of a dielectric with an index of 1.45, mean over the half space, and what

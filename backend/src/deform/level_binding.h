@@ -3,7 +3,7 @@
 #pragma once
 
 #include "deform/level_following.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <optional>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "deform/pose_error_samples.h"
-#include "model/pose.h"
+#include "model/posed_surface.h"
 #include "simplify/simplify.h"
 
 #include <optional>

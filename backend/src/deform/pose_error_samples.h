@@ -3,7 +3,7 @@
 #pragma once
 
 #include "geometry/vertex_rings.h"
-#include "model/pose.h"
+#include "model/posed_surface.h"
 
 #include <span>
 

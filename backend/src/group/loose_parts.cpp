@@ -2,8 +2,8 @@
 #include "group/loose_parts.h"
 
 #include "base/parallel.h"
-#include "group/structure.h"
-#include "group/tree.h"
+#include "group/group_structure.h"
+#include "group/grouping_tree.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "group/surfaces.h"
+#include "group/loose_surfaces.h"
 #include "model/model.h"
 
 #include <span>

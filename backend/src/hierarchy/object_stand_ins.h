@@ -5,7 +5,7 @@
 #include "base/job.h"
 #include "hierarchy/build_settings.h"
 #include "hierarchy/candidate.h"
-#include "image/texels.h"
+#include "image/decoded_texels.h"
 #include "model/model.h"
 
 #include <functional>

@@ -4,7 +4,7 @@
 // Where OpenEXR reads a header otherwise than we do (it takes an attribute's size from its type),
 // it is refused.
 #include "base/error.h"
-#include "image/codecs.h"
+#include "image/image_codecs.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

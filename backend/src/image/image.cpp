@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "image/codecs.h"
+#include "image/image_codecs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // libjpeg reports errors through a function that must not return: ours jumps out. Between setjmp
 // and the last libjpeg call there are only plain values; memory is owned by the caller's frame.
 #include "base/error.h"
-#include "image/codecs.h"
+#include "image/image_codecs.h"
 
 #include <jpeglib.h>
 

@@ -2,7 +2,7 @@
 // libpng leaves its functions by longjmp: between setjmp and the last libpng call there are only
 // plain values; whatever owns memory lives in the caller's frame.
 #include "base/error.h"
-#include "image/codecs.h"
+#include "image/image_codecs.h"
 
 #include <png.h>
 

@@ -2,7 +2,7 @@
 #include "light/environment_lights.h"
 
 #include "base/maths.h"
-#include "image/sampler.h"
+#include "image/texture_sampler.h"
 
 #include <algorithm>
 #include <cmath>

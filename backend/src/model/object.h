@@ -3,7 +3,7 @@
 #pragma once
 
 #include "model/attributes.h"
-#include "model/pose.h"
+#include "model/posed_surface.h"
 #include "model/representation.h"
 
 #include <optional>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/maths.h"
-#include "model/lens.h"
+#include "model/lenses.h"
 #include "model/picture.h"
 #include "model/representation.h"
 

@@ -2,7 +2,7 @@
 // ClosestSearch: a search for the triangle nearest to a point, whoever proposes the candidates.
 #pragma once
 
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <functional>
 #include <span>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/maths.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <memory>
 #include <vector>

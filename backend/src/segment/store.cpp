@@ -3,8 +3,8 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
-#include "format/glb.h"
-#include "segment/json.h"
+#include "format/gltf/glb.h"
+#include "segment/store_json.h"
 
 #include <algorithm>
 #include <atomic>

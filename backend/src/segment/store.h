@@ -9,7 +9,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
-#include "segment/bound_file.h"
+#include "segment/bound_level_file.h"
 
 #include <filesystem>
 #include <memory>

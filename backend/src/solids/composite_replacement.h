@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "model/composite.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 #include "solids/solid_replacement.h"
 
 #include <span>

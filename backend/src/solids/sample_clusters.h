@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "model/attributes.h"
-#include "ray/skin.h"
+#include "ray/mesh_skin.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/evaluators/lamp_glow.h"
 
-#include "group/surfaces.h"
+#include "group/loose_surfaces.h"
 #include "simplify/simplify.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "hierarchy/object_stand_ins.h"
 #include "hierarchy/run/deforming_poses.h"
-#include "segment/bound_file.h"
+#include "segment/bound_level_file.h"
 
 namespace lodestone::hierarchy {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/widened_levels.h"
 
-#include "group/surfaces.h"
+#include "group/loose_surfaces.h"
 #include "hierarchy/evaluators/lamp_glow.h"
 #include "measure/pictures/picture_agreement.h"
 #include "measure/visible/visible_attributes.h"

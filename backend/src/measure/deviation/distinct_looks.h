@@ -2,7 +2,7 @@
 // Looks: which materials a picture can tell apart.
 #pragma once
 
-#include "ray/skin.h"
+#include "ray/mesh_skin.h"
 
 #include <map>
 #include <span>

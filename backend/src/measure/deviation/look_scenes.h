@@ -2,7 +2,7 @@
 // Look scenes: a mesh made ready for closest points, as a whole and by look.
 #pragma once
 
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <map>
 #include <memory>

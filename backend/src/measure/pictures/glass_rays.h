@@ -2,7 +2,7 @@
 // Glass: follows rays of pictures through what refracts them.
 #pragma once
 
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <optional>
 

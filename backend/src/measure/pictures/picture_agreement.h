@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <array>
 #include <vector>

@@ -2,7 +2,7 @@
 // Sides: which sides of a mesh's triangles can be seen from outside at all.
 #pragma once
 
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 namespace lodestone::measure {
 

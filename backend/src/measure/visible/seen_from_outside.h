@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "measure/visible/outside_sides.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 namespace lodestone::measure {
 

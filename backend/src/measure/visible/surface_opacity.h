@@ -2,7 +2,7 @@
 // Opacity: how much of what is behind it a surface hides.
 #pragma once
 
-#include "ray/skin.h"
+#include "ray/mesh_skin.h"
 
 namespace lodestone::measure {
 

@@ -6,7 +6,7 @@
 #include "measure/visible/visible_sampler.h"
 #include "model/attributes.h"
 #include "model/material.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <span>
 

@@ -6,7 +6,7 @@
 #include "measure/visible/outside_sides.h"
 #include "measure/visible/sobol_points.h"
 #include "measure/visible/surface_inertia.h"
-#include "ray/scene.h"
+#include "ray/mesh_scene.h"
 
 #include <optional>
 #include <vector>

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF materials <-> Material.
+#pragma once
+
+#include "base/error.h"
+#include "format/baked_textures.h"
+#include "format/gltf/gltf_picture.h"
+#include "format/gltf/gltf_texture.h"
+#include "model/material.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+struct Material;
+}  // namespace tinygltf
+
+namespace lodestone::format {
+
+/// What the words of glTF say (not our extras): metallic-roughness, pictures, alpha modes and
+/// KHR_materials_ clearcoat, emissive_strength, ior, specular, transmission, unlit,
+/// pbrSpecularGlossiness (its diffuse part). A texture that cannot be used, or only as its mean, is
+/// a problem; every other extension is one that names it.
+Material material_seen(const tinygltf::Model& model, const tinygltf::Material& from,
+                       PictureReader& pictures, const std::string& name, Problems& problems);
+
+/// All of the file, our extras included; then two for parts without any, the second for those with
+/// vertex colors. vertex_colors is set where a primitive of the material has COLOR_0: glTF always
+/// multiplies by them.
+std::vector<Material> read_materials(const tinygltf::Model& model, PictureReader& pictures,
+                                     const std::string& name, Problems& problems);
+
+/// Adds materials, their textures, samplers and pictures.
+class MaterialWriter {
+public:
+    /// `embed`: pictures go into the file, what glTF cannot say of a texture is drawn into a new
+    /// one, and the extras keep what is still missing. Else the store's pictures are named, and a
+    /// texture that glTF cannot say as it is counts as its mean.
+    MaterialWriter(tinygltf::Model& model, bool embed);
+    MaterialWriter(const MaterialWriter&) = delete;
+    MaterialWriter& operator=(const MaterialWriter&) = delete;
+
+    /// Returns its index. `uvs`: whether the mesh has them; without, no texture is shown, as glTF
+    /// asks. Colors and numbers are clamped to what glTF allows.
+    int add(const Material& material, bool uvs);
+
+private:
+    /// A texture as glTF can say it, and what its values are to be multiplied by.
+    struct Layer {
+        Texture texture;
+        glm::dvec4 factor{1.0};
+    };
+
+    Layer base_layer(const Material& material);
+    Layer roughness_layer(const Material& material);
+    Layer emission_layer(const Material& material);
+    Layer normal_layer(const Material& material);
+    /// Drawn into a new picture whose values are to be multiplied by `factor`; else `otherwise`.
+    Layer drawn(const Recipe& recipe, ColorSpace space, const Layer& otherwise,
+                const glm::dvec4& factor, bool bright = false);
+    void add_reflection(const Material& material, tinygltf::Material& out);
+    bool sayable(const Texture& texture, ColorSpace space) const;
+    template <typename Info>
+    void lay(const Texture& texture, Info& info);
+
+    tinygltf::Model& model_;
+    bool embed_;
+    std::string name_ = "GLB";
+    std::filesystem::path no_folder_;
+    PictureWriter pictures_;
+    PictureReader reader_;
+    TextureWriter textures_;
+    std::map<Hash, std::optional<Baked>> drawn_;  // by what went into it
+};
+
+}  // namespace lodestone::format

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "format/model_file.h"
+
+#include "base/files.h"
+#include "base/hash.h"
+#include "format/gltf/glb.h"
+#include "format/obj/mtl.h"
+#include "format/obj/obj.h"
+#include "format/ply.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace lodestone::format {
+namespace {
+
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
+}
+
+Model model_of(Mesh mesh, const std::string& name) {
+    Model model;
+    Material& material = model.materials.emplace_back();
+    if (!mesh.colors.empty()) {
+        material.vertex_colors = true;
+        material.base_color = glm::dvec3(1.0);
+    }
+    Object object;
+    object.uid = "ply:0";
+    object.name = name;
+    object.representations.emplace_back();
+    Representation& finest = object.representations[0];
+    finest.materials = {0};
+    finest.payload = std::make_shared<const Mesh>(std::move(mesh));
+    summarize(finest, model);
+    model.objects.push_back(std::move(object));
+    model.root = 0;
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+/// The file of the materials beside an OBJ file, by a name that a line of that can say.
+std::filesystem::path library_of(const std::filesystem::path& path) {
+    std::filesystem::path library = path;
+    library.replace_extension(".mtl");
+    const std::string name = library.filename().string();
+    const bool odd = name.front() == ' ' || std::any_of(name.begin(), name.end(), [](char c) {
+                         return static_cast<unsigned char>(c) < ' ' || c == '\\' || c == '#';
+                     });
+    if (odd)
+        library.replace_filename("materials-" + hex16(Hasher().text(name).result()) + ".mtl");
+    return library;
+}
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& path, Problems& problems) {
+    const std::string extension = extension_of(path);
+    if (extension == ".obj")
+        return read_obj(read_file(path), path, problems);
+    if (extension == ".ply")
+        return model_of(read_ply(read_file(path), path.stem().string(), problems),
+                        path.stem().string());
+    if (extension == ".glb" || extension == ".gltf") {
+        const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+        return read_glb(read_file(path), folder, path.stem().string(), problems);
+    }
+    fail(Status::BadFile, "'", path.string(), "' is not read: only .obj, .ply, .glb and .gltf are");
+}
+
+Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
+    constexpr uint32_t kNone = ~uint32_t{0};
+    Mesh whole;
+    std::map<uint32_t, uint16_t> slot_of;
+    const auto add = [&](const Occurrence& occurrence) {
+        const Representation& finest = model.objects[occurrence.object].representations[0];
+        Mesh part = tessellated(finest, 3);
+        std::vector<uint16_t> slots(part.triangles.size());
+        for (size_t i = 0; i < slots.size(); ++i) {
+            const uint16_t slot = part.slot(i);
+            uint32_t material = finest.materials.empty() ? kNone : finest.materials[0];
+            if (slot < finest.materials.size())
+                material = finest.materials[slot];
+            const auto found = slot_of.emplace(material, materials.size());
+            if (found.second) {
+                if (materials.size() >= std::numeric_limits<uint16_t>::max())
+                    fail(Status::InvalidArgument, "the model uses more than 65534 materials");
+                materials.push_back(material);
+            }
+            slots[i] = found.first->second;
+        }
+        part.slots = std::move(slots);
+        append(whole, part, occurrence.world);
+    };
+    for_each_occurrence(model, add, Below::Parts);
+    return whole;
+}
+
+void write_model(const std::filesystem::path& path, const Model& model) {
+    const std::string extension = extension_of(path);
+    if (extension == ".glb") {
+        write_file(path, write_glb(model));
+        return;
+    }
+    if (extension != ".obj" && extension != ".ply")
+        fail(Status::InvalidArgument, "'", path.string(),
+             "' is not written: only .glb, .obj and .ply are");
+    std::vector<uint32_t> slots;
+    Mesh mesh = flattened(model, slots);
+    std::vector<Material> materials;
+    materials.reserve(slots.size());
+    for (const uint32_t index : slots)
+        materials.push_back(index < model.materials.size() ? model.materials[index] : Material{});
+    if (extension == ".ply") {
+        if (std::none_of(materials.begin(), materials.end(),
+                         [](const Material& material) { return material.vertex_colors; }))
+            mesh.colors.clear();  // nobody sees them
+        write_file(path, write_ply(mesh));
+        return;
+    }
+    const std::filesystem::path library = library_of(path);
+    const MaterialLibrary written = write_mtl(materials);
+    for (const auto& [name, picture] : written.pictures)
+        write_file(path.parent_path() / name, picture->bytes);
+    write_file(library, written.text);
+    write_file(path, write_obj(mesh, materials, path.stem().string(), library.filename().string()));
+}
+
+}  // namespace lodestone::format

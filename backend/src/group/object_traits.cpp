@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "group/object_traits.h"
+
+#include "base/parallel.h"
+#include "measure/visible/surface_inertia.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::group {
+namespace {
+
+// Differences that keep things apart as much as twice the area does.
+constexpr double kColorApart = 0.25;  // of display-encoded color, each channel
+constexpr double kSizeApart = 2.0;    // factors of two
+constexpr double kShapeApart = 0.5;   // of a principal variance's share
+constexpr double kTurnedApart = 0.7;  // likewise, along fixed axes
+
+double encoded(double linear) {
+    const double x = std::clamp(linear, 0.0, 1.0);
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+glm::dvec4 look_of(const Material& material) {
+    const double opacity = material.alpha_mode == AlphaMode::Opaque ? 1.0 : material.alpha;
+    const glm::dvec3 color = material.base_color + material.emission;
+    glm::dvec4 look(encoded(color.x), encoded(color.y), encoded(color.z),
+                    std::clamp(opacity * (1 - material.transmission), 0.0, 1.0));
+    if (material.other)
+        look += std::clamp(material.mix, 0.0, 1.0) * (look_of(*material.other) - look);
+    for (int i = 0; i < 4; ++i)
+        look[i] = std::isfinite(look[i]) ? look[i] : 0.0;
+    return look;
+}
+
+/// Mean look of a mesh's triangles, by area.
+glm::dvec4 mean_look(const Mesh& mesh, const Model& model, const Representation& finest) {
+    std::vector<glm::dvec4> looks;
+    for (const uint32_t material : finest.materials)
+        looks.push_back(look_of(model.materials.at(material)));
+    if (looks.empty())
+        looks.push_back(look_of(Material{}));
+    std::vector<double> areas(looks.size(), 0.0);
+    double sum = 0;
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const double area = glm::length(area_vector(mesh, t));
+        if (!std::isfinite(area))
+            continue;
+        areas[std::min<size_t>(mesh.slot(t), areas.size() - 1)] += area;
+        sum += area;
+    }
+    glm::dvec4 mean(0.0);
+    for (size_t i = 0; i < looks.size(); ++i)
+        mean += looks[i] * (sum > 0 ? areas[i] / sum : 1.0 / static_cast<double>(looks.size()));
+    return mean;
+}
+
+/// By its bound alone.
+void set_from_bound(Traits& traits) {
+    const glm::dvec3 size = traits.bound.box.size();
+    traits.area = 2 * half_area(traits.bound.box);
+    traits.center = traits.bound.box.center();
+    for (int i = 0; i < 3; ++i)
+        traits.spread[i][i] = size[i] * size[i] / 12;
+}
+
+void set_leaf(Traits& traits, const Model& model, const Object& object) {
+    const Representation& finest = object.representations[0];
+    const auto* held = std::get_if<std::shared_ptr<const Mesh>>(&finest.payload);
+    if (held != nullptr && *held) {
+        traits.look = mean_look(**held, model, finest);
+        const measure::SurfaceInertia inertia = measure::of_mesh(**held);
+        if (!inertia.empty()) {
+            traits.area = inertia.area;
+            traits.center = inertia.center;
+            traits.spread = inertia.moments / inertia.area;
+            return;
+        }
+    } else if (!finest.materials.empty()) {
+        for (const uint32_t material : finest.materials)
+            traits.look += look_of(model.materials.at(material)) /
+                           static_cast<double>(finest.materials.size());
+    }
+    set_from_bound(traits);
+}
+
+/// The spread of something placed. Exact but for non-uniform stretches.
+glm::dmat3 placed(const glm::dmat3& spread, const glm::dmat3& linear) {
+    return linear * spread * glm::transpose(linear);
+}
+
+/// By how much a transform enlarges areas, on average over directions.
+double area_scale(const glm::dmat3& linear) {
+    return std::pow(std::abs(glm::determinant(linear)), 2.0 / 3);
+}
+
+void set_group(Traits& traits, const Assembly& assembly, const std::vector<Traits>& all) {
+    glm::dvec3 moment(0.0);
+    double area = 0;
+    for (const Placement& placement : assembly.placements) {
+        const Traits& child = all[placement.object];
+        const double own = child.area * area_scale(placement.transform.linear);
+        if (!(own > 0) || !std::isfinite(own))
+            continue;
+        area += own;
+        moment += own * placement.transform(child.center);
+        traits.look += own * child.look;
+    }
+    if (!(area > 0)) {
+        set_from_bound(traits);
+        return;
+    }
+    traits.area = area;
+    traits.center = moment / area;
+    traits.look /= area;
+    for (const Placement& placement : assembly.placements) {
+        const Traits& child = all[placement.object];
+        const double own = child.area * area_scale(placement.transform.linear);
+        if (!(own > 0) || !std::isfinite(own))
+            continue;
+        const glm::dvec3 off = placement.transform(child.center) - traits.center;
+        traits.spread += (own / area) * (placed(child.spread, placement.transform.linear) +
+                                         glm::outerProduct(off, off));
+    }
+}
+
+bool finite(const glm::dmat3& matrix) {
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            if (!std::isfinite(matrix[i][k]))
+                return false;
+        }
+    }
+    return true;
+}
+
+constexpr int kDeepestModel = 10000;
+
+/// Adds an object after all below it, each once.
+void add_below(const Model& model, ObjectIndex index, std::vector<uint8_t>& seen,
+               std::vector<ObjectIndex>& order, int depth) {
+    if (seen[index] != 0)
+        return;
+    if (depth > kDeepestModel)
+        fail(Status::InvalidArgument, "'", model.objects[index].name, "' is too deep in groups");
+    seen[index] = 1;
+    const Object& object = model.objects[index];
+    if (object.group()) {
+        for (const Placement& placement : object.representations[0].assembly().placements)
+            add_below(model, placement.object, seen, order, depth + 1);
+    }
+    order.push_back(index);
+}
+
+}  // namespace
+
+std::vector<Traits> traits_of(const Model& model, std::span<const ObjectIndex> groups,
+                              const Job& job) {
+    std::vector<ObjectIndex> order;
+    std::vector<uint8_t> seen(model.objects.size(), 0);
+    for (const ObjectIndex group : groups)
+        add_below(model, group, seen, order, 0);
+    std::vector<Traits> all(model.objects.size());
+    for (const ObjectIndex index : order) {
+        const Object& object = model.objects[index];
+        Traits& traits = all[index];
+        traits.environment = object.role == Role::Environment;
+        traits.never = object.deforms;
+        if (object.representations.empty())
+            continue;
+        if (!object.group()) {
+            traits.bound = object.bound();
+            continue;
+        }
+        for (const Placement& placement : object.representations[0].assembly().placements) {
+            const Traits& child = all[placement.object];
+            traits.environment = traits.environment || child.environment;
+            traits.never = traits.never || child.never || placement.hidden != 0;
+            if (!child.bound.empty())
+                traits.bound = merged(traits.bound, transformed(child.bound, placement.transform));
+        }
+    }
+    std::vector<ObjectIndex> leaves;
+    std::copy_if(order.begin(), order.end(), std::back_inserter(leaves), [&](ObjectIndex index) {
+        return !model.objects[index].representations.empty() && !model.objects[index].group();
+    });
+    parallel_for(leaves.size(), [&](size_t i) {
+        job.check();
+        set_leaf(all[leaves[i]], model, model.objects[leaves[i]]);
+    });
+    for (const ObjectIndex index : order) {
+        const Object& object = model.objects[index];
+        if (object.group())
+            set_group(all[index], object.representations[0].assembly(), all);
+    }
+    return all;
+}
+
+Item item_of(const Traits& traits, const Placement& placement) {
+    Item item;
+    item.box = transformed(traits.bound, placement.transform).box;
+    const glm::dmat3 spread = placed(traits.spread, placement.transform.linear);
+    const double total = trace(spread);
+    const double size = std::sqrt(total);
+    item.weight = size > 0 && std::isfinite(size) ? size : 1e-300;
+    for (size_t i = 0; i < 4; ++i)
+        item.features[i] = traits.look[static_cast<int>(i)] / kColorApart;
+    if (!(total > 0) || !finite(spread))
+        return item;
+    const glm::dmat3 shares = spread / total;
+    item.features[4] = std::log2(size) / kSizeApart;
+    const Eigen eigen = eigen_symmetric(shares);
+    size_t at = 5;
+    for (int i = 0; i < 3; ++i)
+        item.features[at++] = eigen.values[i] / kShapeApart;
+    constexpr double kBothSides = 1.4142135623730951;  // an entry off the diagonal stands for two
+    for (int i = 0; i < 3; ++i) {
+        for (int k = i; k < 3; ++k)
+            item.features[at++] = shares[i][k] / kTurnedApart * (i == k ? 1.0 : kBothSides);
+    }
+    return item;
+}
+
+}  // namespace lodestone::group

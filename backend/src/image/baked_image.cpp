@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/baked_image.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/texture_sampler.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <mutex>
+
+namespace lodestone::image {
+namespace {
+
+using Color = glm::dvec4;
+
+int argument_count(BakeOp op) {
+    switch (op) {
+        case BakeOp::Constant:
+        case BakeOp::Texel:
+            return 0;
+        case BakeOp::Combine:
+        case BakeOp::Mix:
+            return 3;
+        case BakeOp::Add:
+        case BakeOp::Subtract:
+        case BakeOp::Multiply:
+        case BakeOp::Divide:
+        case BakeOp::Power:
+        case BakeOp::Minimum:
+        case BakeOp::Maximum:
+        case BakeOp::Greater:
+        case BakeOp::Modulo:
+            return 2;
+        default:
+            return 1;
+    }
+}
+
+void check(const std::vector<BakeStep>& steps, size_t texture_count) {
+    if (steps.empty() || steps.size() > kMostBakeSteps)
+        fail(Status::InvalidArgument, "a bake of ", steps.size(), " steps; 1 to ", kMostBakeSteps,
+             " are possible");
+    for (size_t i = 0; i < steps.size(); ++i) {
+        const BakeStep& step = steps[i];
+        if (step.op > BakeOp::FromSrgb)
+            fail(Status::InvalidArgument, "step ", i, " of a bake is unknown");
+        for (int a = 0; a < argument_count(step.op); ++a) {
+            if (step.args[static_cast<size_t>(a)] >= i)
+                fail(Status::InvalidArgument, "step ", i, " of a bake uses step ",
+                     step.args[static_cast<size_t>(a)]);
+        }
+        if (step.op == BakeOp::Texel && step.args[0] >= texture_count)
+            fail(Status::InvalidArgument, "step ", i, " of a bake uses texture ", step.args[0],
+                 " of ", texture_count);
+        if ((step.op == BakeOp::Ramp || step.op == BakeOp::Curves) && step.table.empty())
+            fail(Status::InvalidArgument, "step ", i, " of a bake has no table");
+        if (step.op == BakeOp::Channel && !(step.value.x >= 0 && step.value.x <= 3))
+            fail(Status::InvalidArgument, "step ", i, " of a bake takes channel ", step.value.x);
+    }
+}
+
+template <typename Function>
+Color each(const Color& a, const Function& function) {
+    return {function(a.x), function(a.y), function(a.z), function(a.w)};
+}
+
+template <typename Function>
+Color each(const Color& a, const Color& b, const Function& function) {
+    return {function(a.x, b.x), function(a.y, b.y), function(a.z, b.z), function(a.w, b.w)};
+}
+
+Color looked_up(const std::vector<glm::vec4>& table, double at) {
+    const double place =
+        (at >= 0 ? std::min(at, 1.0) : 0.0) * static_cast<double>(table.size() - 1);
+    const auto low = std::min(static_cast<size_t>(place), table.size() - 1);
+    const size_t high = std::min(low + 1, table.size() - 1);
+    return glm::mix(Color(table[low]), Color(table[high]), place - static_cast<double>(low));
+}
+
+Color to_hsv(const Color& c) {
+    const double most = std::max({c.x, c.y, c.z});
+    const double range = most - std::min({c.x, c.y, c.z});
+    if (!(range > 0))
+        return {0, 0, most, c.w};
+    double hue = 0;
+    if (most == c.x)
+        hue = (c.y - c.z) / range;
+    else if (most == c.y)
+        hue = 2 + (c.z - c.x) / range;
+    else
+        hue = 4 + (c.x - c.y) / range;
+    hue /= 6;
+    return {hue < 0 ? hue + 1 : hue, most != 0 ? range / most : 0, most, c.w};
+}
+
+Color from_hsv(const Color& c) {
+    const double hue = 6 * (c.x - std::floor(c.x));
+    const auto channel = [&](double shift) {
+        const double at = std::fmod(hue + shift, 6.0);
+        return c.z * (1 - c.y * std::clamp(std::min(at, 4 - at), 0.0, 1.0));
+    };
+    return {channel(5), channel(3), channel(1), c.w};
+}
+
+Hash hash_of_bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
+                  int width, int height, ColorSpace space) {
+    Hasher hasher;
+    for (const BakeStep& step : steps) {
+        hasher.value(step.op).array(std::span<const uint32_t>(step.args));
+        for (int c = 0; c < 4; ++c)
+            hasher.value(step.value[c]);
+        hasher.bytes(step.table.data(), step.table.size() * sizeof(glm::vec4));
+    }
+    for (const Texture& texture : textures)
+        hasher.value(hash_of(texture));
+    return hasher.value(width).value(height).value(space).result();
+}
+
+/// The newest bakes by what they were made from.
+class Remembered {
+public:
+    PicturePtr find(Hash key) {
+        const std::scoped_lock lock(mutex_);
+        for (const auto& [hash, picture] : found_) {
+            if (hash == key)
+                return picture;
+        }
+        return nullptr;
+    }
+    void add(Hash key, const PicturePtr& picture) {
+        constexpr size_t kMostBytes = size_t{256} << 20u;
+        const std::scoped_lock lock(mutex_);
+        found_.emplace_back(key, picture);
+        bytes_ += picture->bytes.size();
+        while (bytes_ > kMostBytes && found_.size() > 1) {
+            bytes_ -= found_.front().second->bytes.size();
+            found_.pop_front();
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::deque<std::pair<Hash, PicturePtr>> found_;
+    size_t bytes_ = 0;
+};
+
+double finite(double value) {
+    return std::isfinite(value) ? value : 0.0;
+}
+
+Color result(const BakeStep& step, const std::vector<Color>& done) {
+    const auto at = [&](size_t argument) -> const Color& {  // check() passed those that count
+        return done[std::min<size_t>(step.args[argument], done.size() - 1)];
+    };
+    const Color& a = at(0);
+    const Color& b = at(1);
+    const Color& c = at(2);
+    switch (step.op) {
+        case BakeOp::Constant:
+        case BakeOp::Texel:
+            return step.value;
+        case BakeOp::Channel:
+            return Color(a[static_cast<int>(step.value.x)]);
+        case BakeOp::Luma:
+            return Color(0.2126 * a.x + 0.7152 * a.y + 0.0722 * a.z);
+        case BakeOp::Combine:
+            return {a.x, b.y, c.z, 1};
+        case BakeOp::Add:
+            return a + b;
+        case BakeOp::Subtract:
+            return a - b;
+        case BakeOp::Multiply:
+            return a * b;
+        case BakeOp::Divide:
+            return each(a, b, [](double x, double y) { return y != 0 ? x / y : 0; });
+        case BakeOp::Power:
+            return each(a, b, [](double x, double y) { return finite(std::pow(x, y)); });
+        case BakeOp::Minimum:
+            return glm::min(a, b);
+        case BakeOp::Maximum:
+            return glm::max(a, b);
+        case BakeOp::Mix:
+            return a + c * (b - a);
+        case BakeOp::Greater:
+            return each(a, b, [](double x, double y) { return x > y ? 1.0 : 0.0; });
+        case BakeOp::Absolute:
+            return glm::abs(a);
+        case BakeOp::Floor:
+            return glm::floor(a);
+        case BakeOp::Modulo:
+            return each(a, b, [](double x, double y) { return y != 0 ? std::fmod(x, y) : 0; });
+        case BakeOp::Ramp:
+            return looked_up(step.table, a.x);
+        case BakeOp::Curves:
+            return {looked_up(step.table, a.x).x, looked_up(step.table, a.y).y,
+                    looked_up(step.table, a.z).z, a.w};
+        case BakeOp::ToHsv:
+            return to_hsv(a);
+        case BakeOp::FromHsv:
+            return from_hsv(a);
+        case BakeOp::ToSrgb:
+            return each(a, [](double x) {
+                return static_cast<double>(encode_srgb(static_cast<float>(std::max(x, 0.0))));
+            });
+        case BakeOp::FromSrgb:
+            return each(a, [](double x) {
+                return static_cast<double>(decode_srgb(static_cast<float>(x)));
+            });
+    }
+    return Color(0.0);
+}
+
+}  // namespace
+
+Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures, int width,
+           int height, const Job& job) {
+    check(steps, textures.size());
+    if (width < 1 || height < 1 || width > kMostBakeSide || height > kMostBakeSide)
+        fail(Status::InvalidArgument, "a bake of ", width, " x ", height, " texels");
+    std::vector<Sampler> samplers;
+    samplers.reserve(textures.size());
+    for (const Texture& texture : textures) {
+        job.check();
+        samplers.emplace_back(texture, glm::dvec3(0), kMostBakeSide);
+    }
+    // A picture of the same size that lies on the whole: its texels as they are
+    const std::array<double, 6> identity = Texture().to_picture;
+    std::vector<uint8_t> same;
+    for (size_t i = 0; i < textures.size(); ++i)
+        same.push_back(static_cast<uint8_t>(textures[i].to_picture == identity &&
+                                            samplers[i].width() == width &&
+                                            samplers[i].height() == height));
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.linear = true;
+    image.pixels.resize(4 * image.size());
+    parallel_for(static_cast<size_t>(height), [&](size_t row) {
+        job.check();
+        std::vector<Color> done(steps.size());
+        float* to = image.pixels.data() + 4 * row * static_cast<size_t>(width);
+        const double v = 1 - (static_cast<double>(row) + 0.5) / height;
+        for (int column = 0; column < width; ++column, to += 4) {
+            const glm::dvec2 uv((column + 0.5) / width, v);
+            for (size_t i = 0; i < steps.size(); ++i) {
+                const size_t which = steps[i].args[0];
+                if (steps[i].op != BakeOp::Texel)
+                    done[i] = result(steps[i], done);
+                else if (same[which] != 0)
+                    done[i] = samplers[which].at(column, static_cast<int>(row));
+                else
+                    done[i] = samplers[which].texel(uv);
+            }
+            for (int c = 0; c < 3; ++c)
+                to[c] = static_cast<float>(finite(done.back()[c]));
+            to[3] = 1;
+        }
+    });
+    return image;
+}
+
+PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
+                        int width, int height, ColorSpace space, const std::string& name,
+                        const Job& job) {
+    static Remembered remembered;
+    const Hash key = hash_of_bake(steps, textures, width, height, space);
+    PicturePtr made = remembered.find(key);
+    if (made == nullptr) {
+        Image image = bake(steps, textures, width, height, job);
+        if (space == ColorSpace::Linear)
+            image.linear = false;  // numbers that nothing is to encode
+        made = make_picture(png_bytes(image), space, name);
+        remembered.add(key, made);
+    }
+    if (made->name == name)
+        return made;
+    auto renamed = std::make_shared<Picture>(*made);
+    renamed->name = name;
+    return renamed;
+}
+
+}  // namespace lodestone::image

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/decoded_texels.h"
+
+#include "image/texture_sampler.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+
+namespace lodestone::image {
+namespace {
+
+constexpr size_t kLargePicture = size_t{1} << 24u;  // pixels: 256 MiB while it is decoded
+
+/// Averages blocks of `step` x `step` texels, colors weighted by alpha.
+void reduce(Image& image, int step) {
+    Image small;
+    small.width = (image.width + step - 1) / step;
+    small.height = (image.height + step - 1) / step;
+    small.linear = image.linear;
+    small.pixels.resize(4 * small.size());
+    for (int y = 0; y < small.height; ++y) {
+        for (int x = 0; x < small.width; ++x) {
+            glm::dvec4 sum(0.0);
+            glm::dvec3 plain(0.0);
+            int count = 0;
+            for (int j = y * step; j < std::min((y + 1) * step, image.height); ++j) {
+                for (int i = x * step; i < std::min((x + 1) * step, image.width); ++i, ++count) {
+                    const float* from =
+                        image.pixels.data() +
+                        4 * (static_cast<size_t>(j) * static_cast<size_t>(image.width) +
+                             static_cast<size_t>(i));
+                    const glm::dvec3 color(from[0], from[1], from[2]);
+                    const auto alpha = static_cast<double>(from[3]);
+                    sum += glm::dvec4(alpha * color, alpha);
+                    plain += color;
+                }
+            }
+            const glm::dvec3 color = sum.w > 0 ? glm::dvec3(sum) / sum.w : plain / double(count);
+            float* to = small.pixels.data() +
+                        4 * (static_cast<size_t>(y) * static_cast<size_t>(small.width) +
+                             static_cast<size_t>(x));
+            for (int c = 0; c < 3; ++c)
+                to[c] = static_cast<float>(color[c]);
+            to[3] = static_cast<float>(sum.w / count);
+        }
+    }
+    image = std::move(small);
+}
+
+TexelsPtr reduced(Image&& image, int most_side) {
+    auto out = std::make_shared<Texels>();
+    const int step = (std::max(image.width, image.height) + most_side - 1) / most_side;
+    if (step > 1) {
+        reduce(image, step);
+        out->reduced = true;
+    }
+    out->width = image.width;
+    out->height = image.height;
+    out->rgba = std::move(image.pixels);
+    out->least = glm::dvec4(out->rgba.empty() ? 0.0 : 1e30);
+    for (size_t i = 0; i < out->rgba.size(); i += 4)
+        out->least = glm::min(out->least, glm::dvec4(out->rgba[i], out->rgba[i + 1],
+                                                     out->rgba[i + 2], out->rgba[i + 3]));
+    return out;
+}
+
+}  // namespace
+
+TexelsPtr texels_of(const Picture& picture, int most_side) {
+    return reduced(decoded(picture), most_side);
+}
+
+TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side) {
+    Image image = decoded(*texture.picture);
+    for (size_t i = 0; i < image.pixels.size(); i += 4) {
+        float* const at = image.pixels.data() + i;
+        const double number = number_of(texture, {at[0], at[1], at[2], at[3]});
+        std::fill(at, at + 3, number >= cutoff ? 1.0f : 0.0f);
+        at[3] = 1;  // equal weights
+    }
+    TexelsPtr out = reduced(std::move(image), most_side);
+    auto gray = std::make_shared<Texels>(*out);
+    for (size_t i = 0; i < gray->rgba.size(); i += 4)
+        gray->rgba[i + 3] = gray->rgba[i];
+    gray->least = glm::dvec4(gray->least.x);
+    return gray;
+}
+
+template <typename Make>
+TexelsPtr TexelCache::find_or_make(Hash key, const Picture& picture, const Make& make) {
+    std::shared_ptr<Entry> entry;
+    {
+        const std::lock_guard lock(mutex_);
+        std::shared_ptr<Entry>& known = entries_[key];
+        if (known && known->texels) {
+            by_use_.splice(by_use_.begin(), by_use_, known->place);
+            return known->texels;
+        }
+        if (!known)
+            known = std::make_shared<Entry>();
+        entry = known;
+    }
+    const std::lock_guard making(entry->making);
+    {
+        const std::lock_guard lock(mutex_);
+        if (entry->texels)
+            return entry->texels;
+    }
+    const bool large = static_cast<size_t>(std::max(0, picture.width)) *
+                           static_cast<size_t>(std::max(0, picture.height)) >
+                       kLargePicture;
+    std::unique_lock one(one_large_, std::defer_lock);
+    if (large)
+        one.lock();
+    TexelsPtr made = make();
+    const std::lock_guard lock(mutex_);
+    entry->texels = made;
+    by_use_.push_front(key);
+    entry->place = by_use_.begin();
+    bytes_ += made->rgba.size() * sizeof(float);
+    while (bytes_ > most_bytes_ && by_use_.size() > 1) {
+        const auto last = entries_.find(by_use_.back());
+        bytes_ -= last->second->texels->rgba.size() * sizeof(float);
+        entries_.erase(last);
+        by_use_.pop_back();
+    }
+    return made;
+}
+
+TexelsPtr TexelCache::of(const Texture& texture) {
+    if (!texture || texture.picture->bytes.empty())
+        return nullptr;
+    const Picture& picture = *texture.picture;
+    return find_or_make(Hasher().value(picture.hash).result(), picture,
+                        [&] { return texels_of(picture, most_side_); });
+}
+
+TexelsPtr TexelCache::at_least(const Texture& texture, double cutoff) {
+    if (!texture || texture.picture->bytes.empty())
+        return nullptr;
+    const Picture& picture = *texture.picture;
+    const Hash key = Hasher()
+                         .value(picture.hash)
+                         .value(texture.channel)
+                         .value(texture.scale.x)
+                         .value(texture.offset.x)
+                         .value(cutoff)
+                         .result();
+    return find_or_make(key, picture, [&] { return texels_at_least(texture, cutoff, most_side_); });
+}
+
+size_t TexelCache::bytes() const {
+    const std::lock_guard lock(mutex_);
+    return bytes_;
+}
+
+}  // namespace lodestone::image

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ray/mesh_cover.h"
+
+#include <bit>
+
+namespace lodestone::ray {
+namespace {
+
+constexpr double kLeastShown = 1.0 / 64;  // nobody sees less
+// What is there is looked up a little inside of the triangle: on the very edge of a card a picture
+// that repeats shows its other side.
+constexpr double kInside = 1.0 / 256;
+
+/// Uniform in [0, 1), by the point alone.
+double chance(uint32_t triangle, double u, double v) {
+    const auto bits = [](double value) {
+        return uint64_t{std::bit_cast<uint32_t>(static_cast<float>(value))};
+    };
+    uint64_t x = (bits(u) << 32u | bits(v)) + triangle * 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 32u)) * 0xd6e8feb86659fd93u;
+    x = (x ^ (x >> 29u)) * 0xa0761d6478bd642fu;
+    return static_cast<double>((x ^ (x >> 32u)) >> 11u) * 0x1p-53;
+}
+
+}  // namespace
+
+Cover::Cover(const Mesh& mesh, SkinPtr skin) : skin_(std::move(skin)) {
+    mesh_.uvs = mesh.uvs;
+    mesh_.colors = mesh.colors;
+    mesh_.triangles = mesh.triangles;
+    mesh_.slots = mesh.slots;
+}
+
+bool Cover::stops(uint32_t triangle, double u, double v) const {
+    const double alpha = skin_->alpha(mesh_, triangle, u, v);
+    return alpha >= 1 || (alpha > 0 && alpha > chance(triangle, u, v));
+}
+
+bool Cover::shows(uint32_t triangle, double u, double v) const {
+    return skin_->alpha(mesh_, triangle, u + kInside * (1.0 / 3 - u),
+                        v + kInside * (1.0 / 3 - v)) >= kLeastShown;
+}
+
+std::optional<double> Cover::even_alpha(uint32_t triangle) const {
+    return skin_->even_alpha(mesh_, mesh_.slot(triangle));
+}
+
+}  // namespace lodestone::ray

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ray/mesh_scene.h"
+
+#include "base/maths.h"
+#include "ray/closest_tree.h"
+#include "ray/embree_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+namespace lodestone::ray {
+namespace {
+
+/// Everything is scaled into the unit sphere; rays start at most on a sphere a little larger.
+constexpr double kRimRadius = 1.0625;
+/// Squares of lengths this near to 1 are 1 but for rounding.
+constexpr double kUnitLength = 1e-12;
+
+}  // namespace
+
+bool available(std::string* reason) {
+    if (reason != nullptr)
+        *reason = why_no_embree();
+    return why_no_embree().empty();
+}
+
+struct Scene::Data {
+    glm::dvec3 center{0.0};  // local = (point - center) * scale
+    double scale = 1;
+    std::vector<glm::vec3> positions;  // local, and one more for Embree's wide loads
+    std::vector<Triangle> triangles;
+    std::unique_ptr<Cover> cover;  // null: opaque
+    Uses uses = Uses::Everything;
+    std::optional<EmbreeTree> tree;  // none: nothing can be hit
+    std::once_flag once;
+    std::optional<ClosestTree> boxes;  // made when the first closest point is asked for
+
+    glm::dvec3 corner(uint32_t triangle, int i) const {
+        return glm::dvec3(positions[triangles[triangle][i]]);
+    }
+
+    /// The part of a ray that can hit, in the local frame.
+    struct Part {
+        glm::dvec3 origin;
+        glm::dvec3 direction;  // unit
+        double skipped = 0;    // local length from the ray's origin to this one
+        double far = 0;
+        double unit = 1;  // local length of t = 1
+    };
+
+    /// False when the ray cannot hit. Far origins are brought to the rim in double precision.
+    bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far, Part& part) const {
+        if (uses == Uses::ClosestPoints)
+            fail(Status::Internal, "a scene for closest points was asked for a hit");
+        part.direction = direction;
+        part.unit = scale;
+        const double square_length = glm::dot(direction, direction);
+        if (!(std::abs(square_length - 1) <= kUnitLength)) {
+            const double length = glm::length(direction);
+            if (!(length > 0) || !std::isfinite(length))
+                return false;
+            part.direction = direction / length;
+            part.unit = length * scale;
+        }
+        if (!tree || !(far >= 0))
+            return false;
+        part.origin = (origin - center) * scale;
+        part.far = far * part.unit;
+        const double square = glm::dot(part.origin, part.origin);
+        if (square <= kRimRadius * kRimRadius)
+            return true;
+        const double along = glm::dot(part.origin, part.direction);
+        if (!(along <= 0) || !std::isfinite(square))
+            return false;
+        const glm::dvec3 foot = part.origin - along * part.direction;
+        const double rest = kRimRadius * kRimRadius - glm::dot(foot, foot);
+        if (!(rest >= 0))
+            return false;
+        const double half = std::sqrt(rest);
+        part.skipped = -along - half;
+        part.origin = foot - half * part.direction;
+        part.far -= part.skipped;
+        return part.far >= 0;
+    }
+};
+
+Scene::Scene(const Mesh& mesh, SkinPtr skin, Uses uses) : data_(std::make_unique<Data>()) {
+    require_embree();
+    check(mesh);
+    Data& data = *data_;
+    data.uses = uses;
+    data.triangles = mesh.triangles;
+    Box3 box;
+    for (const Triangle& t : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            if (finite(mesh.positions[t[corner]]))
+                box.add(glm::dvec3(mesh.positions[t[corner]]));
+        }
+    }
+    if (box.empty())
+        return;
+    data.center = box.center();
+    const double radius = 0.5 * glm::length(box.size());
+    if (radius > 0) {
+        // Scaling by a power of two is exact.
+        int exponent = 0;
+        std::frexp(radius, &exponent);
+        data.scale = std::ldexp(1.0, -exponent);
+    }
+    data.positions.reserve(mesh.positions.size() + 1);
+    for (const glm::vec3& position : mesh.positions) {
+        // What is not in the unit sphere is not finite or no triangle's; Embree skips NaN.
+        const glm::dvec3 local = (glm::dvec3(position) - data.center) * data.scale;
+        if (glm::dot(local, local) < 2)
+            data.positions.emplace_back(local);
+        else
+            data.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
+    }
+    data.positions.emplace_back(0.0f);
+    if (skin && skin->see_through(mesh))
+        data.cover = std::make_unique<Cover>(mesh, std::move(skin));
+    if (uses == Uses::Everything)
+        data.tree.emplace(data.positions, data.triangles, data.cover.get());
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+size_t Scene::triangles() const {
+    return data_->triangles.size();
+}
+
+bool Scene::see_through() const {
+    return data_->cover != nullptr;
+}
+
+bool Scene::stops(uint32_t triangle, double u, double v) const {
+    return !data_->cover || data_->cover->stops(triangle, u, v);
+}
+
+bool Scene::shows(uint32_t triangle, double u, double v) const {
+    return !data_->cover || data_->cover->shows(triangle, u, v);
+}
+
+std::optional<double> Scene::even_alpha(uint32_t triangle) const {
+    return data_->cover ? data_->cover->even_alpha(triangle) : 1;
+}
+
+Hit Scene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+    const Data& data = *data_;
+    Hit out;
+    Data::Part part;
+    if (!data.clip(origin, direction, far, part))
+        return out;
+    const EmbreeTree::Found found = data.tree->first_hit(part.origin, part.direction, part.far);
+    if (found.triangle == kNoTriangle)
+        return out;
+    out.hit = true;
+    out.triangle = found.triangle;
+    out.u = std::clamp(found.u, 0.0, 1.0);
+    out.v = std::clamp(found.v, 0.0, 1.0 - out.u);
+    out.t = (part.skipped + found.t) / part.unit;
+    const glm::dvec3 local = (1 - out.u - out.v) * data.corner(out.triangle, 0) +
+                             out.u * data.corner(out.triangle, 1) +
+                             out.v * data.corner(out.triangle, 2);
+    out.point = data.center + local / data.scale;
+    return out;
+}
+
+bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+    const Data& data = *data_;
+    Data::Part part;
+    return data.clip(origin, direction, far, part) &&
+           data.tree->occluded(part.origin, part.direction, part.far);
+}
+
+bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
+                     Blockers& blockers) const {
+    const Data& data = *data_;
+    Data::Part part;
+    if (!data.clip(origin, direction, std::numeric_limits<double>::infinity(), part))
+        return false;
+    if (data.cover)
+        return data.tree->occluded(part.origin, part.direction, part.far);
+    if (blockers.block(glm::vec3(part.origin), glm::vec3(part.direction)))
+        return true;
+    const uint32_t by = data.tree->blocker(part.origin, part.direction);
+    if (by == kNoTriangle)
+        return false;
+    const Triangle& t = data.triangles[by];
+    blockers.add({data.positions[t.x], data.positions[t.y], data.positions[t.z]});
+    return true;
+}
+
+size_t Scene::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                      std::span<uint32_t> list) const {
+    const Data& data = *data_;
+    Data::Part part;
+    if (list.empty() || !data.clip(origin, direction, far, part))
+        return 0;
+    return data.tree->crossed(part.origin, part.direction, part.far, list);
+}
+
+Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
+                             double enough) const {
+    Data& data = *data_;
+    Closest out;
+    if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
+        return out;
+    std::function<bool(uint32_t, double, double)> shown;
+    if (data.cover)
+        shown = [&](uint32_t triangle, double u, double v) {
+            return data.cover->shows(triangle, u, v);
+        };
+    ClosestSearch search{data.positions, data.triangles, (point - data.center) * data.scale,
+                         data.cover ? &shown : nullptr};
+    const double far =
+        std::max({std::abs(search.point.x), std::abs(search.point.y), std::abs(search.point.z)});
+    if (perhaps < data.triangles.size())
+        search.visit(perhaps);
+    // Squares of larger coordinates do not fit single precision.
+    constexpr double kFarthest = 1e15;
+    if (far < kFarthest) {
+        // On this thread alone: one that waits for others could be given work that comes back here.
+        std::call_once(data.once, [&] {
+            // What covers may show one of two triangles in one place.
+            data.boxes.emplace(data.positions, data.triangles, data.cover != nullptr);
+        });
+        // What the radius alone keeps near is not found yet.
+        if (search.triangle == kNoTriangle && radius <= enough)
+            enough = 0;
+        data.boxes->search(search, std::min(radius * data.scale, std::sqrt(search.square)),
+                           enough * data.scale);
+    } else {
+        for (uint32_t i = 0; i < data.triangles.size(); ++i)
+            search.visit(i);
+    }
+    const double distance = std::sqrt(search.square) / data.scale;
+    if (search.triangle == kNoTriangle || distance > radius)
+        return out;
+    out.distance = distance;
+    out.triangle = search.triangle;
+    out.u = search.where.u;
+    out.v = search.where.v;
+    out.point = data.center + search.where.point / data.scale;
+    return out;
+}
+
+}  // namespace lodestone::ray

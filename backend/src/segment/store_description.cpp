@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/store_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace lodestone::segment {
+namespace {
+
+using Json = nlohmann::json;
+
+Json out(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json out(const glm::dmat3& m) {
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            rows.push_back(m[column][row]);
+    }
+    return rows;
+}
+
+Json out(const Affine& transform) {
+    double rows[12];
+    transform.to_rows(rows);
+    return Json(std::vector<double>(rows, rows + 12));
+}
+
+/// Pictures in order of first use, each once.
+class PictureList {
+public:
+    size_t index_of(const PicturePtr& picture) {
+        const auto [at, fresh] = index_.try_emplace(picture->hash, index_.size());
+        if (fresh)
+            json_.push_back(
+                {{"name", picture->name},
+                 {"hash", hex16(picture->hash)},
+                 {"format", suffix_of(picture->format)},
+                 {"linear", picture->space == ColorSpace::Linear},
+                 {"width", picture->width},
+                 {"height", picture->height},
+                 {"mean", {picture->mean.x, picture->mean.y, picture->mean.z, picture->mean.w}}});
+        return at->second;
+    }
+    Json take() { return std::move(json_); }
+
+private:
+    std::map<Hash, size_t> index_;
+    Json json_ = Json::array();
+};
+
+Json out(const Texture& t, PictureList& pictures) {
+    return {{"picture", pictures.index_of(t.picture)},
+            {"channel", static_cast<int>(t.channel)},
+            {"extension", static_cast<int>(t.extension)},
+            {"closest", t.interpolation == Interpolation::Closest},
+            {"to_picture", t.to_picture},
+            {"scale", out(t.scale)},
+            {"offset", out(t.offset)}};
+}
+
+Json out(const Material& m, PictureList& pictures) {
+    Json json = {{"name", m.name},           {"base_color", out(m.base_color)},
+                 {"roughness", m.roughness}, {"metallic", m.metallic},
+                 {"specular", m.specular},   {"emission", out(m.emission)}};
+    // The rest is written where it says something: most materials have none of it.
+    const Material standard;
+    if (m.vertex_colors)
+        json["vertex_colors"] = true;
+    if (m.alpha_mode != AlphaMode::Opaque) {
+        json["alpha_mode"] = static_cast<int>(m.alpha_mode);
+        json["alpha_cutoff"] = m.alpha_cutoff;
+    }
+    const auto number = [&](const char* key, double value, double usual) {
+        if (value != usual)
+            json[key] = value;
+    };
+    number("alpha", m.alpha, standard.alpha);
+    number("transmission", m.transmission, standard.transmission);
+    number("ior", m.ior, standard.ior);
+    number("clearcoat", m.clearcoat, standard.clearcoat);
+    number("clearcoat_roughness", m.clearcoat_roughness, standard.clearcoat_roughness);
+    number("normal_strength", m.normal_strength, standard.normal_strength);
+    number("bump_distance", m.bump_distance, standard.bump_distance);
+    const std::pair<const char*, const Texture&> textures[] = {
+        {"base_color_texture", m.base_color_texture},
+        {"roughness_texture", m.roughness_texture},
+        {"metallic_texture", m.metallic_texture},
+        {"emission_texture", m.emission_texture},
+        {"alpha_texture", m.alpha_texture},
+        {"normal_texture", m.normal_texture},
+        {"bump_texture", m.bump_texture},
+        {"mix_texture", m.mix_texture}};
+    for (const auto& [key, texture] : textures) {
+        if (texture)
+            json[key] = out(texture, pictures);
+    }
+    if (m.other) {
+        json["other"] = out(*m.other, pictures);
+        json["mix"] = m.mix;
+    }
+    return json;
+}
+
+Json out(const Attributes& a) {
+    return {{"visible_area", a.visible_area},
+            {"surface_area", a.surface_area},
+            {"centroid", out(a.centroid)},
+            {"moments", out(a.moments)},
+            {"axes", out(a.axes)},
+            {"normal_moment", a.normal_moment},
+            {"color", out(a.color)},
+            {"roughness", a.roughness},
+            {"metallic", a.metallic},
+            {"specular", a.specular},
+            {"emission", out(a.emission)},
+            {"relative_error", a.relative_error},
+            {"rays", a.rays}};
+}
+
+Json out(const Primitive& p) {
+    return {{"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
+}
+
+Json out(const Representation& r) {
+    const Summary& s = r.summary;
+    Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
+                 {"max_error", s.max_error},      {"hash", hex16(s.hash)},
+                 {"center", out(s.bound.center)}, {"radius", s.bound.radius},
+                 {"triangles", s.cost.triangles}, {"bytes", s.cost.bytes},
+                 {"materials", r.materials}};
+    if (!s.bound.empty()) {
+        json["low"] = out(s.bound.box.low);
+        json["high"] = out(s.bound.box.high);
+    }
+    if (s.sealed)
+        json["sealed"] = true;
+    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
+        json["primitive"] = out(r.primitive());
+    } else if (s.kind == Kind::Composite) {
+        Json solids = Json::array();
+        for (const Solid& solid : r.composite().solids) {
+            solids.push_back(out(solid.primitive));
+            solids.back()["box"] = solid.box;
+            solids.back()["slot"] = solid.slot;
+        }
+        json["solids"] = std::move(solids);
+    } else if (s.kind == Kind::Assembly) {
+        Json placements = Json::array();
+        for (const Placement& placement : r.assembly().placements) {
+            placements.push_back({{"object", placement.object},
+                                  {"transform", out(placement.transform)},
+                                  {"name", placement.name}});
+            if (placement.hidden != 0)
+                placements.back()["hidden"] = placement.hidden;
+            if (placement.importance != 1)
+                placements.back()["importance"] = placement.importance;
+            if (placement.coarsest != kAnyLevel)
+                placements.back()["coarsest"] = placement.coarsest;
+            if (placement.finest != 0)
+                placements.back()["finest"] = placement.finest;
+        }
+        json["placements"] = std::move(placements);
+    }
+    return json;
+}
+
+Json out(const Light& l) {
+    Json json = {
+        {"name", l.name},    {"kind", name_of(l.kind)},     {"color", out(l.color)},
+        {"power", l.power},  {"position", out(l.position)}, {"direction", out(l.direction)},
+        {"shadow", l.shadow}};
+    if (l.kind == LightKind::Sun)
+        json["angle"] = l.angle;
+    if (l.kind == LightKind::Point || l.kind == LightKind::Spot)
+        json["radius"] = l.radius;
+    if (l.kind == LightKind::Spot) {
+        json["spot_size"] = l.spot_size;
+        json["spot_blend"] = l.spot_blend;
+    }
+    if (l.kind == LightKind::Area) {
+        json["edge_u"] = out(l.edge_u);
+        json["edge_v"] = out(l.edge_v);
+        json["round"] = l.round;
+        json["spread"] = l.spread;
+    }
+    return json;
+}
+
+Json out(const Camera& c) {
+    return {{"name", c.name},
+            {"orthographic", c.orthographic},
+            {"position", out(c.position)},
+            {"direction", out(c.direction)},
+            {"right", out(c.right)},
+            {"up", out(c.up)},
+            {"near_clip", c.near_clip},
+            {"focus_distance", c.focus_distance},
+            {"aperture", c.aperture}};
+}
+
+/// Our own description of a model. Object indices are positions in `order`.
+Json describe(const Model& model) {
+    Json json = {{"format", kStoreFormat},
+                 {"version", LODESTONE_VERSION},
+                 {"root", model.root == kNoObject ? Json() : Json(model.root)}};
+    Json& materials = json["materials"] = Json::array();
+    PictureList pictures;
+    for (const Material& material : model.materials)
+        materials.push_back(out(material, pictures));
+    Json& objects = json["objects"] = Json::array();
+    for (const Object& object : model.objects) {
+        Json one = {{"uid", object.uid},
+                    {"name", object.name},
+                    {"deforms", object.deforms},
+                    {"role", object.role == Role::Environment ? "environment"
+                             : object.role == Role::Automatic ? "automatic"
+                                                              : "ordinary"},
+                    {"source_hash", hex16(object.source_hash)},
+                    {"build_hash", hex16(object.build_hash)}};
+        if (object.of_parts)
+            one["of_parts"] = true;
+        if (object.bind_hash != 0)
+            one["bind_hash"] = hex16(object.bind_hash);
+        if (object.attributes)
+            one["attributes"] = out(*object.attributes);
+        Json& representations = one["representations"] = Json::array();
+        for (const Representation& representation : object.representations)
+            representations.push_back(out(representation));
+        objects.push_back(std::move(one));
+    }
+    json["lights"] = Json::array();
+    for (const Light& light : model.lights)
+        json["lights"].push_back(out(light));
+    json["cameras"] = Json::array();
+    for (const Camera& camera : model.cameras)
+        json["cameras"].push_back(out(camera));
+    json["world"] = {{"color", out(model.world.color)}, {"transparent", model.world.transparent}};
+    if (model.world.environment) {
+        json["world"]["environment"] = pictures.index_of(model.world.environment);
+        json["world"]["turn"] = out(model.world.environment_turn);
+        json["world"]["strength"] = out(model.world.environment_strength);
+    }
+    json["pictures"] = pictures.take();
+    return json;
+}
+
+}  // namespace
+
+std::string description_text(const Model& model) {
+    // Names may be any bytes; JSON holds UTF-8.
+    return describe(model).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace lodestone::segment

@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/store_json.h"
+
+#include "segment/tile_tree.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lodestone::segment {
+namespace {
+
+using Json = nlohmann::json;
+
+double number(const Json& json, const char* key) {
+    const double value = json.at(key).get<double>();
+    if (!std::isfinite(value))
+        fail(Status::BadFile, "'", key, "' is not a finite number");
+    return value;
+}
+
+template <typename Integer>
+Integer integer(const Json& json, const char* key) {
+    const Json& value = json.at(key);
+    const auto in_range = [](auto found) { return std::in_range<Integer>(found); };
+    if (!value.is_number_integer() ||
+        !(value.is_number_unsigned() ? in_range(value.get<uint64_t>())
+                                     : in_range(value.get<int64_t>())))
+        fail(Status::BadFile, "'", key, "' is not a whole number in its range");
+    return value.get<Integer>();
+}
+
+std::vector<double> numbers(const Json& json, const char* key, size_t count) {
+    auto values = json.at(key).get<std::vector<double>>();
+    if (values.size() != count)
+        fail(Status::BadFile, "'", key, "' has ", values.size(), " numbers; ", count, " expected");
+    for (const double value : values) {
+        if (!std::isfinite(value))
+            fail(Status::BadFile, "'", key, "' holds a number that is not finite");
+    }
+    return values;
+}
+
+glm::dvec3 vector(const Json& json, const char* key) {
+    const std::vector<double> v = numbers(json, key, 3);
+    return {v[0], v[1], v[2]};
+}
+
+glm::dmat3 matrix(const Json& json, const char* key) {
+    const std::vector<double> v = numbers(json, key, 9);
+    return {v[0], v[3], v[6], v[1], v[4], v[7], v[2], v[5], v[8]};
+}
+
+Hash hash(const Json& json, const char* key) {
+    const auto word = json.at(key).get<std::string>();
+    if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
+        fail(Status::BadFile, "'", key, "' is not 16 hexadecimal digits");
+    return std::stoull(word, nullptr, 16);
+}
+
+double number_or(const Json& json, const char* key, double usual) {
+    return json.contains(key) ? number(json, key) : usual;
+}
+
+PicturePtr picture(const Json& json) {
+    auto p = std::make_shared<Picture>();
+    p->name = json.at("name").get<std::string>();
+    p->hash = hash(json, "hash");
+    const auto format = json.at("format").get<std::string>();
+    for (const PictureFormat known :
+         {PictureFormat::Png, PictureFormat::Jpeg, PictureFormat::Exr}) {
+        if (format == suffix_of(known))
+            p->format = known;
+    }
+    if (format != suffix_of(p->format))
+        fail(Status::BadFile, "a picture has the unknown format '", format, "'");
+    p->space = json.at("linear").get<bool>() ? ColorSpace::Linear : ColorSpace::Srgb;
+    p->width = integer<int>(json, "width");
+    p->height = integer<int>(json, "height");
+    if (p->width < 1 || p->height < 1)
+        fail(Status::BadFile, "a picture has no pixels");
+    const std::vector<double> mean = numbers(json, "mean", 4);
+    p->mean = {mean[0], mean[1], mean[2], mean[3]};
+    return p;
+}
+
+template <typename Enum>
+Enum choice(const Json& json, const char* key, Enum last) {
+    const int value = integer<int>(json, key);
+    if (value < 0 || value > static_cast<int>(last))
+        fail(Status::BadFile, "'", key, "' is ", value);
+    return static_cast<Enum>(value);
+}
+
+using Pictures = std::vector<PicturePtr>;
+
+Texture texture(const Json& material, const char* key, const Pictures& pictures) {
+    Texture t;
+    if (!material.contains(key))
+        return t;
+    const Json& json = material.at(key);
+    const auto index = integer<size_t>(json, "picture");
+    if (index >= pictures.size())
+        fail(Status::BadFile, "a texture names picture ", index, " of ", pictures.size());
+    t.picture = pictures[index];
+    t.channel = choice(json, "channel", Channel::Luma);
+    t.extension = choice(json, "extension", Extension::Mirror);
+    t.interpolation =
+        json.at("closest").get<bool>() ? Interpolation::Closest : Interpolation::Linear;
+    const std::vector<double> mapping = numbers(json, "to_picture", 6);
+    std::copy(mapping.begin(), mapping.end(), t.to_picture.begin());
+    t.scale = vector(json, "scale");
+    t.offset = vector(json, "offset");
+    return t;
+}
+
+Material material(const Json& json, const Pictures& pictures, int depth = 0) {
+    if (depth > kMostMixtures)
+        fail(Status::BadFile, "a material is mixed more than ", kMostMixtures, " times");
+    Material m;
+    m.name = json.at("name").get<std::string>();
+    m.base_color = vector(json, "base_color");
+    m.roughness = number(json, "roughness");
+    m.metallic = number(json, "metallic");
+    m.specular = number(json, "specular");
+    m.emission = vector(json, "emission");
+    m.base_color_texture = texture(json, "base_color_texture", pictures);
+    m.roughness_texture = texture(json, "roughness_texture", pictures);
+    m.metallic_texture = texture(json, "metallic_texture", pictures);
+    m.emission_texture = texture(json, "emission_texture", pictures);
+    m.vertex_colors = json.value("vertex_colors", false);
+    m.alpha = number_or(json, "alpha", m.alpha);
+    m.alpha_texture = texture(json, "alpha_texture", pictures);
+    if (json.contains("alpha_mode")) {
+        m.alpha_mode = choice(json, "alpha_mode", AlphaMode::Clip);
+        m.alpha_cutoff = number(json, "alpha_cutoff");
+    }
+    m.transmission = number_or(json, "transmission", m.transmission);
+    m.ior = number_or(json, "ior", m.ior);
+    m.clearcoat = number_or(json, "clearcoat", m.clearcoat);
+    m.clearcoat_roughness = number_or(json, "clearcoat_roughness", m.clearcoat_roughness);
+    m.normal_texture = texture(json, "normal_texture", pictures);
+    m.normal_strength = number_or(json, "normal_strength", m.normal_strength);
+    m.bump_texture = texture(json, "bump_texture", pictures);
+    m.bump_distance = number_or(json, "bump_distance", m.bump_distance);
+    if (json.contains("other")) {
+        m.other = std::make_shared<Material>(material(json.at("other"), pictures, depth + 1));
+        m.mix = number(json, "mix");
+        m.mix_texture = texture(json, "mix_texture", pictures);
+    }
+    clamp_numbers(m);
+    return m;
+}
+
+Attributes attributes(const Json& json) {
+    Attributes a;
+    a.visible_area = number(json, "visible_area");
+    a.surface_area = number(json, "surface_area");
+    a.centroid = vector(json, "centroid");
+    a.moments = matrix(json, "moments");
+    a.axes = matrix(json, "axes");
+    a.normal_moment = number(json, "normal_moment");
+    a.color = vector(json, "color");
+    a.roughness = number(json, "roughness");
+    a.metallic = number(json, "metallic");
+    a.specular = number(json, "specular");
+    a.emission = vector(json, "emission");
+    a.relative_error = number(json, "relative_error");
+    a.rays = integer<uint64_t>(json, "rays");
+    return a;
+}
+
+std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) {
+    auto out = std::make_shared<Assembly>();
+    for (const Json& one : json.at("placements")) {
+        Placement placement;
+        placement.object = integer<uint32_t>(one, "object");
+        if (placement.object >= object_count)
+            fail(Status::BadFile, "a placement names object ", placement.object, " of ",
+                 object_count);
+        placement.transform = Affine::from_rows(numbers(one, "transform", 12).data());
+        placement.name = one.at("name").get<std::string>();
+        if (one.contains("hidden")) {
+            const auto hidden = integer<uint32_t>(one, "hidden");
+            if (hidden > kAllRays)
+                fail(Status::BadFile, "'", placement.name, "' is hidden from ray classes ", hidden);
+            placement.hidden = static_cast<RayMask>(hidden);
+        }
+        if (one.contains("importance")) {
+            placement.importance = number(one, "importance");
+            if (!(placement.importance >= 1 / kMostImportance &&
+                  placement.importance <= kMostImportance))
+                fail(Status::BadFile, "'", placement.name, "' has importance ",
+                     placement.importance);
+        }
+        if (one.contains("coarsest"))
+            placement.coarsest = integer<uint32_t>(one, "coarsest");
+        if (one.contains("finest"))
+            placement.finest = integer<uint32_t>(one, "finest");
+        out->placements.push_back(std::move(placement));
+    }
+    return out;
+}
+
+Primitive primitive(const Json& json, Kind kind) {
+    const Primitive out{vector(json, "center"), matrix(json, "axes"), vector(json, "half_size")};
+    if (!(glm::min(out.half_size.x, glm::min(out.half_size.y, out.half_size.z)) > 0))
+        fail(Status::BadFile, "a ", name_of(kind), " has no size");
+    return out;
+}
+
+std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
+    constexpr size_t kMostSolids = 1024;  // more are no file of ours
+    if (!json.is_array() || json.empty() || json.size() > kMostSolids)
+        fail(Status::BadFile, "a composite has ", json.size(), " solids");
+    auto out = std::make_shared<Composite>();
+    for (const Json& one : json) {
+        Solid solid;
+        solid.box = one.at("box").get<bool>();
+        solid.primitive = primitive(one, solid.box ? Kind::Box : Kind::Ellipsoid);
+        const auto slot = integer<uint32_t>(one, "slot");
+        if (slot >= slots)
+            fail(Status::BadFile, "a solid shows slot ", slot, " of ", slots);
+        solid.slot = static_cast<uint16_t>(slot);
+        out->solids.push_back(solid);
+    }
+    return out;
+}
+
+Representation representation(const Json& json, size_t object_count, size_t material_count) {
+    Representation r;
+    Summary& s = r.summary;
+    s.kind = kind_named(json.at("kind").get<std::string>());
+    s.error = number(json, "error");
+    s.max_error = number(json, "max_error");
+    if (s.error < 0 || s.max_error < 0)
+        fail(Status::BadFile, "a representation has a negative error");
+    s.hash = hash(json, "hash");
+    s.sealed = json.value("sealed", false);
+    s.bound.center = vector(json, "center");
+    s.bound.radius = number(json, "radius");
+    if (json.contains("low")) {
+        s.bound.box.low = vector(json, "low");
+        s.bound.box.high = vector(json, "high");
+    }
+    s.cost.triangles = integer<uint64_t>(json, "triangles");
+    s.cost.bytes = integer<uint64_t>(json, "bytes");
+    r.materials = json.at("materials").get<std::vector<uint32_t>>();
+    for (const uint32_t index : r.materials) {
+        if (index >= material_count)
+            fail(Status::BadFile, "a representation names material ", index, " of ",
+                 material_count);
+    }
+    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
+        r.payload = primitive(json.at("primitive"), s.kind);
+    } else if (s.kind == Kind::Composite) {
+        r.payload = composite(json.at("solids"), r.materials.size());
+    } else if (s.kind == Kind::Assembly) {
+        r.payload = assembly(json, object_count);
+    }
+    return r;
+}
+
+Object object(const Json& json, size_t object_count, size_t material_count) {
+    Object o;
+    o.uid = json.at("uid").get<std::string>();
+    o.name = json.at("name").get<std::string>();
+    o.deforms = json.at("deforms").get<bool>();
+    o.role = json.at("role") == "environment" ? Role::Environment
+             : json.at("role") == "automatic" ? Role::Automatic
+                                              : Role::Ordinary;
+    o.source_hash = hash(json, "source_hash");
+    o.build_hash = hash(json, "build_hash");
+    o.of_parts = json.value("of_parts", false);
+    if (json.contains("bind_hash"))
+        o.bind_hash = hash(json, "bind_hash");
+    if (json.contains("attributes"))
+        o.attributes = attributes(json.at("attributes"));
+    double last = -1;
+    for (const Json& one : json.at("representations")) {
+        o.representations.push_back(representation(one, object_count, material_count));
+        const Summary& s = o.representations.back().summary;
+        if (s.error <= last || (last < 0 && s.error != 0))
+            fail(Status::BadFile, "errors of '", o.name, "' do not rise from 0");
+        if (last >= 0 && s.kind == Kind::Assembly)
+            fail(Status::BadFile, "'", o.name, "' has an assembly that is not its finest level");
+        last = s.error;
+    }
+    if (o.of_parts && !o.group())
+        fail(Status::BadFile, "'", o.name, "' is made of parts, but is no group");
+    return o;
+}
+
+Light light(const Json& json) {
+    Light light;
+    light.name = json.at("name").get<std::string>();
+    light.kind = light_kind_named(json.at("kind").get<std::string>());
+    light.color = vector(json, "color");
+    light.power = number(json, "power");
+    light.position = vector(json, "position");
+    light.direction = vector(json, "direction");
+    light.shadow = json.at("shadow").get<bool>();
+    light.angle = number_or(json, "angle", 0);
+    light.radius = number_or(json, "radius", 0);
+    light.spot_size = number_or(json, "spot_size", light.spot_size);
+    light.spot_blend = number_or(json, "spot_blend", 0);
+    if (light.kind == LightKind::Area) {
+        light.edge_u = vector(json, "edge_u");
+        light.edge_v = vector(json, "edge_v");
+        light.round = json.at("round").get<bool>();
+        light.spread = number(json, "spread");
+    }
+    return light;
+}
+
+Camera camera(const Json& json) {
+    Camera camera;
+    camera.name = json.at("name").get<std::string>();
+    camera.orthographic = json.at("orthographic").get<bool>();
+    camera.position = vector(json, "position");
+    camera.direction = vector(json, "direction");
+    camera.right = vector(json, "right");
+    camera.up = vector(json, "up");
+    camera.near_clip = number(json, "near_clip");
+    camera.focus_distance = number_or(json, "focus_distance", 0);
+    camera.aperture = number_or(json, "aperture", 0);
+    return camera;
+}
+
+World world(const Json& json, const Pictures& pictures) {
+    World world;
+    world.color = vector(json, "color");
+    world.transparent = json.at("transparent").get<bool>();
+    if (json.contains("environment")) {
+        const auto index = integer<size_t>(json, "environment");
+        if (index >= pictures.size())
+            fail(Status::BadFile, "the world names picture ", index, " of ", pictures.size());
+        world.environment = pictures[index];
+        world.environment_turn = matrix(json, "turn");
+        if (!(std::abs(glm::determinant(world.environment_turn)) > 1e-12))
+            fail(Status::BadFile, "the world's environment is flattened");
+        world.environment_strength = vector(json, "strength");
+    }
+    return world;
+}
+
+Model model_of(const Json& json) {
+    if (integer<int>(json, "format") != kStoreFormat)
+        fail(Status::BadFile, "the store has format ", integer<int>(json, "format"),
+             ", this Lodestone reads ", kStoreFormat, ": update the levels");
+    Model model;
+    Pictures pictures;
+    for (const Json& one : json.at("pictures"))
+        pictures.push_back(picture(one));
+    for (const Json& one : json.at("materials"))
+        model.materials.push_back(material(one, pictures));
+    const Json& objects = json.at("objects");
+    for (const Json& one : objects)
+        model.objects.push_back(object(one, objects.size(), model.materials.size()));
+    for (const Json& one : json.at("lights"))
+        model.lights.push_back(light(one));
+    for (const Json& one : json.at("cameras"))
+        model.cameras.push_back(camera(one));
+    model.world = world(json.at("world"), pictures);
+    if (!json.at("root").is_null()) {
+        model.root = integer<uint32_t>(json, "root");
+        if (model.root >= model.objects.size())
+            fail(Status::BadFile, "the root is object ", model.root, " of ", objects.size());
+    }
+    set_demands(model, bottom_up(model));  // refuses cycles and a wrong root
+    return model;
+}
+
+}  // namespace
+
+std::string file_of(Hash hash) {
+    return text("r/", hex16(hash), ".glb");
+}
+
+std::string bound_file_of(Hash bind_hash) {
+    return text("b/", hex16(bind_hash), ".bound");
+}
+
+std::string tileset_text(const Model& model) {
+    std::string text = "{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":";
+    text += description_text(model);
+    text += "}},";
+    text += tiles_text(model);
+    text += "}\n";
+    return text;
+}
+
+Model model_of_tileset(const std::string& text) {
+    try {
+        // Only the asset is ours; the tiles below "root" are for strangers and are not kept.
+        const Json json = Json::parse(text, [](int depth, Json::parse_event_t event, Json& parsed) {
+            return !(depth == 1 && event == Json::parse_event_t::key && parsed == "root");
+        });
+        return model_of(json.at("asset").at("extras").at("lodestone"));
+    } catch (const Json::exception& error) {
+        fail(Status::BadFile, "tileset.json is not a Lodestone store: ", error.what());
+    } catch (const Error& error) {
+        fail(Status::BadFile, "tileset.json cannot be used: ", error.what());
+    }
+}
+
+std::string file_of(const Picture& picture) {
+    return "i/" + file_name(picture);
+}
+
+std::set<std::string> files_of(const Model& model) {
+    std::set<std::string> files;
+    for (const Object& object : model.objects) {
+        if (object.bind_hash != 0)
+            files.insert(bound_file_of(object.bind_hash));
+        for (const Representation& representation : object.representations) {
+            if (representation.summary.kind != Kind::Assembly)
+                files.insert(file_of(representation.summary.hash));
+        }
+    }
+    for (const Material& material : model.materials)
+        for_each_texture(material,
+                         [&](const Texture& texture) { files.insert(file_of(*texture.picture)); });
+    if (model.world.environment)
+        files.insert(file_of(*model.world.environment));
+    return files;
+}
+
+}  // namespace lodestone::segment

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later Light coverage: makes sure that every point a picture
+// shows has a lit point near it that sees it, so that no part of a thing is left without the lamps
+// of its room.
+#pragma once
+
+#include "povray_export/lamp/light_regions.h"
+#include "povray_export/lamp/lit_points.h"
+
+namespace lodestone::povray {
+
+/// A point that is seen, and the lit point that stands for it.
+struct Sighting {
+    glm::dvec3 position{0.0};
+    uint32_t drawn = 0;
+    uint32_t point = 0;
+};
+
+/// Looks through every pixel up to four times, half a million times in all. A point that is seen is
+/// alone if no lit point of the same thing, near it (reach_beside) and facing about the same way,
+/// sees it. There it looks some more times (at most twice as many looks in all), and points that
+/// are alone become lit points, at most as many as there were (then evenly chosen ones). Returns
+/// the sightings of things that `divisible` allows to be cut. The same on any number of threads.
+/// cost: two rays a look.
+std::vector<Sighting> cover(const LitScene& scene, const View& view,
+                            std::span<const uint8_t> divisible, LitGrid& grid, const Job& job);
+
+/// Where a thing is cut between a sighting and its point, lends the point to the piece that is
+/// seen: copies of it in that region, and of its shares.
+void lend(std::span<const Sighting> sightings, const LightRegions& regions,
+          std::vector<light::LitPoint>& points, light::LightShares& shares);
+
+}  // namespace lodestone::povray

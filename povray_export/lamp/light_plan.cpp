@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/light_plan.h"
+
+#include "light/light_arrival.h"
+#include "povray_export/lamp/light_coverage.h"
+#include "povray_export/lamp/light_regions.h"
+#include "povray_export/lamp/lit_points.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_set>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr double kShare = 0.05;   // points to pixels
+constexpr double kRays = 2e7;     // at most: points times lamps
+constexpr double kRooms = 12000;  // points that tell a hundred rooms from each other
+constexpr double kFewestPoints = 256;
+constexpr double kMostPoints = 65536;
+constexpr int kMostHanded = 2;  // bounces that are looked at: light of later ones is faint
+constexpr size_t kMostLamps = 20000;
+constexpr uint64_t kMostTriangles = 2'000'000;  // distinct: 130 bytes each
+// Of all lamps: POV-Ray remembers for each lamp what last hid it, but not for those of groups,
+// whose shadows cost it up to 2.4 times as much.
+constexpr double kWorth = 0.6;
+
+uint64_t distinct_triangles(std::span<const Lit> drawn) {
+    std::unordered_set<Hash> known;
+    uint64_t count = 0;
+    for (const Lit& lit : drawn) {
+        if (known.insert(lit.representation->summary.hash).second)
+            count += lit.representation->summary.cost.triangles;
+    }
+    return count;
+}
+
+LightPlan plan_of(const light::LightTree& tree, const light::LightCut& cut,
+                  std::span<const light::LitPoint> points, const LightRegions& regions) {
+    std::vector<uint32_t> all;
+    for (uint32_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {
+        if (light::lamp(tree.nodes[i].light))
+            all.push_back(i);
+    }
+    double sum = 0;
+    for (const light::LitPoint& point : points)
+        sum += static_cast<double>(cut[point.region].size());
+    LightPlan plan;
+    plan.lights_each = sum / static_cast<double>(points.size());
+    if (!(plan.lights_each < kWorth * static_cast<double>(all.size())))
+        return {};
+    std::map<std::vector<uint32_t>, uint32_t> known{{all, 0}};
+    std::vector<std::vector<uint32_t>> lists{all};
+    std::vector<uint32_t> group_of;
+    for (const std::vector<uint32_t>& list : cut) {
+        const auto [at, fresh] = known.try_emplace(list, static_cast<uint32_t>(lists.size()));
+        if (fresh)
+            lists.push_back(list);
+        group_of.push_back(at->second);
+    }
+    std::vector<uint32_t> number(tree.nodes.size(), light::kNoLight);
+    for (const std::vector<uint32_t>& list : lists) {
+        std::vector<uint32_t>& group = plan.groups.emplace_back();
+        for (const uint32_t node : list) {
+            if (number[node] == light::kNoLight) {
+                number[node] = static_cast<uint32_t>(plan.lights.size());
+                plan.lights.push_back(tree.nodes[node].light);
+            }
+            group.push_back(number[node]);
+        }
+    }
+    plan.pieces = regions.pieces;
+    for (Piece& piece : plan.pieces)
+        piece.group = piece.group == kNoRegion ? 0 : group_of[piece.group];
+    return plan;
+}
+
+}  // namespace
+
+LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
+                      double pixel_error, int bounces, Problems& problems, const Job& job) {
+    const auto lamps =
+        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), light::lamp));
+    if (!(pixel_error > 0) || lamps < kFewLamps || drawn.empty() || !ray::available())
+        return {};
+    if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
+        problems.push_back({"", Severity::Info, "lights_as_they_are",
+                            text("all ", lamps,
+                                 " lamps light everything: there are more of them, or of "
+                                 "triangles, than can be looked through")});
+        return {};
+    }
+    const LitScene scene(model, drawn, job);
+    const double wanted = std::max(kShare * view.width * view.height, kRooms);
+    const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
+                                    kFewestPoints, kMostPoints);
+    bounces = std::min(bounces, kMostHanded);
+    LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
+    std::vector<Bound> bounds;
+    std::vector<uint8_t> divisible;
+    for (uint32_t i = 0; i < drawn.size(); ++i) {
+        const Summary& summary = drawn[i].representation->summary;
+        bounds.push_back(transformed(summary.bound, drawn[i].world));
+        // POV-Ray forgets flags of rays in what is clipped, and unions are not split then.
+        divisible.push_back(drawn[i].hidden == 0 && summary.kind != Kind::Composite &&
+                            !scene.partly_clear(i));
+    }
+    const size_t even = grid.points.size();
+    const std::vector<Sighting> sightings = cover(scene, view, divisible, grid, job);
+    std::vector<light::LitPoint>& points = grid.points;
+    if (points.empty())
+        return {};
+    const light::LightTree tree = light::make_light_tree(
+        model.lights,
+        [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
+    const light::Reaches reaches = [&](const Light& light, const light::LitPoint& point,
+                                       uint32_t& blocker) {
+        return scene.reaches(light, point, blocker);
+    };
+    light::LightShares shares = light::find_shares(tree, points, reaches, job);
+    const LightRegions regions = make_light_regions(bounds, divisible, shares, points);
+    lend(sightings, regions, points, shares);
+    const light::LightCut cut = light::cut_lights(tree, points, shares, regions.count,
+                                                  model.world.color, reaches, pixel_error, job);
+    // What was added looks at corners: the mean is of what is spread evenly.
+    return plan_of(tree, cut, std::span(points).first(even > 0 ? even : points.size()), regions);
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/light_regions.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr size_t kOwn = 48;            // points that make a thing a region of its own
+constexpr size_t kCell = 16;           // fewest points of a box
+constexpr size_t kPieces = 128;        // boxes of one thing
+constexpr size_t kFewLamps = 6;        // that light a box: it is not cut further
+constexpr double kWorthCutting = 0.8;  // of the lights at all points: what a cut must leave at most
+constexpr size_t kGaps = 12;           // widest gaps between points along an axis that are tried
+
+class Maker {
+public:
+    Maker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
+          const light::LightShares& shares, std::vector<light::LitPoint>& points)
+        : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
+
+    LightRegions make() {
+        note_lamps();
+        std::vector<std::vector<uint32_t>> of_thing(bounds_.size());
+        for (uint32_t i = 0; i < points_.size(); ++i)
+            of_thing[points_[i].region].push_back(i);
+        std::vector<uint32_t> few;
+        std::vector<std::vector<Piece>> pieces(bounds_.size());
+        middles_.resize(bounds_.size());
+        counts_.resize(bounds_.size());
+        for (uint32_t i = 0; i < bounds_.size(); ++i) {
+            counts_[i] = of_thing[i].size();
+            pieces[i].push_back({i, kNoRegion, {}});
+            if (of_thing[i].empty())
+                continue;
+            for (const uint32_t point : of_thing[i])
+                middles_[i] += points_[point].position / static_cast<double>(counts_[i]);
+            if (counts_[i] < kOwn) {
+                few.push_back(i);
+                continue;
+            }
+            pieces[i].clear();
+            cut(i, of_thing[i], divisible_[i] != 0, pieces[i]);
+        }
+        pool(few);
+        for (const uint32_t thing : few) {
+            pieces[thing][0].group = pooled_.at(thing);
+            for (const uint32_t point : of_thing[thing])
+                points_[point].region = pieces[thing][0].group;
+        }
+        LightRegions out;
+        out.count = next_;
+        for (const std::vector<Piece>& some : pieces)
+            out.pieces.insert(out.pieces.end(), some.begin(), some.end());
+        return out;
+    }
+
+private:
+    struct Part {
+        Box3 box;
+        std::vector<uint32_t> points;
+    };
+    struct Plane {
+        double cost = 0;
+        int axis = 0;
+        double at = 0;
+    };
+
+    using Words = std::vector<uint64_t>;  // a bit for every lamp
+
+    /// The lamps that reach each point, `width_` words beside each other.
+    void note_lamps() {
+        const size_t lamps = shares_.empty() ? 0 : shares_[0].size();
+        width_ = (lamps + 63) / 64;
+        reaching_.assign(points_.size() * width_, 0);
+        for (size_t point = 0; point < points_.size(); ++point) {
+            for (size_t i = 0; i < lamps; ++i) {
+                if (shares_[point][i] > 0)
+                    reaching_[point * width_ + i / 64] |= uint64_t{1} << (i % 64);
+            }
+        }
+    }
+
+    void join(Words& lamps, uint32_t point) const {
+        for (size_t i = 0; i < width_; ++i)
+            lamps[i] |= reaching_[point * width_ + i];
+    }
+
+    static size_t count_of(const Words& lamps) {
+        size_t count = 0;
+        for (const uint64_t word : lamps)
+            count += static_cast<size_t>(std::popcount(word));
+        return count;
+    }
+
+    /// Lamps that reach any of the points.
+    size_t lamps_of(std::span<const uint32_t> points) const {
+        Words lamps(width_, 0);
+        for (const uint32_t point : points)
+            join(lamps, point);
+        return count_of(lamps);
+    }
+
+    /// Of the points before each place, and from it on, the lamps that reach any. `places` rise.
+    void lamps_beside(std::span<const uint32_t> points, std::span<const size_t> places,
+                      std::vector<size_t>& before, std::vector<size_t>& behind) const {
+        before.resize(places.size());
+        behind.resize(places.size());
+        Words lamps(width_, 0);
+        size_t next = 0;
+        for (size_t k = 0; k < places.size(); ++k) {
+            for (; next < places[k]; ++next)
+                join(lamps, points[next]);
+            before[k] = count_of(lamps);
+        }
+        lamps.assign(width_, 0);
+        next = points.size();
+        for (size_t k = places.size(); k-- > 0;) {
+            for (; next > places[k]; --next)
+                join(lamps, points[next - 1]);
+            behind[k] = count_of(lamps);
+        }
+    }
+
+    Plane best_plane(const std::vector<uint32_t>& given, double least) {
+        Plane best;
+        best.cost = std::numeric_limits<double>::infinity();
+        std::vector<uint32_t> points = given;
+        std::vector<size_t> before;
+        std::vector<size_t> behind;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::stable_sort(points.begin(), points.end(), [&](uint32_t a, uint32_t b) {
+                return points_[a].position[axis] < points_[b].position[axis];
+            });
+            std::vector<size_t> places;
+            for (size_t i = kCell; i + kCell <= points.size(); ++i)
+                places.push_back(i);
+            const auto gap = [&](size_t i) {
+                return points_[points[i]].position[axis] - points_[points[i - 1]].position[axis];
+            };
+            std::stable_sort(places.begin(), places.end(),
+                             [&](size_t a, size_t b) { return gap(a) > gap(b); });
+            places.resize(std::min(places.size(), kGaps));
+            places.push_back(points.size() / 2);
+            std::vector<size_t> rising = places;
+            std::sort(rising.begin(), rising.end());
+            lamps_beside(points, rising, before, behind);
+            for (const size_t place : places) {
+                if (!(gap(place) > least))
+                    continue;
+                const auto at = static_cast<size_t>(
+                    std::lower_bound(rising.begin(), rising.end(), place) - rising.begin());
+                const double cost = static_cast<double>(place * before[at]) +
+                                    static_cast<double>((points.size() - place) * behind[at]);
+                if (cost < best.cost)
+                    best = {cost, axis,
+                            (points_[points[place]].position[axis] +
+                             points_[points[place - 1]].position[axis]) /
+                                2};
+            }
+        }
+        return best;
+    }
+
+    void cut(uint32_t thing, const std::vector<uint32_t>& points, bool divisible,
+             std::vector<Piece>& out) {
+        Part whole;
+        whole.box = bounds_[thing].box;
+        // Nothing of it may lie on the outside of the boxes.
+        const double margin = 0.01 * glm::length(whole.box.size());
+        whole.box.low -= margin;
+        whole.box.high += margin;
+        whole.points = points;
+        // What is flat is not cut along itself.
+        const double least = 1e-4 * glm::length(whole.box.size());
+        std::vector<Part> open{whole};
+        std::vector<Part> done;
+        while (!open.empty()) {
+            Part part = std::move(open.back());
+            open.pop_back();
+            const size_t lamps = lamps_of(part.points);
+            if (!divisible || lamps <= kFewLamps || part.points.size() < 2 * kCell ||
+                open.size() + done.size() + 2 > kPieces) {
+                done.push_back(std::move(part));
+                continue;
+            }
+            const Plane plane = best_plane(part.points, least);
+            if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size() * lamps))) {
+                done.push_back(std::move(part));
+                continue;
+            }
+            Part low;
+            Part high;
+            low.box = high.box = part.box;
+            low.box.high[plane.axis] = high.box.low[plane.axis] = plane.at;
+            for (const uint32_t point : part.points)
+                (points_[point].position[plane.axis] < plane.at ? low : high)
+                    .points.push_back(point);
+            open.push_back(std::move(high));
+            open.push_back(std::move(low));
+        }
+        for (const Part& part : done) {
+            for (const uint32_t point : part.points)
+                points_[point].region = next_;
+            out.push_back({thing, next_++, {}});
+            if (done.size() > 1)
+                out.back().within = part.box;
+        }
+    }
+
+    /// Regions of neighboring things with enough points together.
+    void pool(std::vector<uint32_t> things) {
+        if (things.empty())
+            return;
+        size_t count = 0;
+        Box3 box;
+        for (const uint32_t thing : things) {
+            count += counts_[thing];
+            box.add(middles_[thing]);
+        }
+        if (pooled_.empty())
+            pooled_.assign(bounds_.size(), kNoRegion);
+        if (count < 2 * kOwn || things.size() == 1) {
+            for (const uint32_t thing : things)
+                pooled_[thing] = next_;
+            ++next_;
+            return;
+        }
+        const glm::dvec3 size = box.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        std::stable_sort(things.begin(), things.end(), [&](uint32_t a, uint32_t b) {
+            return middles_[a][axis] < middles_[b][axis];
+        });
+        size_t low = 0;
+        size_t at = 0;
+        while (at + 1 < things.size() && (at == 0 || 2 * low < count))
+            low += counts_[things[at++]];
+        const auto middle = things.begin() + static_cast<ptrdiff_t>(at);
+        pool({things.begin(), middle});
+        pool({middle, things.end()});
+    }
+
+    std::span<const Bound> bounds_;
+    std::span<const uint8_t> divisible_;
+    const light::LightShares& shares_;
+    std::vector<light::LitPoint>& points_;
+    std::vector<size_t> counts_;       // by thing
+    std::vector<glm::dvec3> middles_;  // by thing
+    std::vector<uint32_t> pooled_;     // by thing
+    std::vector<uint64_t> reaching_;   // by point, see note_lamps()
+    size_t width_ = 0;
+    uint32_t next_ = 0;
+};
+
+}  // namespace
+
+LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
+                                const light::LightShares& shares,
+                                std::vector<light::LitPoint>& points) {
+    return Maker(bounds, divisible, shares, points).make();
+}
+
+}  // namespace lodestone::povray

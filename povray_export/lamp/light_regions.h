@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light regions: which parts of a scene are lit by the same lights.
+#pragma once
+
+#include "light/light_cut.h"
+#include "povray_export/lamp/light_plan.h"
+
+namespace lodestone::povray {
+
+struct LightRegions {
+    size_t count = 0;
+    /// In the order of things drawn; `group` is the region, or none where no point lies.
+    std::vector<Piece> pieces;
+};
+inline constexpr uint32_t kNoRegion = ~uint32_t{0};
+
+/// `points[i].region` is the index of the thing a point lies on, and becomes its region. Things
+/// with many points are regions of their own, those with few join their neighbors. One that
+/// `divisible` allows is cut where that makes shorter lists of lamps for its points, into at most
+/// 128 boxes that fill its bound.
+LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
+                                const light::LightShares& shares,
+                                std::vector<light::LitPoint>& points);
+
+}  // namespace lodestone::povray

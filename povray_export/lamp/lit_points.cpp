@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/lit_points.h"
+
+#include "base/parallel.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
+#include "povray_export/scene/magnification.h"
+#include "povray_export/texture/surface_finish.h"
+#include "povray_export/texture/texture_writer.h"
+
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr int kMostBounces = 4;     // mirrors and panes in a row
+constexpr double kPoint = 0.04;     // size over distance below which one ray tells of a light
+constexpr double kBeside = 8;       // in distances of points: farther is not beside
+constexpr double kRelative = 1e-4;  // of its way, where a ray begins again
+constexpr double kSharpest = 200;   // exponent of highlights, as far as points can see them
+
+bool see_through(const Material& material) {
+    const bool covered =
+        material.alpha_mode == AlphaMode::Opaque ||
+        (!material.alpha_texture && material.alpha >= 1 && !material.vertex_colors);
+    return !covered || material.transmission > 0 ||
+           (material.other && see_through(*material.other));
+}
+
+glm::dvec3 any_across(const glm::dvec3& unit) {
+    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    return glm::normalize(glm::cross(unit, other));
+}
+
+}  // namespace
+
+std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column) {
+    std::vector<size_t> cells;
+    for (size_t r = row > 0 ? row - 1 : 0; r < std::min(grid.rows, row + 2); ++r) {
+        for (size_t c = column > 0 ? column - 1 : 0; c < std::min(grid.columns, column + 2); ++c)
+            cells.push_back(r * grid.columns + c);
+    }
+    return cells;
+}
+
+double reach_beside(const View& view, const LitGrid& grid, const light::LitPoint& point) {
+    const double cell = view.width / static_cast<double>(grid.columns);
+    const double z = glm::length(point.position - view.camera.position);
+    return kBeside * cell * choose::pixel_size(view, z);
+}
+
+LitScene::Shape LitScene::shape_of(const Lit& lit) const {
+    const Representation& representation = *lit.representation;
+    Shape shape;
+    if (representation.summary.kind == Kind::Mesh)
+        shape.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
+    else
+        shape.mesh = std::make_shared<const Mesh>(tessellated(representation));
+    const Mesh& mesh = *shape.mesh;
+    std::vector<uint8_t> opaque(mesh.triangles.size(), 1);
+    size_t count = 0;
+    for (size_t i = 0; i < opaque.size(); ++i) {
+        opaque[i] = surface_of(lit, mesh.slot(i)).see_through ? 0 : 1;
+        count += opaque[i];
+    }
+    shape.all = std::make_shared<const ray::Scene>(mesh);
+    if (count == opaque.size())
+        shape.opaque = shape.all;
+    else if (count > 0)
+        shape.opaque = std::make_shared<const ray::Scene>(subset(mesh, opaque));
+    return shape;
+}
+
+LitScene::LitScene(const Model& model, std::span<const Lit> drawn, const Job& job)
+    : model_(model), drawn_(drawn) {
+    for (const Material& material : model.materials) {
+        const Look look = look_of(material);
+        const Finish finish = finish_of(look);
+        Surface surface;
+        surface.albedo = glm::clamp(material.base_color, 0.0, 1.0);
+        const double alpha = std::max(1e-3, look.roughness * look.roughness);
+        surface.gloss = finish.specular * (1 - look.metallic) +
+                        look.metallic * light::luminance(surface.albedo);
+        surface.exponent = std::clamp(2 / (alpha * alpha) - 2, 1.0, kSharpest);
+        surface.albedo = glm::max(surface.albedo, glm::dvec3(0.02));
+        surface.mirror =
+            finish.mirror > 0 || finish.mirror_grazing > 0 || refraction_of(material) > 0;
+        surface.see_through = see_through(material);
+        surfaces_.push_back(surface);
+    }
+    surfaces_.emplace_back();
+    std::unordered_map<Hash, uint32_t> known;
+    std::vector<uint32_t> firsts;
+    for (uint32_t i = 0; i < drawn.size(); ++i) {
+        const Hash hash = drawn[i].representation->summary.hash;
+        const auto [at, fresh] = known.try_emplace(hash, static_cast<uint32_t>(firsts.size()));
+        if (fresh)
+            firsts.push_back(i);
+        shape_of_.push_back(at->second);
+    }
+    shapes_.resize(firsts.size());
+    parallel_for(firsts.size(), [&](size_t i) {
+        job.check();
+        shapes_[i] = shape_of(drawn[firsts[i]]);
+    });
+    for (uint32_t i = 0; i < drawn.size(); ++i) {
+        const Lit& lit = drawn[i];
+        const Shape& shape = shapes_[shape_of_[i]];
+        const Bound& bound = lit.representation->summary.bound;
+        if ((lit.hidden & kCameraRays) == 0 || (lit.hidden & kReflectionRays) == 0)
+            seen_.add(shape.all, bound, lit.world, i);
+        if ((lit.hidden & kShadowRays) == 0 && shape.opaque)
+            blocking_.add(shape.opaque, bound, lit.world, i);
+    }
+    seen_.finish();
+    blocking_.finish();
+    // Rays are of single precision.
+    least_ = 1e-6 * glm::length(seen_.box().size());
+}
+
+LitScene::Surface LitScene::surface_of(const Lit& lit, uint16_t slot) const {
+    const std::vector<uint32_t>& materials = lit.representation->materials;
+    const size_t index = slot < materials.size() ? materials[slot] : surfaces_.size();
+    return surfaces_[std::min(index, surfaces_.size() - 1)];
+}
+
+std::vector<light::LitPoint> LitScene::followed(Ray ray) const {
+    std::vector<light::LitPoint> out;
+    bool mirrored = false;
+    for (int bounce = 0; bounce <= kMostBounces; ++bounce) {
+        const ray::PlacedScenes::Hit hit = seen_.first_hit(ray.origin, ray.direction);
+        if (!hit.hit)
+            return out;
+        const Lit& lit = drawn_[hit.name];
+        const Mesh& mesh = *shapes_[shape_of_[hit.name]].mesh;
+        const Surface surface = surface_of(lit, mesh.slot(hit.triangle));
+        const glm::dmat3 turn = glm::transpose(glm::inverse(lit.world.linear));
+        glm::dvec3 flat = glm::normalize(turn * area_vector(mesh, hit.triangle));
+        if (!(glm::dot(flat, flat) > 0))
+            return out;
+        if (glm::dot(flat, ray.direction) > 0)
+            flat = -flat;
+        glm::dvec3 normal = flat;
+        if (!mesh.normals.empty()) {
+            const Triangle& corners = mesh.triangles[hit.triangle];
+            const glm::dvec3 smooth =
+                turn * ((1 - hit.u - hit.v) * glm::dvec3(mesh.normals[corners[0]]) +
+                        hit.u * glm::dvec3(mesh.normals[corners[1]]) +
+                        hit.v * glm::dvec3(mesh.normals[corners[2]]));
+            const double length = glm::length(smooth);
+            if (length > 0)
+                normal = smooth / (glm::dot(smooth, flat) < 0 ? -length : length);
+        }
+        ray.z += hit.t;
+        const double aside = std::max(least_, kRelative * ray.z);
+        const glm::dvec3 point = ray.origin + ray.direction * hit.t;
+        const RayMask sees = mirrored ? kReflectionRays : kCameraRays;
+        const bool shown = (lit.hidden & sees) == 0;
+        if (shown) {
+            light::LitPoint lit_point;
+            lit_point.position = point;
+            lit_point.aside = flat * aside;
+            lit_point.normal = normal;
+            lit_point.to_eye = -ray.direction;
+            lit_point.albedo = surface.albedo;
+            lit_point.gloss = surface.gloss;
+            lit_point.exponent = surface.exponent;
+            lit_point.region = hit.name;
+            out.push_back(lit_point);
+        }
+        if (shown && surface.mirror && !surface.see_through) {
+            ray.direction = ray.direction - 2 * glm::dot(ray.direction, normal) * normal;
+            if (!(glm::dot(ray.direction, flat) > 0))
+                return out;
+            ray.origin = point + flat * aside;
+            mirrored = true;
+        } else if (!shown || surface.see_through) {
+            ray.origin = point - flat * aside;
+        } else {
+            return out;
+        }
+    }
+    return out;
+}
+
+LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
+    const Camera& camera = view.camera;
+    const glm::dvec3 aside = (x - 0.5) * camera.right + (0.5 - y) * camera.up;
+    Ray ray;
+    ray.origin = camera.orthographic ? camera.position + aside : camera.position;
+    ray.direction =
+        glm::normalize(camera.orthographic ? camera.direction : camera.direction + aside);
+    return ray;
+}
+
+/// From the last point on, as a matt surface hands on light.
+void LitScene::bounce(int times, Random& random, std::vector<light::LitPoint>& out) const {
+    for (int i = 0; i < times && !out.empty(); ++i) {
+        const light::LitPoint& from = out.back();
+        const double turn = 2 * std::numbers::pi * random.uniform();
+        const double out_of = random.uniform();  // square of the sine
+        const glm::dvec3 u = any_across(from.normal);
+        const glm::dvec3 v = glm::cross(from.normal, u);
+        Ray ray;
+        ray.origin = from.position + from.aside;
+        ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
+                        std::sqrt(1 - out_of) * from.normal;
+        std::vector<light::LitPoint> more = followed(ray);
+        if (more.empty())
+            return;
+        out.push_back(std::move(more.back()));
+    }
+}
+
+LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job& job) const {
+    const double aspect = static_cast<double>(view.width) / std::max(1, view.height);
+    LitGrid grid;
+    grid.rows = static_cast<size_t>(
+        std::clamp(std::sqrt(static_cast<double>(count) / aspect), 1.0, view.height * 1.0));
+    const auto rows = static_cast<double>(grid.rows);
+    grid.columns =
+        static_cast<size_t>(std::clamp(static_cast<double>(count) / rows, 1.0, view.width * 1.0));
+    const auto columns = static_cast<double>(grid.columns);
+    std::vector<std::vector<light::LitPoint>> found(grid.rows * grid.columns);
+    parallel_for(grid.rows, [&](size_t row) {
+        job.check();
+        Random random(1, row);
+        for (size_t column = 0; column < grid.columns; ++column) {
+            const double x = (static_cast<double>(column) + random.uniform()) / columns;
+            const double y = (static_cast<double>(row) + random.uniform()) / rows;
+            std::vector<light::LitPoint>& points = found[row * grid.columns + column];
+            points = seen(view, x, y);
+            bounce(bounces, random, points);
+        }
+    });
+    // Neighbors in the picture, by the first point of each; those of far behind are none.
+    grid.first.assign(found.size() + 1, 0);
+    for (size_t i = 0; i < found.size(); ++i)
+        grid.first[i + 1] = grid.first[i] + static_cast<uint32_t>(found[i].size());
+    grid.points.reserve(grid.first.back());
+    for (size_t row = 0; row < grid.rows; ++row) {
+        for (size_t column = 0; column < grid.columns; ++column) {
+            const size_t here = row * grid.columns + column;
+            for (size_t i = 0; i < found[here].size(); ++i) {
+                grid.points.push_back(found[here][i]);
+                light::LitPoint& point = grid.points.back();
+                const double most = reach_beside(view, grid, point);
+                for (const size_t there : around(grid, row, column)) {
+                    if (there == here || i >= found[there].size())
+                        continue;
+                    if (glm::length(found[there][i].position - point.position) <= most)
+                        point.beside.push_back(grid.first[there] + static_cast<uint32_t>(i));
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dvec3 way = to - from;
+    if (!(glm::dot(way, way) > 0))
+        return true;
+    return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
+}
+
+double LitScene::reaches(const Light& light, const light::LitPoint& point,
+                         uint32_t& blocker) const {
+    if (!light.shadow && light.kind == LightKind::Point)
+        return 1;
+    const glm::dvec3 from = point.position + point.aside;
+    const auto free = [&](const glm::dvec3& place) {
+        const glm::dvec3 way = place - from;
+        const double distance = glm::length(way);
+        // As POV-Ray: what is that near to a light throws no shadow.
+        return distance <= kTolerance ||
+               !blocking_.occluded(from, way, 1 - kTolerance / distance, blocker);
+    };
+    const double extent = light::extent_of(light);
+    const glm::dvec3 way = light.position - point.position;
+    const double distance = glm::length(way);
+    if (extent <= kPoint * distance)
+        return free(light.position) ? 1 : 0;
+    glm::dvec3 u = light.edge_u * 0.4;
+    glm::dvec3 v = light.edge_v * 0.4;
+    if (light.kind != LightKind::Area) {
+        u = any_across(distance > 0 ? way / distance : glm::dvec3(0, 0, 1)) * (0.6 * extent);
+        v = distance > 0 ? glm::cross(way / distance, u) : glm::dvec3(0.0);
+    }
+    const std::array<glm::dvec3, 5> places = {light.position, light.position + u + v,
+                                              light.position + u - v, light.position - u + v,
+                                              light.position - u - v};
+    double sum = 0;
+    for (const glm::dvec3& place : places)
+        sum += free(place) ? 1 : 0;
+    return sum / static_cast<double>(places.size());
+}
+
+}  // namespace lodestone::povray

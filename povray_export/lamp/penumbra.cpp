@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/penumbra.h"
+
+#include "base/maths.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lodestone::povray {
+namespace {
+
+double of_sun(const Light& sun, const View& view, std::span<const Bound> occluders) {
+    constexpr double kFlattest = 0.1;  // sine of the elevation; below it shadows cross the scene
+    Bound all;
+    for (const Bound& bound : occluders)
+        all = merged(all, bound);
+    const double floor = all.box.low.z;
+    const double down = -glm::normalize(sun.direction).z;
+    const double across = 2 * std::tan(std::min(sun.angle / 2, 1.5));
+    double widest = 0;
+    for (const Bound& bound : occluders) {
+        const double way = down > kFlattest ? (bound.box.high.z - floor) / down : 2 * all.radius;
+        const double z = std::max(0.0, distance(bound, view.camera.position) - way);
+        widest = std::max(widest, way * across / choose::pixel_size(view, z));
+    }
+    return widest;
+}
+
+double of_lamp(const Light& lamp, const View& view) {
+    constexpr double kMagnified = 2;
+    constexpr double kDarkest = 0.004;  // about one step of a display
+    const bool area = lamp.kind == LightKind::Area;
+    const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * (area ? 1 : kPi));
+    const double size = 2 * light::extent_of(lamp);
+    const double reach = std::sqrt(std::max({shining.x, shining.y, shining.z}) / kDarkest);
+    const double z = std::max(0.0, glm::length(lamp.position - view.camera.position) - reach);
+    return kMagnified * size / choose::pixel_size(view, z);
+}
+
+}  // namespace
+
+double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders) {
+    if (occluders.empty())
+        return 0;
+    switch (light.kind) {
+        case LightKind::Sun:
+            return light.angle > 0 ? of_sun(light, view, occluders) : 0;
+        case LightKind::Point:
+        case LightKind::Spot:
+            return light.radius > 0 ? of_lamp(light, view) : 0;
+        case LightKind::Area:
+            return of_lamp(light, view);
+    }
+    return 0;
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scene lights: the lights of a view, each as far as its pixels can tell, and groups lit by them.
+#pragma once
+
+#include "povray_export/lamp/light_plan.h"
+#include "povray_export/lamp/light_writer.h"
+#include "povray_export/scene/shading.h"
+
+#include <string>
+
+namespace lodestone::povray {
+
+/// All arguments must outlive it; `shading` is filled up. `bound`: of everything, magnified by
+/// `times`; `occluders` are not.
+class SceneLights {
+public:
+    SceneLights(const View& view, std::span<const Bound> occluders, const Bound& bound,
+                double times, const Shading& shading, const LightSampling& sampling,
+                Problems& problems)
+        : view_(view),
+          occluders_(occluders),
+          bound_(bound),
+          times_(times),
+          shading_(shading),
+          sampling_(sampling),
+          problems_(problems) {}
+
+    /// A light: without its size where no pixel can tell, or with the rays its penumbra needs.
+    void append(std::string& out, Light light) const;
+
+    /// Declares the lights of a plan; their names, empty for one that gives no light.
+    std::vector<std::string> declare(std::string& out, const LightPlan& plan) const;
+
+private:
+    const View& view_;
+    std::span<const Bound> occluders_;
+    const Bound& bound_;
+    double times_;
+    const Shading& shading_;
+    LightSampling sampling_;
+    Problems& problems_;
+};
+
+/// `objects`: the text of what each group of the plan lights. Suns light all groups.
+std::string grouped_text(const LightPlan& plan, const std::vector<std::string>& names,
+                         const std::vector<std::string>& objects);
+
+}  // namespace lodestone::povray

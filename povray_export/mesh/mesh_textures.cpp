@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/mesh/mesh_textures.h"
+
+#include "base/error.h"
+#include "image/image.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <unordered_set>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr uint16_t kUnknown = 0xffff;
+
+// A picture is baked for every distinct hue of the paint over it.
+constexpr size_t kMostHues = 8;
+
+/// RGBA in display encoding, 16 bits each: exact for colors of 8 bits.
+using Key = uint64_t;
+
+Key key_of(const glm::vec4& color, bool alpha) {
+    Key key = 0;
+    for (int i = 0; i < 4; ++i) {
+        float value = std::isfinite(color[i]) ? std::clamp(color[i], 0.0f, 1.0f) : 1.0f;
+        if (i < 3)
+            value = image::encode_srgb(value);
+        else if (!alpha)
+            value = 1;
+        key = key << 16u | static_cast<Key>(std::lround(value * 65535));
+    }
+    return key;
+}
+
+/// Rounds all channels to multiples of `step` / 65535 (and to white).
+Key rounded(Key key, uint64_t step) {
+    Key out = 0;
+    for (unsigned shift = 0; shift < 64; shift += 16) {
+        const uint64_t value = key >> shift & 0xffffu;
+        const uint64_t near = (value + step / 2) / step * step;
+        out |= std::min<uint64_t>(near + step / 2 > 65535 ? 65535 : near, 65535) << shift;
+    }
+    return out;
+}
+
+glm::dvec4 color_of_key(Key key) {
+    glm::dvec4 color;
+    for (int i = 3; i >= 0; --i, key >>= 16u) {
+        const float value = static_cast<float>(key & 0xffffu) / 65535.0f;
+        color[i] = i < 3 ? image::decode_srgb(value) : value;
+    }
+    return color;
+}
+
+/// The color without its brightness.
+Key hue_of(Key key) {
+    glm::dvec4 color = color_of_key(key);
+    const double most = std::max({color.x, color.y, color.z});
+    if (most > 0)
+        color /= most;
+    return rounded(key_of(glm::vec4(color), false), 257);
+}
+
+/// What a step of 1 in texture coordinates covers of a triangle, where it is most: metres. Infinite
+/// where all of it shows one place or one line of the picture.
+double metres_of_uv(const Mesh& mesh, size_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    const glm::dvec3 a = glm::dvec3(mesh.positions[t.y]) - glm::dvec3(mesh.positions[t.x]);
+    const glm::dvec3 b = glm::dvec3(mesh.positions[t.z]) - glm::dvec3(mesh.positions[t.x]);
+    const glm::dvec2 ua = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
+    const glm::dvec2 ub = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
+    const double area = ua.x * ub.y - ua.y * ub.x;
+    const glm::dvec3 along_u = (a * ub.y - b * ua.y) / area;
+    const glm::dvec3 along_v = (b * ua.x - a * ub.x) / area;
+    const double uu = glm::dot(along_u, along_u);
+    const double vv = glm::dot(along_v, along_v);
+    const double most = (uu + vv) / 2 + std::hypot((uu - vv) / 2, glm::dot(along_u, along_v));
+    return most > 0 && std::isfinite(most) ? std::sqrt(most)
+                                           : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+MeshTextures::MeshTextures(const Model& model, const Representation& representation,
+                           const RepresentationOptions& options, PictureWriter& pictures,
+                           const Job& job)
+    : mesh_(representation.mesh()), job_(job) {
+    find_slots(model, representation, options.uvs && !mesh_.uvs.empty());
+    if (uses_uvs_)
+        find_ranges();
+    if (uses_uvs_ && options.texel)
+        find_texels(std::ldexp(1.0, *options.texel));
+    find_planes();
+    bool corners = false;
+    for (Slot& slot : slots_) {
+        refraction_ = std::max(refraction_, refraction_of(slot.material));
+        if (slot.colored || !slot.planes.empty())
+            corners = true;
+        else
+            slot.text = add(slot, pictures);
+    }
+    if (corners)
+        find_corners(pictures);
+}
+
+size_t MeshTextures::of(size_t triangle, int corner) const {
+    return !corners_.empty() ? corners_[3 * triangle + static_cast<size_t>(corner)]
+                             : slots_[slot_at_[mesh_.slot(triangle)]].text;
+}
+
+bool MeshTextures::is_glass(size_t triangle) const {
+    return refraction_of(slots_[slot_at_[mesh_.slot(triangle)]].material) > 0;
+}
+
+bool MeshTextures::is_clear_beside_glass() const {
+    return refraction_ > 0 && std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+               const Material& material = slot.material;
+               return material.alpha_mode == AlphaMode::Blend && !(refraction_of(material) > 0) &&
+                      (material.alpha < 1 || material.alpha_texture);
+           });
+}
+
+void MeshTextures::breathe(size_t i) const {
+    if ((i & 0xffffu) == 0xffffu)
+        job_.check();
+}
+
+void MeshTextures::find_slots(const Model& model, const Representation& representation, bool uvs) {
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        const uint16_t number = mesh_.slot(i);
+        if (i > 0 && number == mesh_.slot(i - 1))
+            continue;
+        if (number >= slot_at_.size())
+            slot_at_.resize(size_t{number} + 1, kUnknown);
+        if (slot_at_[number] != kUnknown)
+            continue;
+        slot_at_[number] = static_cast<uint16_t>(slots_.size());
+        Slot slot;  // a slot without a material looks neutral
+        if (number < representation.materials.size()) {
+            const uint32_t index = representation.materials[number];
+            if (index >= model.materials.size())
+                fail(Status::InvalidArgument, "a representation uses material ", index, " of ",
+                     model.materials.size());
+            slot.material = model.materials[index];
+        }
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
+            slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
+        slot.surface.uvs = uvs && textured(slot.material);
+        uses_uvs_ = uses_uvs_ || slot.surface.uvs;
+        slot.bumped = slot.surface.uvs && bumpy(slot.material);
+        slots_.push_back(std::move(slot));
+    }
+}
+
+void MeshTextures::find_ranges() {
+    for (Slot& slot : slots_) {
+        slot.surface.range.low = glm::dvec2(1e300);
+        slot.surface.range.high = glm::dvec2(-1e300);
+    }
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        Surface& surface = slots_[slot_at_[mesh_.slot(i)]].surface;
+        if (!surface.uvs)
+            continue;
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec2 uv(mesh_.uvs[mesh_.triangles[i][corner]]);
+            surface.range.low = glm::min(surface.range.low, uv);
+            surface.range.high = glm::max(surface.range.high, uv);
+        }
+    }
+}
+
+void MeshTextures::find_texels(double metres) {
+    constexpr double kShown = 0.999;  // of a slot's area
+    constexpr int kLeast = -64;       // exponents of what a texture coordinate of 1 covers
+    std::vector<std::array<double, 129>> areas(slots_.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        const size_t at = slot_at_[mesh_.slot(i)];
+        const double covered = metres_of_uv(mesh_, i);
+        const double area = glm::length(area_vector(mesh_, i));
+        if (!slots_[at].surface.uvs || !(area > 0))
+            continue;
+        const int exponent = std::isfinite(covered) ? std::ilogb(covered) + 1 : -kLeast;
+        areas[at][static_cast<size_t>(std::clamp(exponent, kLeast, -kLeast) - kLeast)] += area;
+    }
+    for (size_t at = 0; at < slots_.size(); ++at) {
+        double sum = 0;
+        for (const double area : areas[at])
+            sum += area;
+        double below = 0;
+        int exponent = kLeast - 1;
+        for (size_t i = 0; i < areas[at].size() && below < kShown * sum; ++i, ++exponent)
+            below += areas[at][i];
+        if (sum > 0 && exponent < -kLeast)
+            slots_[at].surface.range.texel = std::ldexp(metres, -exponent);
+    }
+}
+
+size_t MeshTextures::add(const Slot& slot, PictureWriter& pictures) {
+    std::string text = texture_text(slot.material, slot.surface, pictures);
+    const auto [at, fresh] = known_.try_emplace(std::move(text), texts_.size());
+    if (fresh)
+        texts_.push_back(at->first);
+    return at->second;
+}
+
+void MeshTextures::find_planes() {
+    if (std::none_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.bumped; }))
+        return;
+    plane_of_.assign(mesh_.triangles.size(), uint8_t{kMostPlanes});
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        Slot& slot = slots_[slot_at_[mesh_.slot(i)]];
+        if (!slot.bumped || plane_of(i, slot, plane_of_[i]))
+            continue;
+        slot.bumped = false;
+        slot.planes.clear();
+        bumps_left_out_ = true;
+    }
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        if (slots_[slot_at_[mesh_.slot(i)]].planes.empty())
+            plane_of_[i] = kMostPlanes;
+    }
+}
+
+/// False: a plane too many. Triangles without an area, here or in the picture, have none.
+bool MeshTextures::plane_of(size_t triangle, Slot& slot, uint8_t& plane) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    const glm::dvec3 at[] = {glm::dvec3(mesh_.positions[t.x]), glm::dvec3(mesh_.positions[t.y]),
+                             glm::dvec3(mesh_.positions[t.z])};
+    const glm::dvec2 uv[] = {glm::dvec2(mesh_.uvs[t.x]), glm::dvec2(mesh_.uvs[t.y]),
+                             glm::dvec2(mesh_.uvs[t.z])};
+    const auto fits = [&](const Affine& to_uv) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 there = to_uv(at[i]);
+            // Within a tenth of the texels of a picture of 1000, and of its plane as wide.
+            if (!(std::abs(there.x - uv[i].x) < 1e-4 && std::abs(there.y - uv[i].y) < 1e-4))
+                return false;
+        }
+        const glm::dvec3 normal = glm::cross(at[1] - at[0], at[2] - at[0]);
+        const glm::dvec3 up(to_uv.linear[0].z, to_uv.linear[1].z, to_uv.linear[2].z);
+        return glm::dot(normal, up) >= 0.9999 * glm::length(normal);
+    };
+    for (size_t i = slot.planes.size(); i-- > 0;) {  // neighbors tend to share the last one
+        if (fits(slot.planes[i])) {
+            plane = static_cast<uint8_t>(i);
+            return true;
+        }
+    }
+    const glm::dvec3 a = at[1] - at[0];
+    const glm::dvec3 b = at[2] - at[0];
+    const glm::dvec3 normal = glm::cross(a, b);
+    const double square = glm::dot(normal, normal);
+    const glm::dvec2 ua = uv[1] - uv[0];
+    const glm::dvec2 ub = uv[2] - uv[0];
+    // Gradients of u and v in the plane, and the height above it.
+    const glm::dvec3 across = glm::cross(b, normal) / square;
+    const glm::dvec3 along = glm::cross(normal, a) / square;
+    const glm::dvec3 rows[] = {ua.x * across + ub.x * along, ua.y * across + ub.y * along,
+                               normal / std::sqrt(square)};
+    Affine to_uv;
+    to_uv.linear = glm::transpose(glm::dmat3(rows[0], rows[1], rows[2]));
+    const double volume = glm::determinant(to_uv.linear);
+    if (!to_uv.finite() || !(std::abs(volume) > 1e-9 * glm::length(rows[0]) * glm::length(rows[1])))
+        return true;
+    const glm::dvec3 origin = to_uv.linear * at[0];
+    to_uv.offset = {uv[0].x - origin.x, uv[0].y - origin.y, -origin.z};
+    if (slot.planes.size() == kMostPlanes)
+        return false;
+    plane = static_cast<uint8_t>(slot.planes.size());
+    slot.planes.push_back(to_uv);
+    return true;
+}
+
+std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
+    std::vector<Key> keys(mesh_.colors.size());
+    bool alpha = false;
+    bool pictured = false;
+    for (const Slot& slot : slots_) {
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get()) {
+            alpha = alpha || m->alpha_mode != AlphaMode::Opaque;
+            pictured = pictured || (slot.colored && slot.surface.uvs && m->base_color_texture);
+        }
+    }
+    for (size_t i = 0; i < keys.size(); ++i) {
+        breathe(i);
+        keys[i] = key_of(mesh_.colors[i], alpha);
+    }
+    // First what 8 bits hold, then coarser until it fits.
+    for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
+        std::unordered_set<Key> distinct;
+        for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
+            breathe(i);
+            distinct.insert(rounded(keys[i], step));
+        }
+        if (distinct.size() > kMost)
+            continue;
+        for (Key& key : keys)
+            key = rounded(key, step);
+        break;
+    }
+    // Over a picture, many hues become their mean: only brightness varies without another picture.
+    if (pictured) {
+        std::set<Key> hues;
+        glm::dvec3 sum(0.0);
+        for (const Key key : keys) {
+            sum += glm::dvec3(color_of_key(key));
+            if (hues.size() <= kMostHues)
+                hues.insert(hue_of(key));
+        }
+        const double most = std::max({sum.x, sum.y, sum.z});
+        if (hues.size() > kMostHues && most > 0)
+            hue = sum / most;
+    }
+    return keys;
+}
+
+void MeshTextures::find_corners(PictureWriter& pictures) {
+    glm::dvec3 hue(-1.0);
+    const bool colored =
+        std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.colored; });
+    const std::vector<Key> keys = colored ? color_keys(hue) : std::vector<Key>();
+    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * (kMostPlanes + 1));
+    const auto text_of = [&](size_t at, size_t plane, Key key) {
+        const auto [found, fresh] = texts[at * (kMostPlanes + 1) + plane].try_emplace(key, 0);
+        if (!fresh)
+            return found->second;
+        Slot slot = slots_[at];
+        if (plane < slot.planes.size()) {
+            slot.surface.flat = true;
+            slot.surface.to_uv = slot.planes[plane];
+        }
+        if (slot.colored) {
+            const glm::dvec4 color = color_of_key(key);
+            slot.surface.color = color;
+            if (hue.x >= 0 && slot.surface.uvs)
+                slot.surface.color =
+                    glm::dvec4(hue * std::max({color.x, color.y, color.z}), color.w);
+        }
+        return found->second = static_cast<uint32_t>(add(slot, pictures));
+    };
+    corners_.resize(3 * mesh_.triangles.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        breathe(i);
+        const size_t at = slot_at_[mesh_.slot(i)];
+        const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[i];
+        for (int corner = 0; corner < 3; ++corner)
+            corners_[3 * i + static_cast<size_t>(corner)] =
+                text_of(at, plane, slots_[at].colored ? keys[mesh_.triangles[i][corner]] : 0);
+    }
+}
+
+}  // namespace lodestone::povray

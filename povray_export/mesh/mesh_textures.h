@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mesh textures: which texture every corner of a mesh's triangles shows.
+#pragma once
+
+#include "base/job.h"
+#include "model/model.h"
+#include "povray_export/scene/representation_writer.h"
+#include "povray_export/texture/texture_writer.h"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace lodestone::povray {
+
+/// Materials of slots, times the colors of vertices where a material uses them: a texture for every
+/// distinct color. More than kMost colors are rounded, in display encoding, as little as it takes;
+/// rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane.
+class MeshTextures {
+public:
+    static constexpr size_t kMost = 4096;
+    static constexpr size_t kMostPlanes = 64;
+
+    /// Equal looks share one text. Throws Error(InvalidArgument) for a material out of range.
+    MeshTextures(const Model& model, const Representation& representation,
+                 const RepresentationOptions& options, PictureWriter& pictures, const Job& job);
+
+    const std::vector<std::string>& texts() const { return texts_; }
+    bool uses_uvs() const { return uses_uvs_; }
+    /// Of what light goes through (the largest of the slots'); 0: nothing.
+    double refraction() const { return refraction_; }
+
+    bool is_glass(size_t triangle) const;
+    /// Whether some of it is transparent, but bends no light, though other triangles do.
+    bool is_clear_beside_glass() const;
+
+    /// Some bumps are not shown: their surface has more than kMostPlanes planes.
+    bool bumps_left_out() const { return bumps_left_out_; }
+
+    size_t of(size_t triangle, int corner) const;
+    /// False: all corners of a triangle show the same.
+    bool differ_in_triangles() const { return !corners_.empty(); }
+
+private:
+    struct Slot {
+        Material material;
+        Surface surface;
+        bool colored = false;
+        bool bumped = false;
+        std::vector<Affine> planes;  // to_uv of its flat parts, where it is bumped
+        size_t text = 0;             // where it is neither
+    };
+
+    void find_slots(const Model& model, const Representation& representation, bool uvs);
+    void find_ranges();
+    void find_texels(double metres);
+    void find_planes();
+    bool plane_of(size_t triangle, Slot& slot, uint8_t& plane) const;
+    std::vector<uint64_t> color_keys(glm::dvec3& hue) const;
+    void find_corners(PictureWriter& pictures);
+    size_t add(const Slot& slot, PictureWriter& pictures);
+    void breathe(size_t i) const;
+
+    const Mesh& mesh_;
+    const Job& job_;
+    std::vector<Slot> slots_;
+    std::vector<uint16_t> slot_at_;  // by slot of the mesh: where in slots_
+    std::unordered_map<std::string, size_t> known_;
+    std::vector<std::string> texts_;
+    std::vector<uint8_t> plane_of_;  // by triangle, of its slot's planes; kMostPlanes: none
+    std::vector<uint32_t> corners_;  // 3 a triangle; empty: the slots' texts
+    bool uses_uvs_ = false;
+    bool bumps_left_out_ = false;
+    double refraction_ = 0;
+};
+
+}  // namespace lodestone::povray

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/run/povray_messages.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+constexpr size_t kLongestLine = 4096;
+constexpr size_t kLongestText = 8192;
+// POV-Ray wraps at 80: before a word, whose space then begins the next line, or inside a long one.
+constexpr size_t kConsoleWidth = 79;
+constexpr size_t kLongestWord = 30;
+
+bool contains(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// The number that follows `label`, or `otherwise`.
+template <typename Number>
+Number number_after(const std::string& text, std::string_view label, Number otherwise) {
+    const size_t at = text.find(label);
+    if (at == std::string::npos)
+        return otherwise;
+    const char* begin = text.data() + at + label.size();
+    const char* end = text.data() + text.size();
+    while (begin < end && *begin == ' ')
+        ++begin;
+    Number value{};
+    return std::from_chars(begin, end, value).ec == std::errc() ? value : otherwise;
+}
+
+/// Its own words for trouble; the rest is a banner and statistics.
+bool trouble(const std::string& text) {
+    // Nobody has to have a configuration file, and a shifted lens is what we asked for.
+    if (contains(text, "configuration file") || contains(text, "not perpendicular"))
+        return false;
+    return contains(text, "Warning:") || contains(text, "rror:") || contains(text, "rror in") ||
+           contains(text, "annot ") || contains(text, "ailed") || contains(text, "bad_alloc");
+}
+
+bool spaced(const std::string& text) {
+    return text.size() > 1 && text[0] == ' ' && text[1] != ' ';
+}
+
+}  // namespace
+
+Messages::Wrap Messages::wrap_of(const std::string& text) {
+    if (text.size() >= kConsoleWidth)
+        return Wrap::Word;
+    return text.size() + kLongestWord >= kConsoleWidth ? Wrap::Space : Wrap::No;
+}
+
+void Messages::read(std::string_view piece) {
+    for (const char c : piece) {
+        if (c != '\r' && c != '\n') {
+            if (line_.size() < kLongestLine)
+                line_ += c;
+            continue;
+        }
+        line(line_);
+        line_.clear();
+    }
+}
+
+void Messages::finish() {
+    line(line_);
+    line_.clear();
+    line("");
+}
+
+void Messages::line(const std::string& text) {
+    if (!message_.empty()) {
+        const bool continues =
+            !text.empty() && (wrapped_ == Wrap::Word || (wrapped_ == Wrap::Space && spaced(text)));
+        if (continues && message_.size() < kLongestLine) {
+            message_ += text;
+            wrapped_ = wrap_of(text);
+            return;
+        }
+        keep(message_);
+        message_.clear();
+    }
+    if (text.starts_with("Rendered ")) {
+        pixels_done = number_after(text, "Rendered ", pixels_done);
+        pixels = number_after(text, " of ", pixels);
+    } else if (text.starts_with("Parsing ")) {
+        parsed_tokens = 1000 * number_after(text, "Parsing ", parsed_tokens / 1000);
+    } else if (contains(text, "CPU-seconds total")) {
+        const size_t with = text.find("with ");
+        const double seconds =
+            with == std::string::npos ? 0 : number_after(text.substr(with), "with ", 0.0);
+        if (std::isfinite(seconds) && time_ == Time::Parse)
+            parse_cpu_s += seconds;
+        else if (std::isfinite(seconds) && time_ == Time::Trace)
+            trace_cpu_s += seconds;
+        time_ = Time::None;
+    } else if (contains(text, "Parse Time:") || contains(text, "Bounding Time:")) {
+        time_ = Time::Parse;
+    } else if (contains(text, "Trace Time:")) {
+        time_ = Time::Trace;
+    } else if (text == "POV-Ray finished") {
+        finished = true;
+    } else if (trouble(text)) {
+        message_ = text;
+        wrapped_ = wrap_of(text);
+    }
+}
+
+void Messages::keep(const std::string& message) {
+    text_ += message;
+    text_ += '\n';
+    if (text_.size() > kLongestText)
+        text_.erase(0, text_.find('\n', text_.size() - kLongestText) + 1);
+    const bool certain = contains(message, "Error:") && !contains(message, "Possible");
+    if (certain && error_.empty())
+        error_ = message;
+    else if (!contains(message, "Warning:") && !contains(message, "Render failed"))
+        suspect_ = message;
+}
+
+std::string Messages::reason() const {
+    if (!error_.empty())
+        return error_;
+    return suspect_.empty() ? "it gave no reason" : suspect_;
+}
+
+}  // namespace lodestone::povray

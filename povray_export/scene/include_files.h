@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Include files: what a scene shows, one file for every distinct representation, and its pictures.
+#pragma once
+
+#include "povray_export/scene/representation_writer.h"
+
+#include <filesystem>
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+namespace lodestone::povray {
+
+struct Include {
+    const Representation* representation = nullptr;
+    Hash hash = 0;
+    std::string identifier;
+    RepresentationOptions options = {};
+    bool pictured = false;  // shows pictures, as fine as they are seen
+    double texel = std::numeric_limits<double>::infinity();  // of its nearest use
+    uint64_t bytes = 0;
+    double cpu_s = 0;
+    bool written = false;
+    bool drawn = false;
+    bool bumps_left_out = false;
+};
+
+/// Those of one scene. The model must outlive it.
+class IncludeFiles {
+public:
+    /// `smaller`: large pictures are halved as far as texels say.
+    IncludeFiles(const Model& model, std::filesystem::path folder, bool smaller)
+        : model_(model), folder_(std::move(folder)), smaller_(smaller), pictures_(folder_) {}
+
+    /// The index of a representation's file; copies share one.
+    size_t add(const Representation& representation, const RepresentationOptions& options);
+    /// What a texel may cover where one that is `pictured` is used, in metres of its own frame.
+    void see(size_t index, double texel);
+    /// Their names, once all are added and seen.
+    void name();
+    /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
+    /// Error(Cancelled).
+    void write(const Job& job);
+
+    const Include& at(size_t index) const { return files_[index]; }
+    size_t size() const { return files_.size(); }
+    /// #include of each.
+    std::string statements() const;
+    PictureFolder::Totals pictures() const { return pictures_.totals(); }
+    /// Whether light is bent by any.
+    bool refracts() const;
+
+private:
+    bool pictured(const Include& include) const;
+
+    const Model& model_;
+    std::filesystem::path folder_;
+    bool smaller_;
+    PictureFolder pictures_;
+    std::vector<Include> files_;
+    std::unordered_map<Hash, size_t> known_;  // by file_hash without texel
+};
+
+/// CPU seconds of this thread.
+double thread_cpu_s();
+
+}  // namespace lodestone::povray

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Render settings: the size, part and antialiasing of a picture, as POV-Ray's scene.ini has them.
+#pragma once
+
+#include "model/view.h"
+#include "povray_export/scene/shading.h"
+
+#include <string>
+
+namespace lodestone::povray {
+
+/// All of scene.ini. `shading` is filled up; `transparent`: the picture has an alpha channel.
+std::string render_settings(const View& view, const Shading& shading, Antialiasing antialiasing,
+                            bool transparent);
+
+}  // namespace lodestone::povray

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/scene/scene_writer.h"
+
+#include "base/files.h"
+#include "choose/criterion.h"
+#include "light/light_arrival.h"
+#include "povray_export/lamp/light_plan.h"
+#include "povray_export/lamp/light_writer.h"
+#include "povray_export/lamp/scene_lights.h"
+#include "povray_export/scene/camera_writer.h"
+#include "povray_export/scene/include_files.h"
+#include "povray_export/scene/invertible_transform.h"
+#include "povray_export/scene/magnification.h"
+#include "povray_export/scene/occurrence_text.h"
+#include "povray_export/scene/povray_number.h"
+#include "povray_export/scene/ray_class_uses.h"
+#include "povray_export/scene/render_settings.h"
+#include "povray_export/scene/scene_head.h"
+#include "povray_export/texture/surface_finish.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace lodestone::povray {
+namespace {
+
+/// Below an Environment group, or a stand-in for a group that holds Environment.
+bool environment(const Model& model, const choose::Cut& cut,
+                 const std::vector<uint8_t>& holds_environment, uint32_t node) {
+    if (holds_environment[cut.nodes[node].object] != 0)
+        return true;
+    for (uint32_t at = node; at != choose::kNoParent; at = cut.nodes[at].parent) {
+        if (model.objects[cut.nodes[at].object].role == Role::Environment)
+            return true;
+    }
+    return false;
+}
+
+constexpr size_t kTypicalObject = 192;  // characters
+
+struct Use {
+    uint32_t node;
+    uint32_t lod;
+    size_t position;  // in cut.chosen
+    size_t file;      // index of the include file
+    Affine world;
+    RayMask hidden;                       // ray classes that do not see it
+    RayMask in_place = 0;                 // of what the camera sees, for these classes only
+    std::optional<glm::dvec3> dull = {};  // in this color alone
+};
+
+/// What glows and is hidden from gathering rays, as lights shine in its place: its color without
+/// its glow. Nothing for all else.
+std::optional<glm::dvec3> without_glow(const Model& model, const Representation& representation,
+                                       RayMask hidden) {
+    if ((hidden & kRadiosityRays) == 0)
+        return {};
+    glm::dvec3 color(0.0);
+    bool glows = false;
+    double count = 0;
+    for (const uint32_t index : representation.materials) {
+        if (index >= model.materials.size())
+            continue;
+        const Material& material = model.materials[index];
+        glows = glows || glm::dot(material.emission, material.emission) > 0;
+        color += glm::clamp(material.base_color, 0.0, 1.0);
+        ++count;
+    }
+    if (!glows)
+        return {};
+    return color / count;
+}
+
+class SceneWriter {
+public:
+    SceneWriter(const Model& model, const choose::Cut& cut, const View& view,
+                const ExportOptions& options, Problems& problems, const Job& job)
+        : model_(model),
+          cut_(cut),
+          view_(view),
+          options_(options),
+          problems_(problems),
+          job_(job),
+          shading_(shading_of(options, view.pixel_error)),
+          includes_(model, options.folder, shading_.texture_error > 0) {}
+
+    ExportReport write() {
+        const double start = thread_cpu_s();
+        job_.stage(Stage::Export);
+        check_view(view_);
+        if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
+            fail(Status::InvalidArgument, options_.colors.size(), " colors for ",
+                 cut_.chosen.size(), " chosen occurrences");
+        make_folders();
+        collect();
+        const double before_files = thread_cpu_s();
+        if (!options_.covered_only)
+            sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
+        includes_.write(job_);
+        hide_replaced();
+        const double after_files = thread_cpu_s();
+        name_problems();
+        if (!sky_.file.empty()) {
+            report_.bytes += sky_.bytes;
+            ++report_.files;
+            report_.written += sky_.written ? 1u : 0u;
+        }
+        write_text("scene.pov", scene());
+        write_text("scene.ini",
+                   render_settings(view_, shading_, options_.antialiasing, transparent()));
+        ExportReport report = report_;
+        for (size_t i = 0; i < includes_.size(); ++i) {
+            const Include& include = includes_.at(i);
+            report.cpu_s += include.cpu_s;
+            if (!include.drawn)
+                continue;
+            report.bytes += include.bytes;
+            ++report.files;
+            ++report.representations;
+            report.written += include.written ? 1u : 0u;
+        }
+        const PictureFolder::Totals pictures = includes_.pictures();
+        report.bytes += pictures.bytes;
+        report.files += pictures.files;
+        report.written += pictures.written;
+        report.cpu_s += before_files - start + thread_cpu_s() - after_files;
+        job_.progress(1);
+        return report;
+    }
+
+private:
+    static Shading shading_of(const ExportOptions& options, double pixel_error) {
+        Shading out = filled_up(options.shading, options.antialiasing, pixel_error);
+        if (!lit(options))
+            out.bounces = 0;
+        return out;
+    }
+
+    void make_folders() const {
+        std::error_code error;
+        std::filesystem::create_directories(options_.folder / "r", error);
+        if (error)
+            fail(Status::Io, "cannot make the folder '", (options_.folder / "r").string(),
+                 "': ", error.message());
+    }
+
+    /// What classes of rays meet, where there is light at all.
+    std::span<const choose::RayCut> rays() const {
+        return lit() ? options_.rays : std::span<const choose::RayCut>{};
+    }
+
+    void collect_own() {
+        const bool softened =
+            shading_.area_samples > 1 && shading_.shadow_error <= view_.pixel_error;
+        for (const OwnUse& own : own_uses(model_, cut_, rays(), softened))
+            add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures);
+    }
+
+    /// Hides from classes what they meet something else in place of, which must be there.
+    void hide_replaced() {
+        std::vector<RayMask> replaced(cut_.nodes.size(), 0);
+        for (const Use& use : uses_) {
+            if (includes_.at(use.file).drawn)
+                replaced[use.node] |= use.in_place;
+        }
+        replaced = spread(cut_, std::move(replaced));
+        for (Use& use : uses_) {
+            if (use.in_place == 0)
+                use.hidden |= replaced[use.node];
+        }
+    }
+
+    /// The path of its placements. The root has none and is called as its object is.
+    std::string called(uint32_t node) const {
+        const std::string path = choose::path_of(model_, cut_, node);
+        return path.empty() ? model_.objects.at(cut_.nodes[node].object).name : path;
+    }
+
+    /// Of a representation of its node, in its file.
+    void add_use(Use use, bool textures) {
+        const choose::Node& node = cut_.nodes[use.node];
+        const Representation& representation =
+            model_.objects.at(node.object).representations.at(use.lod);
+        if (!make_invertible(use.world)) {  // of a line or a point nothing is seen anyway
+            if (!use.world.finite())
+                problems_.push_back({called(use.node), Severity::Warning, "bad_transform",
+                                     "is not drawn: its transform is not a number"});
+            return;
+        }
+        use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt});
+        uses_.push_back(use);
+        if (includes_.at(use.file).pictured)
+            includes_.see(use.file, texel_of(node, representation, use.world));
+    }
+
+    void collect() {
+        const std::vector<uint8_t> holds_environment =
+            options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
+        const std::vector<uint8_t> nobody = left_out(cut_, rays());
+        for (size_t position = 0; position < cut_.chosen.size(); ++position) {
+            const uint32_t index = cut_.chosen[position];
+            if ((uses_.size() & 1023u) == 0)
+                job_.check();
+            const choose::Node& node = cut_.nodes.at(index);
+            const Object& object = model_.objects.at(node.object);
+            const Representation& representation = object.representations.at(node.lod);
+            if (representation.summary.kind == Kind::Assembly)
+                continue;
+            if (options_.covered_only && environment(model_, cut_, holds_environment, index))
+                continue;
+            if (nobody[index] != 0)
+                continue;
+            add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
+                    !options_.false_color);
+            // Else gathering rays would look through a lamp, at what it lights behind itself.
+            const std::optional<glm::dvec3> dull =
+                shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
+                                     : std::nullopt;
+            if (dull)
+                add_use({index, node.lod, position, 0, cut_.world(node),
+                         kAllRays & static_cast<RayMask>(~kRadiosityRays), kRadiosityRays, dull},
+                        false);
+        }
+        collect_own();
+        includes_.name();
+    }
+
+    /// What a texel may cover of one occurrence, in metres of its own frame.
+    double texel_of(const choose::Node& node, const Representation& representation,
+                    const Affine& world) const {
+        const Bound bound = transformed(representation.summary.bound, world);
+        const double z = distance(bound, view_.camera.position);
+        const double enlarged = stretch(world) * std::max(1.0, node.importance);
+        return shading_.texture_error * choose::pixel_size(view_, z) / enlarged;
+    }
+
+    /// Once for what several occurrences show.
+    void name_problems() {
+        std::vector<uint8_t> named(includes_.size(), 0);
+        for (const Use& use : uses_) {
+            if (!includes_.at(use.file).bumps_left_out || named[use.file]++ != 0)
+                continue;
+            problems_.push_back({called(use.node), Severity::Warning, "bump_not_flat",
+                                 "is shown without its bumps: POV-Ray shows them on flat faces"});
+        }
+    }
+
+    void write_text(const char* name, const std::string& text) {
+        write_file(options_.folder / name, text);
+        report_.bytes += text.size();
+        ++report_.files;
+        ++report_.written;
+    }
+
+    bool transparent() const { return options_.covered_only || view_world().transparent; }
+    static bool lit(const ExportOptions& options) {
+        return !options.covered_only && !options.false_color;
+    }
+    bool lit() const { return lit(options_); }
+    const World& view_world() const { return model_.world; }
+
+    /// Where depths are blurred each of 37 samples of a pixel or more casts its rays to every lamp,
+    /// so that half of them along an edge are as good.
+    LightSampling light_sampling() const {
+        constexpr int kFewest = 5;
+        const bool thorough = options_.antialiasing == Antialiasing::Reference;
+        int rays = shading_.area_samples;
+        if (!thorough && blurred(view_.camera))
+            rays = std::max(std::min(rays, kFewest), (rays - 1) / 2 + 1);
+        return {rays, thorough};
+    }
+    SkySampling sky_sampling() const {
+        return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
+    }
+
+    /// Lights are chosen by what the camera sees, as if all rays met that.
+    RayMask hidden_in_plan(const Use& use) const {
+        const RayMask own = cut_.nodes[use.node].hidden;
+        if (use.in_place != 0)
+            return kAllRays;
+        // What has flags is not parted; this one says nothing to lights
+        return use.hidden == own ? own : static_cast<RayMask>(own | kRadiosityRays);
+    }
+
+    /// By which lights what is drawn; its numbers are those of the uses that are drawn.
+    LightPlan light_plan(const std::vector<Bound>& occluders) {
+        const double error = options_.light_error.value_or(view_.pixel_error);
+        report_.lamps = static_cast<uint64_t>(
+            std::count_if(model_.lights.begin(), model_.lights.end(), light::lamp));
+        report_.lights_each = static_cast<double>(report_.lamps);
+        if (!lit() || !(error > 0) || report_.lamps < kFewLamps)
+            return {};
+        std::vector<Lit> drawn;
+        drawn.reserve(occluders.size());
+        for (const Use& use : uses_) {
+            if (includes_.at(use.file).drawn)
+                drawn.push_back(
+                    {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
+        }
+        LightPlan plan =
+            plan_lights(model_, drawn, view_, error, shading_.bounces, problems_, job_);
+        if (!plan.empty())
+            report_.lights_each = plan.lights_each;
+        return plan;
+    }
+
+    /// Everything that is drawn, with the lights of its group around it.
+    std::string grouped_objects(const LightPlan& plan, const std::vector<std::string>& lights,
+                                double times) {
+        std::string out;
+        std::vector<const Use*> drawn;
+        drawn.reserve(uses_.size());
+        if (plan.empty())
+            out.reserve(uses_.size() * kTypicalObject);
+        for (const Use& use : uses_) {
+            if (!includes_.at(use.file).drawn)
+                continue;
+            drawn.push_back(&use);
+            report_.unseen += use.in_place != 0 ? 1 : 0;
+            if (plan.empty())
+                append_object(out, use, times);
+        }
+        report_.occurrences = drawn.size();
+        std::vector<std::string> groups(plan.groups.size());
+        for (const Piece& piece : plan.pieces)
+            append_object(groups[piece.group], *drawn[piece.drawn], times, piece.within);
+        return plan.empty() ? out : grouped_text(plan, lights, groups);
+    }
+
+    /// What of it is `within` a box (world frame).
+    void append_object(std::string& out, const Use& use, double times,
+                       const std::optional<Box3>& within = {}) const {
+        out += "object{";
+        out += includes_.at(use.file).identifier;
+        out += ' ';
+        if (options_.false_color) {
+            const Kind kind = includes_.at(use.file).representation->summary.kind;
+            append_flat_texture(out, options_.colors.empty() ? color_of(kind, use.lod)
+                                                             : options_.colors[use.position]);
+            out += ' ';
+        }
+        if (use.dull) {
+            out += "texture{pigment{";
+            append_rgb(out, *use.dull);
+            out += "} finish{ambient 0 emission 0 diffuse 1}} ";
+        }
+        append_matrix(out, magnified(use.world, times));
+        append_hidden(out, use.hidden);
+        if (within) {
+            out += " clipped_by{box{";
+            append_vector(out, within->low * times, 15);
+            out += ',';
+            append_vector(out, within->high * times, 15);
+            out += "}}";
+        }
+        out += "} // ";
+        append_name(out, model_, cut_, use.node);
+        out += ", LOD ";
+        append_count(out, use.lod);
+        out += use.in_place != 0 ? ", unseen\n" : "\n";
+    }
+
+    std::string scene() {
+        Bound bound;
+        std::vector<Bound> occluders;
+        for (const Use& use : uses_) {
+            if (!includes_.at(use.file).drawn)
+                continue;
+            const Summary& summary = includes_.at(use.file).representation->summary;
+            occluders.push_back(transformed(summary.bound, use.world));
+            bound = merged(bound, occluders.back());
+        }
+        const double times = magnification(view_, occluders);
+        bound = magnified(bound, times);
+        const LightPlan plan = light_plan(occluders);
+        std::string lights;
+        const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
+                                       problems_);
+        const std::vector<std::string> names = scene_lights.declare(lights, plan);
+        std::string objects = grouped_objects(plan, names, times);
+        const Camera camera = magnified(view_.camera, times);
+        const SceneHead head{view_.pixel_error,    report_.occurrences, times,
+                             includes_.refracts(), transparent(),       camera.position};
+        std::string out = head_text(head, shading_, sky_);
+        append_camera(out, camera, options_.antialiasing, problems_);
+        if (lit()) {
+            for (const Light& light : model_.lights) {
+                if (plan.empty() || !light::lamp(light))
+                    scene_lights.append(out, light);
+            }
+            if (!plan.empty()) {
+                out += "// Of ";
+                append_count(out, report_.lamps);
+                out += " lamps a point is lit by ";
+                append_number(out, plan.lights_each, 3);
+                out += " lights on average, some of which stand for several\n" + lights;
+            }
+            if (!sky_.lights.empty())
+                out += "// The rest of the environment's light\n";
+            for (const Light& light : sky_.lights)
+                append_light(out, light, bound, light_sampling(), problems_);
+        }
+        out += '\n';
+        out += includes_.statements();
+        out += '\n';
+        objects.insert(0, out);
+        return objects;
+    }
+
+    const Model& model_;
+    const choose::Cut& cut_;
+    const View& view_;
+    const ExportOptions& options_;
+    Problems& problems_;
+    const Job& job_;
+    const Shading shading_;
+    IncludeFiles includes_;
+    std::vector<Use> uses_;
+    ExportReport report_;
+    Sky sky_;
+};
+
+}  // namespace
+
+ExportReport export_scene(const Model& model, const choose::Cut& cut, const View& view,
+                          const ExportOptions& options, Problems& problems, const Job& job) {
+    return SceneWriter(model, cut, view, options, problems, job).write();
+}
+
+}  // namespace lodestone::povray

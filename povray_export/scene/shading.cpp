@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/scene/shading.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lodestone::povray {
+namespace {
+
+// More are beyond what POV-Ray takes, or what anybody waits for.
+constexpr int kMostDepth = 9;
+constexpr int kMostTraceDepth = 100;
+constexpr int kMostAreaSamples = 129;
+constexpr int kMostSkyLights = 1024;
+constexpr int kMostHandings = 8;
+constexpr int kMostBounceRays = 1600;
+
+int sky_lights_of(Antialiasing antialiasing) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return 12;
+        case Antialiasing::Final:
+            return 24;
+        case Antialiasing::Reference:
+            break;
+    }
+    return 64;
+}
+
+struct Gathering {
+    int rays;
+    double error;
+};
+Gathering gathering_of(Antialiasing antialiasing) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return {60, 1};
+        case Antialiasing::Final:
+            return {200, 0.6};
+        case Antialiasing::Reference:
+            break;
+    }
+    return {800, 0.4};
+}
+
+/// POV-Ray refines by halving.
+int halving(int samples) {
+    if (samples <= 1)
+        return 1;
+    const auto parts = static_cast<unsigned>(std::clamp(samples, 3, kMostAreaSamples) - 1);
+    return static_cast<int>(std::bit_ceil(parts)) + 1;
+}
+
+}  // namespace
+
+Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixel_error) {
+    Shading out = shading;
+    out.threshold = shading.threshold > 0 ? std::min(shading.threshold, 3.0) : 0.1;
+    out.depth = shading.depth > 0 ? std::min(shading.depth, kMostDepth) : 3;
+    out.trace_depth = shading.trace_depth > 0 ? std::min(shading.trace_depth, kMostTraceDepth) : 5;
+    const int usual = antialiasing == Antialiasing::Off ? 1 : 17;
+    out.area_samples = halving(shading.area_samples > 0 ? shading.area_samples : usual);
+    out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
+                                             : std::clamp(shading.sky_lights, 0, kMostSkyLights);
+    out.shadow_error = shading.shadow_error > 0 ? shading.shadow_error : pixel_error;
+    const Gathering gathering = gathering_of(antialiasing);
+    out.bounces = std::clamp(shading.bounces, 0, kMostHandings);
+    out.bounce_rays =
+        shading.bounce_rays > 0 ? std::min(shading.bounce_rays, kMostBounceRays) : gathering.rays;
+    out.bounce_error =
+        shading.bounce_error > 0 ? std::clamp(shading.bounce_error, 0.01, 1.0) : gathering.error;
+    out.reflection_error = std::clamp(shading.reflection_error, 1.0, 255.0);
+    return out;
+}
+
+}  // namespace lodestone::povray

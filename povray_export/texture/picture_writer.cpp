@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/texture/picture_writer.h"
+
+#include "base/error.h"
+#include "base/files.h"
+#include "image/texture_sampler.h"
+#include "povray_export/scene/povray_number.h"
+#include "povray_export/texture/height_map.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+// Raised whenever what is baked changes: files are found again by their name alone.
+constexpr uint32_t kBakeVersion = 1;
+
+constexpr std::string_view kNameComment = "// i/";
+
+bool plain(const Texture& texture) {
+    return texture.scale == glm::dvec3(1.0) && texture.offset == glm::dvec3(0.0);
+}
+
+/// Color type of a PNG's header; -1 for one that POV-Ray is not trusted with (interlaced), or that
+/// has a transparent color.
+int png_color_type(const std::string& bytes) {
+    constexpr size_t kHeader = 33;  // signature and IHDR
+    if (bytes.size() < kHeader || bytes[28] != 0)
+        return -1;
+    for (size_t at = 8; at + 12 <= bytes.size();) {
+        size_t length = 0;
+        for (size_t i = 0; i < 4; ++i)
+            length = length << 8u | static_cast<unsigned char>(bytes[at + i]);
+        if (bytes.compare(at + 4, 4, "tRNS") == 0)
+            return -1;
+        if (bytes.compare(at + 4, 4, "IDAT") == 0 || length > bytes.size() - at - 12)
+            break;
+        at += length + 12;
+    }
+    return static_cast<unsigned char>(bytes[25]);
+}
+
+/// POV-Ray may read the picture's own file: it shows the texture's very values.
+bool usable_as_is(const Texture& texture, Content content) {
+    const Picture& picture = *texture.picture;
+    if (content == Content::Height || !plain(texture) || picture.format == PictureFormat::Exr)
+        return false;
+    const bool png = picture.format == PictureFormat::Png;
+    const int type = png ? png_color_type(picture.bytes) : -1;
+    if (content == Content::Color || content == Content::Filter)  // alpha would make holes
+        return texture.channel == Channel::Color && (!png || type == 0 || type == 2 || type == 3);
+    // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
+    return texture.channel != Channel::Alpha && type == 0;
+}
+
+int halved(int side, int halvings) {
+    return std::max(1, side >> halvings);
+}
+
+/// The mean of what each new texel covers.
+image::Image halved(const image::Image& from, int halvings) {
+    image::Image to;
+    to.width = halved(from.width, halvings);
+    to.height = halved(from.height, halvings);
+    to.pixels.resize(4 * to.size());
+    const auto begin = [](int at, int count, int size) {
+        return static_cast<int>(static_cast<int64_t>(at) * size / count);
+    };
+    for (int y = 0; y < to.height; ++y) {
+        const int top = begin(y, to.height, from.height);
+        const int bottom = std::max(top + 1, begin(y + 1, to.height, from.height));
+        for (int x = 0; x < to.width; ++x) {
+            const int left = begin(x, to.width, from.width);
+            const int right = std::max(left + 1, begin(x + 1, to.width, from.width));
+            std::array<double, 4> sum{};
+            for (int v = top; v < bottom; ++v) {
+                const size_t row = static_cast<size_t>(v) * static_cast<size_t>(from.width);
+                for (int u = left; u < right; ++u) {
+                    for (size_t c = 0; c < 4; ++c)
+                        sum[c] += from.pixels[4 * (row + static_cast<size_t>(u)) + c];
+                }
+            }
+            const double count = static_cast<double>(bottom - top) * (right - left);
+            const size_t at = static_cast<size_t>(y) * static_cast<size_t>(to.width);
+            for (size_t c = 0; c < 4; ++c)
+                to.pixels[4 * (at + static_cast<size_t>(x)) + c] =
+                    static_cast<float>(sum[c] / count);
+        }
+    }
+    return to;
+}
+
+std::string baked(const Texture& texture, Content content, int halvings) {
+    if (content == Content::Height)
+        return png_of(*height_map(texture));
+    image::Image from = image::decoded(*texture.picture);
+    image::Image to;
+    to.width = from.width;
+    to.height = from.height;
+    to.pixels.resize(from.pixels.size());
+    for (size_t i = 0; i < from.pixels.size(); i += 4) {
+        const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
+                               from.pixels[i + 3]);
+        if (content != Content::Number) {
+            const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
+            for (int c = 0; c < 3; ++c)
+                to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
+        } else {
+            const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
+            for (size_t c = 0; c < 3; ++c)
+                to.pixels[i + c] = static_cast<float>(number);
+        }
+        to.pixels[i + 3] = 1;
+    }
+    from.pixels.clear();
+    if (halvings > 0)
+        to = halved(to, halvings);
+    if (content != Content::Number) {
+        for (size_t i = 0; i < to.pixels.size(); ++i) {
+            if (i % 4 != 3)
+                to.pixels[i] = image::encode_srgb(to.pixels[i]);
+        }
+    }
+    return image::png_bytes(to);
+}
+
+/// Whether anything outside of the picture is looked at.
+bool leaves(const Texture& texture, const UvRange& range) {
+    constexpr double kEdge = 1e-4;
+    for (int corner = 0; corner < 4; ++corner) {
+        const glm::dvec2 at = to_picture(texture, {(corner & 1) != 0 ? range.high.x : range.low.x,
+                                                   (corner & 2) != 0 ? range.high.y : range.low.y});
+        for (int i = 0; i < 2; ++i) {
+            if (!(at[i] >= -kEdge && at[i] <= 1 + kEdge))
+                return true;
+        }
+    }
+    return false;
+}
+
+/// Below 0 and above 1 of an axis the border's texels: strips so wide that the center of one texel
+/// covers them.
+std::string extended(const std::string& inside, char axis, int texels) {
+    const bool x = axis == 'x';
+    const auto strip = [&](double center) {
+        std::string out = inside + (x ? " translate<" : " translate<0,");
+        append_number(out, -center);
+        out += x ? ",0,0> scale<1e9,1,1>" : ",0> scale<1,1e9,1>";
+        return out;
+    };
+    const std::string at(1, axis);
+    return "function{select(" + at + ",0,.5,select(" + at + "-1,.5,1))} pigment_map{[.2 " +
+           strip(0.5 / texels) + "][.2 " + inside + "][.8 " + inside + "][.8 " +
+           strip(1 - 0.5 / texels) + "]}";
+}
+
+/// Black outside 0...1 of both axes.
+std::string clipped(const std::string& inside) {
+    return "function{select(x,0,1)*select(1-x,0,1)*select(y,0,1)*select(1-y,0,1)} "
+           "pigment_map{[.5 rgb 0][.5 " +
+           inside + "]}";
+}
+
+/// The transform of a pattern (picture to mesh: POV-Ray looks up through its inverse).
+std::string mapping(const Texture& texture) {
+    std::array<double, 6> m = texture.to_picture;
+    if (m == std::array<double, 6>{1, 0, 0, 0, 1, 0})
+        return "";
+    for (double& value : m)  // beyond, nothing can be told apart; POV-Ray corrects columns < 1e-10
+        value = std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0;
+    const auto determinant = [&m] { return m[0] * m[4] - m[1] * m[3]; };
+    constexpr double kThin = 1e-6;  // a line or a point of the picture is a very thin part of it
+    if (std::abs(determinant()) < kThin * kThin) {
+        m[0] += kThin;
+        m[4] += kThin;
+    }
+    if (std::abs(determinant()) < kThin * kThin) {
+        m[1] += 2 * kThin;
+        m[3] -= 2 * kThin;
+    }
+    const double d = determinant();
+    const double a = m[4] / d;
+    const double b = -m[1] / d;
+    const double c = -m[3] / d;
+    const double e = m[0] / d;
+    const double values[] = {
+        a, c, 0, b, e, 0, 0, 0, 1, -(a * m[2] + b * m[5]), -(c * m[2] + e * m[5]), 0};
+    std::string out = " matrix<";
+    for (size_t i = 0; i < std::size(values); ++i) {
+        append_number(out, values[i]);
+        out += i + 1 < std::size(values) ? "," : ">";
+    }
+    return out;
+}
+
+}  // namespace
+
+int halvings_of(const Texture& texture, double texel) {
+    if (!(texel > 0) || texture.interpolation != Interpolation::Linear)
+        return 0;
+    const std::array<double, 6>& m = texture.to_picture;
+    const double most = std::min(texel * std::hypot(m[0], m[1]) * texture.picture->width,
+                                 texel * std::hypot(m[3], m[4]) * texture.picture->height);
+    const int side = std::min(texture.picture->width, texture.picture->height);
+    int halvings = 0;
+    while ((side >> (halvings + 1)) > 0 && std::ldexp(1.0, halvings + 1) <= most)
+        ++halvings;
+    return halvings;
+}
+
+std::string PictureWriter::file_of(const Texture& texture, Content content, int halvings) {
+    const Picture& picture = *texture.picture;
+    if (picture.bytes.empty())
+        fail(Status::Internal, "the picture '", picture.name, "' is not resident");
+    File file{texture, content, halvings == 0 && usable_as_is(texture, content), halvings};
+    Hasher hasher;
+    hasher.value(picture.hash);
+    if (!file.as_is) {
+        hasher.value(kBakeVersion)
+            .value(content == Content::Filter ? Content::Color : content)
+            .value(texture.channel);
+        if (halvings > 0)
+            hasher.value(halvings);
+        for (int i = 0; i < 3; ++i)
+            hasher.value(texture.scale[i]).value(texture.offset[i]);
+    }
+    std::string name =
+        "i/" + hex16(hasher.result()) + '.' + (file.as_is ? suffix_of(picture.format) : "png");
+    files_.try_emplace(name, std::move(file));
+    return name;
+}
+
+std::string PictureWriter::file_reference(const Texture& texture, Content content, int halvings) {
+    const std::string name = file_of(texture, content, halvings);
+    const File& file = files_.at(name);
+    const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
+    const bool encoded = file.as_is ? texture.picture->space == ColorSpace::Srgb
+                                    : content == Content::Color || content == Content::Filter;
+    return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
+}
+
+std::string PictureWriter::pigment(const Texture& texture, Content content, const UvRange& range) {
+    const int halvings = content == Content::Height ? 0 : halvings_of(texture, range.texel);
+    const std::string reference = file_reference(texture, content, halvings);
+    const bool repeats = texture.extension == Extension::Repeat;
+    // `once` keeps the interpolation at a border from reaching over to the opposite one.
+    const std::string image =
+        "image_map{" + reference +
+        (texture.interpolation == Interpolation::Linear ? " interpolate 2" : "") +
+        (content == Content::Filter ? " filter all 1" : "") + (repeats ? "}" : " once}");
+    const std::string identifier = "LDS_I_" + hex16(Hasher().text(image).result());
+    declared_[identifier] = image;
+    std::string out = identifier;
+    if (!repeats && leaves(texture, range)) {
+        switch (texture.extension) {
+            case Extension::Extend:
+                out = extended(extended(out, 'x', halved(texture.picture->width, halvings)), 'y',
+                               halved(texture.picture->height, halvings));
+                break;
+            case Extension::Clip:
+                out = clipped(out);
+                break;
+            case Extension::Mirror:
+                out += " warp{repeat x flip x} warp{repeat y flip y}";
+                break;
+            case Extension::Repeat:
+                break;
+        }
+    }
+    return out + mapping(texture);
+}
+
+std::string PictureWriter::declarations() const {
+    std::string out;
+    for (const auto& [name, file] : files_)
+        out += "// " + name + '\n';
+    for (const auto& [identifier, inside] : declared_)
+        out.append("#ifndef(")
+            .append(identifier)
+            .append(") #declare ")
+            .append(identifier)
+            .append(" = pigment{")
+            .append(inside)
+            .append("} #end\n");
+    return out;
+}
+
+void PictureWriter::write(PictureFolder& folder) const {
+    for (const auto& [name, file] : files_)
+        folder.add(name, [&file = file] {
+            return file.as_is ? file.texture.picture->bytes
+                              : baked(file.texture, file.content, file.halvings);
+        });
+}
+
+void PictureFolder::add(const std::string& name, const std::function<std::string()>& bytes) {
+    std::error_code error;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto [at, fresh] = names_.try_emplace(name, false);
+        if (!fresh || std::filesystem::exists(folder_ / name, error))
+            return;
+        at->second = true;
+    }
+    std::filesystem::create_directories(folder_ / "i", error);
+    if (error)
+        fail(Status::Io, "cannot make the folder '", (folder_ / "i").string(),
+             "': ", error.message());
+    write_file(folder_ / name, bytes());
+}
+
+bool PictureFolder::found(const std::vector<std::string>& names) {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& name : names) {
+        std::error_code error;
+        if (names_.contains(name))
+            continue;
+        if (!std::filesystem::exists(folder_ / name, error))
+            return false;
+        names_.try_emplace(name, false);
+    }
+    return true;
+}
+
+PictureFolder::Totals PictureFolder::totals() const {
+    Totals totals;
+    for (const auto& [name, written] : names_) {
+        std::error_code error;
+        const uintmax_t bytes = std::filesystem::file_size(folder_ / name, error);
+        ++totals.files;
+        totals.bytes += error ? 0 : bytes;
+        totals.written += written ? 1u : 0u;
+    }
+    return totals;
+}
+
+double brightest_of(const Picture& picture) {
+    static std::mutex mutex;
+    static std::unordered_map<Hash, double> known;
+    if (picture.format != PictureFormat::Exr)
+        return 1;
+    {
+        const std::lock_guard lock(mutex);
+        const auto found = known.find(picture.hash);
+        if (found != known.end())
+            return found->second;
+    }
+    const image::Image image = image::decoded(picture);
+    double most = 1;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        if (i % 4 != 3)
+            most = std::max(most, static_cast<double>(image.pixels[i]));
+    }
+    const std::lock_guard lock(mutex);
+    return known[picture.hash] = most;
+}
+
+std::vector<std::string> pictures_named(std::string_view text) {
+    std::vector<std::string> names;
+    while (text.starts_with(kNameComment)) {
+        const size_t end = text.find('\n');
+        if (end == std::string_view::npos)
+            break;
+        const std::string_view name = text.substr(3, end - 3);
+        if (safe_relative_name(name))
+            names.emplace_back(name);
+        text.remove_prefix(end + 1);
+    }
+    return names;
+}
+
+}  // namespace lodestone::povray

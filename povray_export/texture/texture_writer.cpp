@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/texture/texture_writer.h"
+
+#include "povray_export/scene/povray_number.h"
+#include "povray_export/texture/height_map.h"
+#include "povray_export/texture/surface_finish.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+// A finish cannot follow a picture: textures at this many steps of roughness are blended instead.
+// Highlights change fastest where the surface is smooth.
+constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
+
+// POV-Ray multiplies what surfaces emit and answer to the sky by the pigment, so a black one needs
+// a trace of color: lit, that is never seen.
+constexpr double kLeastPigment = 1e-4;
+
+constexpr const char* kClear =
+    "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
+
+double share(double value, double otherwise) {
+    return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
+}
+
+/// What all channels are multiplied by, where that is all that is done to them and about 1 (a
+/// picture cannot hold more than 1); else 1.
+double even_scale(const Texture& texture) {
+    constexpr double kMost = 2;
+    const glm::dvec3& scale = texture.scale;
+    const bool even = std::abs(scale.x - scale.y) <= 1e-9 * std::abs(scale.x) &&
+                      std::abs(scale.x - scale.z) <= 1e-9 * std::abs(scale.x);
+    return even && texture.offset == glm::dvec3(0.0) && scale.x >= 1 / kMost && scale.x <= kMost
+               ? scale.x
+               : 1;
+}
+
+/// Inside of texture{...} or of an entry of a texture_map.
+using Body = std::string;
+
+class TextureText {
+public:
+    TextureText(const Surface& surface, PictureWriter& pictures)
+        : surface_(surface), pictures_(pictures) {}
+
+    Body mixed(const Material& material) {
+        if (!material.other)
+            return covered(material);
+        const double mix = share(material.mix, 0);
+        if (shown(material.mix_texture))
+            return blended(material.mix_texture,
+                           {{0, covered(material)}, {1, mixed(*material.other)}});
+        return average(covered(material), mixed(*material.other), mix);
+    }
+
+private:
+    using Entries = std::vector<std::pair<double, Body>>;
+
+    bool shown(const Texture& texture) const { return texture && surface_.uvs; }
+
+    std::string pigment(const Texture& texture, Content content) {
+        return "uv_mapping " + pictures_.pigment(texture, content, surface_.range);
+    }
+
+    /// POV-Ray's bump_map knows no direction of u, so the height is a pattern in space, laid on the
+    /// plane of the surface: a slope of 1 needs an amount of 7.5 (measured).
+    std::string normal(const Material& material) {
+        if (!surface_.flat)
+            return "";
+        std::string bump;
+        std::string map;
+        const bool both = shown(material.bump_texture) && shown(material.normal_texture);
+        if (shown(material.bump_texture) && std::isfinite(material.bump_distance) &&
+            material.bump_distance != 0)
+            bump = relief(material.bump_texture, Content::Number,
+                          std::clamp(material.bump_distance, -1e6, 1e6) * (both ? 2 : 1), 1);
+        if (shown(material.normal_texture) && std::isfinite(material.normal_strength)) {
+            const Texture& texture = material.normal_texture;
+            const std::shared_ptr<const HeightMap> heights = height_map(texture);
+            const glm::dvec2 size = picture_size(texture);
+            // Of a texel; where it is no square its slopes are true on average.
+            const double wide = std::sqrt(size.x / heights->width * size.y / heights->height);
+            map = relief(texture, Content::Height,
+                         std::clamp(material.normal_strength, 0.0, 10.0) * heights->range * wide *
+                             (both ? 2 : 1),
+                         std::max(texture.picture->width / heights->width, 1));
+        }
+        if (bump.empty() && map.empty())
+            return "";
+        if (bump.empty() || map.empty())
+            return "normal{" + bump + map + "} ";
+        return "normal{average normal_map{[1 " + bump + "][1 " + map + "]}} ";
+    }
+
+    /// Metres of the whole picture across and along, on this plane.
+    glm::dvec2 picture_size(const Texture& texture) const {
+        const std::array<double, 6>& m = texture.to_picture;
+        const glm::dmat3 rows = glm::transpose(surface_.to_uv.linear);
+        return {1 / std::max(glm::length(m[0] * rows[0] + m[1] * rows[1]), 1e-9),
+                1 / std::max(glm::length(m[3] * rows[0] + m[4] * rows[1]), 1e-9)};
+    }
+
+    /// `height`: metres of white; `texels`: of the picture, that one of the pattern covers.
+    std::string relief(const Texture& texture, Content content, double height, int texels) {
+        const glm::dvec2 size = picture_size(texture);
+        const double texel =
+            std::min(size.x / texture.picture->width, size.y / texture.picture->height);
+        std::string out =
+            "pigment_pattern{" + pictures_.pigment(texture, content, surface_.range) + ' ';
+        Affine from_uv;
+        from_uv.linear = glm::inverse(surface_.to_uv.linear);
+        from_uv.offset = -(from_uv.linear * surface_.to_uv.offset);
+        append_matrix(out, from_uv);
+        append_number(out += "} ", 7.5 * height, 6);
+        append_number(out += " accuracy ", std::max(texels * texel / 2, 1e-9), 6);
+        return out;
+    }
+
+    static Body map(const Entries& entries) {
+        Body out = " texture_map{";
+        for (const auto& [at, body] : entries) {
+            out += '[';
+            append_number(out, at, 6);
+            out += ' ' + body + ']';
+        }
+        return out + '}';
+    }
+
+    /// By the number of a texture.
+    Body blended(const Texture& texture, const Entries& entries) {
+        return "pigment_pattern{" + pigment(texture, Content::Number) + '}' + map(entries);
+    }
+
+    /// (1 - second) of a and second of b.
+    static Body average(Body a, Body b, double second) {
+        if (second <= 0 || a == b)
+            return a;
+        if (second >= 1)
+            return b;
+        return "average" + map({{1 - second, std::move(a)}, {second, std::move(b)}});
+    }
+
+    /// A share of alpha of the surface, the rest is not there.
+    Body covered(const Material& material) {
+        Body body = rough(material);
+        if (material.alpha_mode == AlphaMode::Opaque)
+            return body;
+        const double paint = material.vertex_colors ? share(surface_.color.w, 1) : 1;
+        const double cutoff = share(material.alpha_cutoff, 0.5);
+        const bool clip = material.alpha_mode == AlphaMode::Clip;
+        if (!shown(material.alpha_texture)) {
+            const double alpha = paint * share(material.alpha, 1);
+            if (clip)
+                return alpha >= cutoff ? body : kClear;
+            return average(kClear, body, alpha);
+        }
+        if (!clip)
+            return average(kClear, blended(material.alpha_texture, {{0, kClear}, {1, body}}),
+                           paint);
+        if (cutoff <= 0)
+            return body;
+        const double least = paint > 0 ? cutoff / paint : 2;
+        if (least > 1)
+            return kClear;
+        return blended(material.alpha_texture, {{least, kClear}, {least, body}});
+    }
+
+    Body rough(const Material& material) {
+        Look look = look_of(material);
+        if (!shown(material.roughness_texture))
+            return metal(material, look);
+        Entries entries;
+        for (const double roughness : kRoughnessSteps) {
+            look.roughness = roughness;
+            entries.emplace_back(roughness, metal(material, look));
+        }
+        return blended(material.roughness_texture, entries);
+    }
+
+    Body metal(const Material& material, Look look) {
+        if (!shown(material.metallic_texture))
+            return lit(material, look);
+        look.metallic = 0;
+        const Body dielectric = lit(material, look);
+        look.metallic = 1;
+        return blended(material.metallic_texture, {{0, dielectric}, {1, lit(material, look)}});
+    }
+
+    Body lit(const Material& material, const Look& look) {
+        const double through = share(material.transmission, 0) * (1 - look.metallic);
+        if (through <= 0)
+            return solid(material, look);
+        return average(solid(material, look), glass(material, look), through);
+    }
+
+    /// Filters by the base color where light enters and where it leaves; the index of refraction is
+    /// the object's. Other than in a path tracer without caustics its shadow is bright.
+    Body glass(const Material& material, const Look& look) {
+        Body out = "pigment{";
+        if (shown(material.base_color_texture)) {
+            out += pigment(material.base_color_texture, Content::Filter);
+        } else {
+            out += "rgbf <";
+            for (int i = 0; i < 3; ++i) {
+                const double paint = material.vertex_colors ? share(surface_.color[i], 1) : 1;
+                append_number(out, paint * share(material.base_color[i], 0.8), 6);
+                out += ',';
+            }
+            out += "1>";
+        }
+        out += "} " + normal(material);
+        append_glass_finish(out, look);
+        return out;
+    }
+
+    Body solid(const Material& material, const Look& look) {
+        glm::dvec3 base;
+        glm::dvec3 emission;
+        glm::dvec3 paint(1.0);
+        for (int i = 0; i < 3; ++i) {
+            base[i] = share(material.base_color[i], 0.8);
+            emission[i] = std::isfinite(material.emission[i])
+                              ? std::clamp(material.emission[i], 0.0, 1e9)
+                              : 0;
+            if (material.vertex_colors)
+                paint[i] = share(surface_.color[i], 1);
+        }
+        const bool image = shown(material.base_color_texture);
+        const bool lamp = shown(material.emission_texture);
+        // What the paint leaves of a picture's brightness, and what its own scale does, is left to
+        // the finish: a picture is baked for every distinct hue only.
+        const double scale = image ? even_scale(material.base_color_texture) : 1;
+        const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
+        const double brightness = scale * painted;
+        Finish finish = finish_of(look);
+        finish.ambient *= brightness;
+        finish.diffuse *= brightness;
+        finish.specular *= std::lerp(1.0, brightness, finish.metallic);
+        // What has not the color of the pigment, and is the same all over.
+        const glm::dvec3 white(white_sky(look));
+        glm::dvec3 even = lamp ? glm::dvec3(0.0) : emission;
+        const bool plain = image && (white != glm::dvec3(0.0) || even != glm::dvec3(0.0));
+        const double parts = 1 + (lamp ? 1 : 0) + (plain ? 1 : 0);
+        Body body = "pigment{";
+        if (image) {
+            Texture texture = material.base_color_texture;
+            if (painted > 0)
+                texture.offset *= paint / painted;
+            texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
+            body += pigment(texture, Content::Color);
+        } else {
+            glm::dvec3 color = base * paint;
+            for (int i = 0; i < 3; ++i) {
+                if (white[i] + even[i] <= 0)
+                    continue;
+                color[i] = std::max(color[i], kLeastPigment);
+                finish.ambient[i] += white[i] / color[i];
+                even[i] /= color[i];
+            }
+            append_rgb(body, color);
+        }
+        body += "} " + normal(material);
+        append_finish(body, finish, parts, plain ? glm::dvec3(0.0) : parts * even);
+        if (parts == 1)
+            return body;
+        Entries entries{{1, std::move(body)}};
+        if (lamp)
+            entries.emplace_back(1, glow(material.emission_texture, parts));
+        if (plain) {
+            Finish rest;
+            rest.ambient = white;
+            Body text = "pigment{rgb 1} ";
+            append_finish(text, rest, parts, parts * even);
+            entries.emplace_back(1, std::move(text));
+        }
+        return "average" + map(entries);
+    }
+
+    /// Brighter than 1 is not for a picture: its brightness is left to the finish.
+    Body glow(Texture texture, double light) {
+        const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
+        const double brightest =
+            std::max({most.x, most.y, most.z, 1e-9}) * brightest_of(*texture.picture);
+        texture.scale /= brightest;
+        texture.offset /= brightest;
+        Body out = "pigment{" + pigment(texture, Content::Color) + "} ";
+        append_finish(out, Finish{}, 0, glm::dvec3(light * brightest));
+        return out;
+    }
+
+    const Surface& surface_;
+    PictureWriter& pictures_;
+};
+
+}  // namespace
+
+std::string texture_text(const Material& material, const Surface& surface,
+                         PictureWriter& pictures) {
+    return "texture{" + TextureText(surface, pictures).mixed(material) + '}';
+}
+
+bool bumpy(const Material& material) {
+    return material.bump_texture || material.normal_texture ||
+           (material.other && bumpy(*material.other));
+}
+
+double refraction_of(const Material& material) {
+    const double other = material.other ? refraction_of(*material.other) : 0;
+    if (!(material.transmission > 0) || !std::isfinite(material.ior))
+        return other;
+    return std::clamp(material.ior, 0.1, 10.0);
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texture writer: a material as the text of a POV-Ray texture.
+#pragma once
+
+#include "base/maths.h"
+#include "model/material.h"
+#include "povray_export/texture/picture_writer.h"
+
+#include <glm/vec4.hpp>
+
+#include <string>
+
+namespace lodestone::povray {
+
+/// What of a surface its texture's text depends on.
+struct Surface {
+    bool uvs = false;  // without texture coordinates every texture is its mean
+    UvRange range;
+    glm::dvec4 color{1.0};  // of its vertices, linear; counts where the material uses it
+    bool flat = false;      // in one plane with to_uv; bumps are shown on such surfaces only
+    Affine to_uv;           // position to (u, v, height above the plane), where flat
+};
+
+/// texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted averages of
+/// whole textures, which is what they mean; base color, emission and the white reflection of the
+/// sky are averaged at two or three times their strength where one pigment cannot be all of them.
+/// Values out of range are clamped, so that any material gives text that POV-Ray reads.
+std::string texture_text(const Material& material, const Surface& surface, PictureWriter& pictures);
+
+/// Whether it shows more of a flat surface.
+bool bumpy(const Material& material);
+
+/// Index of refraction of a material that light goes through; 0 for all others.
+double refraction_of(const Material& material);
+
+}  // namespace lodestone::povray
