@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later Light coverage: makes sure that every point a picture
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light coverage: makes sure that every point a picture
 // shows has a lit point near it that sees it, so that no part of a thing is left without the lamps
 // of its room.
 #pragma once

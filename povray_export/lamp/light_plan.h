@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later Light plan: the few lights that each object of a scene
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light plan: the few lights that each object of a scene
 // needs, so that a view looks as with all lamps.
 #pragma once
 
