@@ -7,10 +7,10 @@
 // the table costs (once per change of the model) and finding the Pixel Error for a budget of
 // memory. Then the eye moves: milliseconds of the cut that goes along with it, and of whole ones in
 // turns with it, each the mean of 50 steps, least / median / most of five walks.
-#include "backend/models.h"
 #include "base/clock.h"
 #include "choose/cut_budget.h"
 #include "choose/follow/cut_stepper.h"
+#include "scenes/small_models.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,13 +3,13 @@
 // Prints JSON: for each shape and replacement the mean intersection over union of 20 silhouettes,
 // how far off area, centroid and tensor of solids and composites are, in percent, by a million
 // other rays from the thing as drawn, and color and brightness, in 255ths, by 16 times the rays.
-#include "backend/rematched.h"
 #include "base/files.h"
 #include "format/ply.h"
 #include "hierarchy/build_settings.h"
 #include "measure/deviation/surface_deviation.h"
 #include "measure/visible/visible_attributes.h"
 #include "model/representation.h"
+#include "scenes/rematched_stand_ins.h"
 #include "simplify/simplify.h"
 #include "solids/composite_replacement.h"
 #include "solids/keep_on_floor.h"

@@ -106,7 +106,7 @@ class TheRepository(unittest.TestCase):
 
     def test_every_backend_test_opens_with_what_it_guards(self):
         for name in files():
-            if re.fullmatch(r"tests/(backend|povray|capi)/test_\w+\.(cpp|c)", name):
+            if re.fullmatch(r"tests/(backend|povray|capi)/(\w+/)*test_\w+\.(cpp|c)", name):
                 self.assertRegex(text_of(name).split("\n")[1], r"^(//|/\*) \w", name)
 
     def test_package_lists_are_sound(self):

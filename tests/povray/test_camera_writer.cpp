@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the text of cameras and of the part of the picture that is drawn. That the blur is Cycles'
 // is tests/blender/blender_test_camera.py's to prove.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/scene/camera_writer.h"
 
 using namespace lodestone;

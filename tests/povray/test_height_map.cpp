@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards height maps: the slopes of what is found are those of the normal map.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/texture/height_map.h"
 
 using namespace lodestone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that whatever a picture shows is spoken for by a lit point that is near it and sees it.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/lamp/light_coverage.h"
 #include "ray/mesh_scene.h"
 

@@ -2,7 +2,7 @@
 // Guards approximated lights in pictures: rooms shade with their own lamps, nothing shines through
 // walls, floors of many rooms are cut, and what the number allows is all that differs.
 #include "base/parallel.h"
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/lamp/light_plan.h"
 #include "ray/mesh_scene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that small scenes get their shadows, and that others stay as large as they are.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/scene/magnification.h"
 
 #include <limits>

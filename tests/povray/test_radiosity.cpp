@@ -2,7 +2,7 @@
 // Guards light that surfaces hand on: its energy is what geometric series say, skies are not
 // counted twice, rooms behind windows are not black, and nothing of it is there where nobody asked.
 #include "image/image.h"
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/lamp/radiosity.h"
 
 using namespace lodestone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what POV-Ray makes of the exported text: light, finish, camera, primitives, false colors.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/texture/surface_finish.h"
 
 #include <fstream>

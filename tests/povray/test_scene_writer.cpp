@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the exported text: sharing, rounding, hostile input.
 #include "base/parallel.h"
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/scene/representation_writer.h"
 #include "povray_export/texture/surface_finish.h"

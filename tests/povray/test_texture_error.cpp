@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how far image textures are made smaller: never so that a pixel could tell more than asked.
-#include "povray/scene.h"
+#include "povray/povray_scenes.h"
 #include "povray_export/texture/picture_writer.h"
 
 #include <optional>

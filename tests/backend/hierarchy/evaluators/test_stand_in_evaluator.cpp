@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards what is said of a group's children that are drawn together: each may be right alone.
+#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "scenes/small_models.h"
+#include "scenes/with_rays.h"
+
+using namespace lodestone;
+
+namespace {
+
+class Judge : public WithRays {};
+
+constexpr double kThick = 0.04;
+constexpr double kCover = 0.003;
+
+Mesh book(double low, uint16_t paper, uint16_t cover) {
+    Mesh mesh;
+    append(mesh, shapes::box({0, 0, low + kCover}, {0.2, 0.28, low + kThick - kCover}), {}, paper);
+    append(mesh, shapes::box({0, 0, low}, {0.2, 0.28, low + kCover}), {}, cover);
+    append(mesh, shapes::box({0, 0, low + kThick - kCover}, {0.2, 0.28, low + kThick}), {}, cover);
+    return mesh;
+}
+
+}  // namespace
+
+TEST_F(Judge, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
+    // Alone a book shows its dark covers above all, in a pile its paper.
+    const glm::dvec3 paper(0.8);
+    const glm::dvec3 cover(0.05);
+    constexpr int kBooks = 12;
+    Mesh pile;
+    Mesh boxes;
+    for (int i = 0; i < kBooks; ++i) {
+        append(pile, book(kThick * i, 0, 1), {});
+        append(boxes, shapes::box({0, 0, kThick * i}, {0.2, 0.28, kThick * (i + 1)}), {});
+    }
+    boxes.slots.assign(boxes.triangles.size(), 0);
+    const double covers = 2 * 0.2 * 0.28;
+    const double sides = 2 * (0.2 + 0.28) * kThick;
+    const std::vector<Material> materials{models::colored("paper", paper),
+                                          models::colored("cover", cover)};
+    image::TexelCache texels;
+    hierarchy::Judge judge(pile, materials, texels, {}, false, 1, 0.001, {});
+    constexpr double kError = 0.2;  // metres: pixels of a third of the pile
+    const auto alike = [&](const Mesh& drawn, double brightness, const glm::dvec3& other) {
+        return judge.looks_alike(drawn,
+                                 std::vector<Material>{models::colored("a", brightness * paper),
+                                                       models::colored("b", other)},
+                                 pile, kError, {});
+    };
+    EXPECT_TRUE(alike(pile, 1, cover));
+    EXPECT_TRUE(alike(pile, 0.95, cover));
+    EXPECT_FALSE(alike(pile, 0.8, 0.8 * cover));
+    const glm::dvec3 mean = (covers * cover + sides * paper) / (covers + sides);
+    EXPECT_FALSE(alike(boxes, mean.x / paper.x, mean));
+    EXPECT_FALSE(judge.looks_alike(pile, materials, pile, 0.0005, {}));  // finer than its own
+}

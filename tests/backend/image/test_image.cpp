@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards reading and writing of pictures: every layout gives the same floats, no file can crash us.
+#include "base/error.h"
+#include "base/files.h"
+#include "image/image.h"
+#include "scenes/damaged_files.h"
+#include "scratch.h"
+
+#include <jpeglib.h>
+#include <png.h>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
+#include <zlib.h>
+
+namespace lodestone::image {
+namespace {
+
+std::filesystem::path scratch(const std::string& name) {
+    return own_scratch() / name;
+}
+
+/// A PNG of any layout; `rows` as libpng packs them.
+std::string png(int width, int height, int depth, int color, std::vector<unsigned char> rows,
+                bool interlaced = false, const std::vector<png_color>& palette = {},
+                const std::vector<unsigned char>& palette_alpha = {}) {
+    std::string out;
+    png_structp file = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(file);
+    png_set_write_fn(
+        file, &out,
+        [](png_structp f, png_bytep data, size_t size) {
+            static_cast<std::string*>(png_get_io_ptr(f))
+                ->append(reinterpret_cast<char*>(data), size);
+        },
+        nullptr);
+    png_set_IHDR(file, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+                 depth, color, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (!palette.empty())
+        png_set_PLTE(file, info, palette.data(), static_cast<int>(palette.size()));
+    if (!palette_alpha.empty())
+        png_set_tRNS(file, info, palette_alpha.data(), static_cast<int>(palette_alpha.size()),
+                     nullptr);
+    png_write_info(file, info);
+    const size_t row = png_get_rowbytes(file, info);
+    std::vector<png_bytep> starts;
+    for (size_t y = 0; y < static_cast<size_t>(height); ++y)
+        starts.push_back(rows.data() + y * row);
+    png_write_image(file, starts.data());
+    png_write_end(file, info);
+    png_destroy_write_struct(&file, &info);
+    return out;
+}
+
+std::string jpeg(int width, int height, int channels, J_COLOR_SPACE space, unsigned char value) {
+    jpeg_compress_struct file{};
+    jpeg_error_mgr errors{};
+    file.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&file);
+    unsigned char* data = nullptr;
+    unsigned long size = 0;
+    jpeg_mem_dest(&file, &data, &size);
+    file.image_width = static_cast<JDIMENSION>(width);
+    file.image_height = static_cast<JDIMENSION>(height);
+    file.input_components = channels;
+    file.in_color_space = space;
+    jpeg_set_defaults(&file);
+    jpeg_set_quality(&file, 100, TRUE);
+    jpeg_start_compress(&file, TRUE);
+    std::vector<unsigned char> row(static_cast<size_t>(width * channels), value);
+    for (size_t x = 0; channels == 3 && x < row.size(); x += 3)
+        row[x] = 255;
+    unsigned char* start = row.data();
+    while (file.next_scanline < file.image_height)
+        jpeg_write_scanlines(&file, &start, 1);
+    jpeg_finish_compress(&file);
+    jpeg_destroy_compress(&file);
+    std::string out(reinterpret_cast<char*>(data), size);
+    std::free(data);
+    return out;
+}
+
+/// Channels named by letters; pixel (x, y) of channel i is 100 i + 10 y + x, counted in the window.
+std::string exr(const std::string& letters, const Imath::Box2i& data, const Imath::Box2i& display) {
+    const std::string path = scratch("made.exr").string();
+    {
+        Imf::Header header(display, data);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        const auto width = static_cast<size_t>(data.max.x - data.min.x) + 1;
+        const auto height = static_cast<size_t>(data.max.y - data.min.y) + 1;
+        std::vector<std::vector<float>> planes(letters.size());
+        Imf::FrameBuffer buffer;
+        for (size_t i = 0; i < letters.size(); ++i) {
+            const std::string name(1, letters[i]);
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            for (size_t y = 0; y < height; ++y) {
+                for (size_t x = 0; x < width; ++x)
+                    planes[i].push_back(static_cast<float>(100 * i + 10 * y + x));
+            }
+            buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, planes[i].data(), data));
+        }
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(static_cast<int>(height));
+    }
+    std::string bytes = read_file(path);
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+std::string complaint(const std::string& bytes) {
+    try {
+        read(bytes, "the file");
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+const float* pixel(const Image& image, int x, int y) {
+    return image.pixels.data() + ptrdiff_t{4} * (ptrdiff_t{y} * image.width + x);
+}
+
+void expect_pixel(const Image& image, int x, int y, std::array<float, 4> expected) {
+    for (size_t c = 0; c < 4; ++c)
+        EXPECT_NEAR(pixel(image, x, y)[c], expected[c], 1e-6f) << x << ' ' << y << ' ' << c;
+}
+
+TEST(Image, EmptyAndForeignFilesAreRefusedByName) {
+    EXPECT_NE(complaint("").find("'the file' is not a PNG"), std::string::npos);
+    EXPECT_NE(complaint("GIF89a").find("not a PNG"), std::string::npos);
+    EXPECT_THROW(read(scratch("nowhere.png")), Error);
+}
+
+TEST(Image, OnePixelSurvivesPng) {
+    Image image;
+    image.width = image.height = 1;
+    image.pixels = {1, 0.2f, 0.4f, 0.6f};
+    write_png(scratch("one.png"), image);
+    const Image back = read(scratch("one.png"));
+    EXPECT_FALSE(back.linear);
+    expect_pixel(back, 0, 0, {1, 0.2f, 0.4f, 0.6f});
+}
+
+TEST(Image, PngGrayOfEveryDepth) {
+    // Two pixels, darkest and brightest but one.
+    expect_pixel(read(png(2, 1, 1, PNG_COLOR_TYPE_GRAY, {0x40}), "1"), 1, 0, {1, 1, 1, 1});
+    const float third = 2.0f / 3;
+    expect_pixel(read(png(2, 1, 2, PNG_COLOR_TYPE_GRAY, {0x20}), "2"), 1, 0,
+                 {third, third, third, 1});
+    expect_pixel(read(png(2, 1, 4, PNG_COLOR_TYPE_GRAY, {0x03}), "4"), 1, 0, {0.2f, 0.2f, 0.2f, 1});
+    expect_pixel(read(png(2, 1, 8, PNG_COLOR_TYPE_GRAY, {0, 51}), "8"), 1, 0,
+                 {0.2f, 0.2f, 0.2f, 1});
+    const float wide = 0x1234 / 65535.0f;
+    expect_pixel(read(png(1, 1, 16, PNG_COLOR_TYPE_GRAY, {0x12, 0x34}), "16"), 0, 0,
+                 {wide, wide, wide, 1});
+    expect_pixel(read(png(1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {0x12, 0x34, 0x80, 0}), "16a"), 0, 0,
+                 {wide, wide, wide, 0x8000 / 65535.0f});
+}
+
+TEST(Image, PngColorPaletteAndInterlace) {
+    expect_pixel(read(png(1, 1, 8, PNG_COLOR_TYPE_RGB, {51, 102, 255}), "rgb"), 0, 0,
+                 {0.2f, 0.4f, 1, 1});
+    expect_pixel(read(png(1, 1, 8, PNG_COLOR_TYPE_RGB_ALPHA, {51, 102, 255, 51}), "rgba"), 0, 0,
+                 {0.2f, 0.4f, 1, 0.2f});
+    expect_pixel(
+        read(png(1, 1, 16, PNG_COLOR_TYPE_RGB_ALPHA, {0xff, 0xff, 0, 0, 0, 1, 0xff, 0xff}), "16"),
+        0, 0, {1, 0, 1 / 65535.0f, 1});
+    const Image palette = read(
+        png(2, 1, 1, PNG_COLOR_TYPE_PALETTE, {0x40}, false, {{0, 0, 0}, {255, 51, 0}}, {255, 102}),
+        "palette");
+    expect_pixel(palette, 0, 0, {0, 0, 0, 1});
+    expect_pixel(palette, 1, 0, {1, 0.2f, 0, 0.4f});
+    std::vector<unsigned char> rows(size_t{9} * 9);
+    for (size_t i = 0; i < rows.size(); ++i)
+        rows[i] = static_cast<unsigned char>(3 * i);
+    const Image plain = read(png(9, 9, 8, PNG_COLOR_TYPE_GRAY, rows), "plain");
+    const Image interlaced = read(png(9, 9, 8, PNG_COLOR_TYPE_GRAY, rows, true), "interlaced");
+    EXPECT_EQ(plain.pixels, interlaced.pixels);
+    expect_pixel(plain, 1, 2, {57 / 255.0f, 57 / 255.0f, 57 / 255.0f, 1});  // top row first
+}
+
+TEST(Image, AllEightBitValuesSurviveWritingAndReading) {
+    Image image;
+    image.width = 256;
+    image.height = 2;
+    for (int i = 0; i < 512; ++i) {
+        const float value = static_cast<float>(i % 256) / 255.0f;
+        image.pixels.insert(image.pixels.end(), {value, 1 - value, 0, i < 256 ? 1.0f : value});
+    }
+    write_png(scratch("all.png"), image);
+    const Image back = read(scratch("all.png"));
+    ASSERT_EQ(back.pixels.size(), image.pixels.size());
+    for (size_t i = 0; i < back.pixels.size(); ++i)
+        ASSERT_NEAR(back.pixels[i], image.pixels[i], 1e-6f) << i;
+}
+
+TEST(Image, JpegGrayAndColor) {
+    const Image gray = read(jpeg(9, 5, 1, JCS_GRAYSCALE, 128), "gray");
+    EXPECT_EQ(gray.width, 9);
+    EXPECT_EQ(gray.height, 5);
+    EXPECT_NEAR(pixel(gray, 8, 4)[0], 128 / 255.0f, 0.01f);
+    const Image color = read(jpeg(9, 5, 3, JCS_RGB, 51), "color");
+    EXPECT_NEAR(pixel(color, 4, 2)[0], 1, 0.02f);
+    EXPECT_NEAR(pixel(color, 4, 2)[1], 0.2f, 0.02f);
+    EXPECT_EQ(pixel(color, 4, 2)[3], 1);
+}
+
+TEST(Image, JpegOfPrintersAndTornOnesAreRefused) {
+    EXPECT_NE(complaint(jpeg(8, 8, 4, JCS_CMYK, 10)).find("CMYK"), std::string::npos);
+    const std::string whole = jpeg(64, 64, 3, JCS_RGB, 51);
+    EXPECT_NE(complaint(whole.substr(0, whole.size() * 2 / 3)).find("broken JPEG"),
+              std::string::npos);
+}
+
+TEST(Image, ExrIsLinearWithItsOwnAlpha) {
+    const Imath::Box2i window({0, 0}, {3, 2});
+    const Image image = read(exr("RGBA", window, window), "exr");
+    EXPECT_TRUE(image.linear);
+    EXPECT_EQ(image.width, 4);
+    EXPECT_EQ(image.height, 3);
+    expect_pixel(image, 3, 1, {13, 113, 213, 313});
+    expect_pixel(read(exr("RGB", window, window), "rgb"), 2, 2, {22, 122, 222, 1});
+    expect_pixel(read(exr("Y", window, window), "gray"), 2, 2, {22, 22, 22, 1});
+    EXPECT_NE(complaint(exr("Z", window, window)).find("neither"), std::string::npos);
+}
+
+TEST(Image, ExrDataWindowIsPlacedInTheDisplayWindow) {
+    const Image image =
+        read(exr("RGBA", Imath::Box2i({-1, 2}, {1, 9}), Imath::Box2i({0, 1}, {3, 4})), "exr");
+    EXPECT_EQ(image.width, 4);
+    EXPECT_EQ(image.height, 4);
+    expect_pixel(image, 0, 0, {0, 0, 0, 0});  // above the data
+    expect_pixel(image, 0, 1, {1, 101, 201, 301});
+    expect_pixel(image, 1, 3, {22, 122, 222, 322});
+    expect_pixel(image, 2, 1, {0, 0, 0, 0});  // right of it
+}
+
+TEST(Image, APartOfAnExrIsThatOfTheWhole) {
+    // Two blocks of rows, and a display window that reaches beyond the data on all sides
+    const std::string bytes =
+        exr("RGBA", Imath::Box2i({-1, 2}, {6, 300}), Imath::Box2i({-3, 0}, {8, 310}));
+    const std::filesystem::path path = scratch("parts.exr");
+    write_file(path, bytes);
+    const Image whole = read(path);
+    for (const Part& part : {Part{0, 0, 12, 311}, Part{3, 255, 5, 9}, Part{0, 0, 2, 1},
+                             Part{11, 310, 1, 1}, Part{1, 1, 3, 2}}) {
+        const Image found = read_part(path, part);
+        ASSERT_EQ(found.width, part.width);
+        ASSERT_EQ(found.height, part.height);
+        for (int y = 0; y < part.height; ++y) {
+            for (int x = 0; x < part.width; ++x) {
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_EQ(pixel(found, x, y)[c], pixel(whole, part.left + x, part.top + y)[c]);
+            }
+        }
+    }
+    constexpr int kMost = std::numeric_limits<int>::max();
+    for (const Part& part : {Part{-1, 0, 1, 1}, Part{0, 0, 13, 1}, Part{0, 311, 1, 1},
+                             Part{0, 0, 0, 1}, Part{kMost, 0, kMost, 1}})
+        EXPECT_THROW(read_part(path, part), Error);
+    std::filesystem::remove(path);
+}
+
+TEST(Image, ABorderOfAPosterIsReadThoughThePosterIsTooLarge) {
+    const Imath::Box2i window({0, 0}, {9999, 9999});
+    const std::filesystem::path path = scratch("poster.exr");
+    {
+        Imf::Header header(window, window);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        std::vector<float> row(10000);
+        std::iota(row.begin(), row.end(), 0.0f);
+        Imf::FrameBuffer buffer;
+        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+        buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data()), 4, 0));
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(32);  // the others are missing, which a part above them does not meet
+    }
+    EXPECT_NE(complaint(read_file(path)).find("too large"), std::string::npos);
+    expect_pixel(read_part(path, {9998, 20, 2, 1}), 1, 0, {9999, 9999, 9999, 1});
+    EXPECT_THROW(read_part(path, {0, 20, 1, 80}), Error);
+    std::filesystem::remove(path);
+}
+
+TEST(Image, EncodingUnassociatesAlphaAndClamps) {
+    Image image;
+    image.width = 4;
+    image.height = 1;
+    image.linear = true;
+    image.pixels = {0.10702057f,   0,  2,        0.5f, 1, 1, 1, 0,
+                    std::nanf(""), -1, INFINITY, 2,    1, 1, 1, std::nanf("")};
+    const Image display = encoded(image);
+    EXPECT_FALSE(display.linear);
+    expect_pixel(display, 0, 0, {0.5f, 0, 1, 0.5f});
+    expect_pixel(display, 1, 0, {1, 1, 1, 0});
+    expect_pixel(display, 2, 0, {0, 0, 1, 1});
+    expect_pixel(display, 3, 0, {1, 1, 1, 0});
+    EXPECT_EQ(encoded(display).pixels, display.pixels);
+    for (int i = 0; i < 256; ++i) {
+        const float value = static_cast<float>(i) / 255.0f;
+        EXPECT_NEAR(encode_srgb(decode_srgb(value)), value, 1e-6f);
+    }
+}
+
+TEST(Image, HeadersThatPromiseTooMuchAreRefusedBeforeMemoryIsSpent) {
+    std::string huge = png(8, 8, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(64));
+    const auto patch = [&](unsigned width, unsigned height) {
+        const std::array<unsigned, 2> sizes{width, height};
+        for (size_t k = 0; k < 8; ++k)
+            huge[16 + k] = static_cast<char>(sizes[k / 4] >> (24 - 8 * (k % 4)));
+        const unsigned long crc = crc32(0, reinterpret_cast<const Bytef*>(huge.data() + 12), 17);
+        for (size_t k = 0; k < 4; ++k)
+            huge[29 + k] = static_cast<char>(crc >> (24 - 8 * k));
+    };
+    patch(8192, 8192);
+    EXPECT_NE(complaint(huge).find("too short"), std::string::npos) << complaint(huge);
+    patch(0x7fffffff, 0x7fffffff);
+    EXPECT_FALSE(complaint(huge).empty());
+    const Imath::Box2i window({0, 0}, {3, 2});
+    std::string vast = exr("RGBA", window, window);
+    const size_t at = vast.find("dataWindow");
+    ASSERT_NE(at, std::string::npos);
+    const int32_t far = 0x7ffffff0;
+    std::memcpy(vast.data() + at + 11 + 6 + 4 + 8, &far, 4);
+    EXPECT_NE(complaint(vast).find("too large"), std::string::npos) << complaint(vast);
+}
+
+TEST(Image, AnExrThatHidesASecondSizeInAnotherAttributeIsRefused) {
+    // OpenEXR takes an int for four bytes long whatever its size says, and what follows for more of
+    // the header: a window a hundred times as wide as the memory that we would have made for it.
+    const Imath::Box2i window({0, 0}, {3, 2});
+    std::string bytes = exr("R", window, window);
+    const auto number = [](int32_t value) {
+        return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::string wide = std::string("dataWindow\0box2i\0", 17) + number(16) + number(0) +
+                             number(0) + number(399) + number(2);
+    const std::string inner = number(7) + wide;
+    const std::string hiding =
+        std::string("dx\0int\0", 7) + number(static_cast<int32_t>(inner.size())) + inner;
+    const size_t at = bytes.find("displayWindow");
+    ASSERT_NE(at, std::string::npos);
+    bytes.insert(at, hiding);
+    EXPECT_NE(complaint(bytes).find("two things"), std::string::npos) << complaint(bytes);
+}
+
+/// Gray, 16 x 16, progressive: a first scan, then `scans` of two bytes each that change nothing.
+std::string scans_of_nothing(int scans) {
+    const auto segment = [](int marker, const std::string& content) {
+        const size_t size = content.size() + 2;
+        return std::string{'\xff', static_cast<char>(marker), static_cast<char>(size >> 8u),
+                           static_cast<char>(size & 0xffu)} +
+               content;
+    };
+    const auto table = [&](int kind, int symbol) {  // one symbol, of the code 0
+        return segment(0xc4, std::string(1, static_cast<char>(kind)) + '\1' +
+                                 std::string(15, '\0') + static_cast<char>(symbol));
+    };
+    const auto scan = [&](int first, int last, const std::string& bits) {
+        return segment(0xda, {1, 1, 0, static_cast<char>(first), static_cast<char>(last), 0}) +
+               bits;
+    };
+    std::string out = "\xff\xd8" + segment(0xdb, std::string(1, '\0') + std::string(64, '\1')) +
+                      segment(0xc2, {8, 0, 16, 0, 16, 1, 1, 0x11, 0}) + table(0x00, 0) +
+                      table(0x10, 0x20) + scan(0, 0, "\x0f");
+    for (int i = 0; i < scans; ++i)
+        out += scan(1, 1, "\x1f");  // the end of this block and of the three after it
+    return out + "\xff\xd9";
+}
+
+TEST(Image, AJpegOfThousandsOfEmptyScansIsRefused) {
+    EXPECT_EQ(complaint(scans_of_nothing(8)), "");
+    EXPECT_NE(complaint(scans_of_nothing(5000)).find("more than 500 scans"), std::string::npos)
+        << complaint(scans_of_nothing(5000));
+}
+
+TEST(Image, WritingRefusesWhatIsNoImage) {
+    Image image;
+    EXPECT_THROW(write_png(scratch("none.png"), image), Error);
+    image.width = 2;
+    image.height = 2;
+    image.pixels.resize(15);
+    EXPECT_THROW(write_png(scratch("none.png"), image), Error);
+    image.pixels.resize(16);
+    EXPECT_THROW(write_png(scratch("no/such/folder.png"), image), Error);
+    EXPECT_FALSE(std::filesystem::exists(scratch("none.png")));
+}
+
+TEST(Image, DamagedFilesNeverCrash) {
+    const auto read_it = [](const std::string& bytes) { read(bytes, "damaged"); };
+    std::vector<unsigned char> rows(size_t{24} * 16 * 4);
+    for (size_t i = 0; i < rows.size(); ++i)
+        rows[i] = static_cast<unsigned char>(i * 7);
+    const int accepted =
+        hostile::survive(png(24, 16, 8, PNG_COLOR_TYPE_RGB_ALPHA, rows, true), 300, read_it);
+    EXPECT_LT(accepted, 150);
+    hostile::survive(jpeg(24, 16, 3, JCS_RGB, 77), 300, read_it);
+    const Imath::Box2i window({0, 0}, {11, 7});
+    hostile::survive(exr("RGBA", window, window), 300, read_it);
+}
+
+}  // namespace
+}  // namespace lodestone::image

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the error of what is not solid: pictures that agree, and from which size on.
+#include "base/parallel.h"
+#include "measure/pictures/picture_agreement.h"
+#include "scenes/leaf_cards.h"
+#include "scenes/with_rays.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using measure::Agreement;
+using measure::AgreementReference;
+
+namespace {
+
+class Agreements : public WithRays {};
+
+ray::SkinPtr skin(const std::vector<Material>& materials) {
+    image::TexelCache texels;
+    return std::make_shared<const ray::Skin>(materials, texels);
+}
+
+ray::SkinPtr plain(double brightness) {
+    Material material;
+    material.base_color = glm::dvec3(brightness);
+    return skin({material});
+}
+
+/// Balls of radius 0.1 on a grid of `side`^3 points 1 m apart, moved along x.
+Mesh grid(int side, double moved, double radius = 0.1) {
+    Mesh mesh;
+    for (int i = 0; i < side * side * side; ++i) {
+        Affine place;
+        place.offset = {i % side + moved, i / side % side, i / side / side};
+        append(mesh, shapes::sphere(radius, 1), place);
+    }
+    return mesh;
+}
+
+/// A dark back of 2 m x 2 m, and two rows of eight red books before it, 0.4 m deep; only every
+/// `nth` of them, and each smaller by that much on all sides.
+Mesh bookcase(int nth, double smaller) {
+    Mesh mesh;
+    const auto add = [&](const glm::dvec3& low, const glm::dvec3& high, uint16_t slot) {
+        Mesh box = shapes::cube();
+        glm::vec3 least(1e9f);
+        glm::vec3 most(-1e9f);
+        for (const glm::vec3& position : box.positions) {
+            least = glm::min(least, position);
+            most = glm::max(most, position);
+        }
+        for (glm::vec3& position : box.positions)
+            position = glm::vec3(low) + (position - least) / (most - least) * glm::vec3(high - low);
+        box.normals.clear();
+        box.slots.assign(box.triangles.size(), slot);
+        append(mesh, box, {});
+    };
+    add({0, 0, 0}, {2, 0.05, 2}, 0);
+    for (int i = 0; i < 16; i += nth) {
+        const int column = i / 2;
+        const glm::dvec3 low(0.25 * column, 0.05, i % 2);
+        add(low + smaller, low + glm::dvec3(0.25, 0.4, 1) - smaller, 1);
+    }
+    return mesh;
+}
+
+ray::SkinPtr bookcase_skin() {
+    std::vector<Material> materials(2);
+    materials[0].base_color = glm::dvec3(0.03);
+    materials[1].base_color = {0.6, 0.2, 0.1};
+    return skin(materials);
+}
+
+}  // namespace
+
+TEST_F(Agreements, NothingAgreesWithNothingAndWithNothingElse) {
+    EXPECT_EQ(AgreementReference(Mesh{}, nullptr, 1).of(Mesh{}, nullptr).error, 0);
+    const Mesh ball = shapes::sphere(1, 2);
+    const AgreementReference reference(ball, nullptr, 1);
+    EXPECT_GT(reference.of(Mesh{}, nullptr).error, 2) << "not even in one pixel";
+}
+
+TEST_F(Agreements, TheSameThingAgreesAtTheSmallestPixel) {
+    const Mesh ball = shapes::sphere(1, 3);
+    const Agreement same = AgreementReference(ball, plain(0.5), 1).of(ball, plain(0.5));
+    EXPECT_LT(same.error, 2 * 2 * 1.1 * std::sqrt(3.0) / AgreementReference::kSide * 1.001);
+    EXPECT_DOUBLE_EQ(same.coverage, 1);
+    EXPECT_DOUBLE_EQ(same.light.y, 1);
+}
+
+TEST_F(Agreements, WhatIsHalfAsBrightNeverAgreesAndTellsByHowMuch) {
+    const Mesh ball = shapes::sphere(1, 3);
+    const Agreement dark = AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.3));
+    EXPECT_NEAR(dark.light.x, 2, 1e-6);
+    EXPECT_GT(dark.error, 2);
+    EXPECT_LT(AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.55)).error, 0.1);
+}
+
+TEST_F(Agreements, PicturesTracedOnceServeForEveryPlainColor) {
+    const AgreementReference reference(grid(3, 0), plain(0.5), 1);
+    const Mesh other = grid(3, 0.1);
+    const AgreementReference::Traced traced = reference.trace(other, plain(0.9));
+    for (const double brightness : {0.1, 0.5, 0.9}) {
+        const Agreement fresh = reference.of(other, plain(brightness));
+        EXPECT_EQ(reference.of(traced, plain(brightness)).error, fresh.error);
+        EXPECT_EQ(reference.brightness_of(traced, plain(brightness)).light, fresh.light);
+    }
+}
+
+TEST_F(Agreements, MovedPartsAgreeFromAboutAPixelThatIsMuchLargerThanTheMove) {
+    const AgreementReference reference(grid(4, 0), nullptr, 1);
+    double last = 0;
+    for (const double moved : {0.02, 0.1, 0.4}) {
+        const double error = reference.of(grid(4, moved), nullptr).error;
+        EXPECT_GT(error, last) << moved;
+        EXPECT_GT(error, moved);
+        EXPECT_LT(error, 12 * moved + 0.2) << moved;
+        last = error;
+    }
+}
+
+TEST_F(Agreements, ThinnerFoliageDisagreesAtEverySizeAndIsToldByItsCoverage) {
+    const AgreementReference reference(grid(4, 0), nullptr, 1);
+    const Agreement thin = reference.of(grid(4, 0, 0.05), nullptr);
+    EXPECT_NEAR(thin.coverage, 0.3, 0.1);
+    EXPECT_GT(thin.error, 2);
+}
+
+TEST_F(Agreements, AlphaIsNotThere) {
+    const PicturePtr half = foliage::left_half();
+    Mesh card = foliage::card(2, 2);
+    const AgreementReference reference(card, skin({foliage::leaf(half)}), 1);
+    Material green;
+    green.base_color = {0.1, 0.6, 0.1};
+    EXPECT_LT(reference.of(shapes::quad(1, 2), skin({green})).error, 0.2);
+    EXPECT_GT(reference.of(shapes::quad(2, 2), skin({green})).error, 0.5);
+}
+
+TEST_F(Agreements, SameOnOneAndOnManyThreadsAndWhereverItLies) {
+    Mesh a;
+    Mesh b;
+    Affine far;
+    far.offset = {4000, -300, 20};
+    append(a, grid(3, 0), far);
+    append(b, grid(3, 0.1), far);
+    const double many = AgreementReference(a, nullptr, 1).of(b, nullptr).error;
+    const ThreadLimit limit(1);
+    EXPECT_EQ(AgreementReference(a, nullptr, 1).of(b, nullptr).error, many);
+    EXPECT_NEAR(AgreementReference(grid(3, 0), nullptr, 1).of(grid(3, 0.1), nullptr).error, many,
+                0.15 * many);
+}
+
+TEST_F(Agreements, BooksThatAreGoneAreSeenThroughTheirGapsAndBooksThatShrinkAreNot) {
+    const ray::SkinPtr skin = bookcase_skin();
+    for (const int side : {AgreementReference::kSide, AgreementReference::kBrightSide}) {
+        const Mesh full = bookcase(1, 0);
+        const AgreementReference reference(full, skin, 1, side);
+        const auto gaps = [&](const Mesh& level, double off) {
+            return reference.gaps_of(reference.trace(level, skin), skin, off);
+        };
+        EXPECT_EQ(gaps(full, 0.001), 0);
+        EXPECT_EQ(gaps(bookcase(1, 0.02), 0.02), 0) << "as near as distances say";
+        EXPECT_GT(gaps(bookcase(2, 0), 0.02), 0.5) << "half of them, though the back is near";
+        EXPECT_GT(gaps(Mesh{}, 0.02), 2) << "nothing is left";
+    }
+}
+
+TEST_F(Agreements, WhatIsFartherBehindIsNoGapWhereItLooksTheSame) {
+    const Mesh full = bookcase(1, 0);
+    const Mesh half = bookcase(2, 0);
+    std::vector<Material> alike(2);
+    const ray::SkinPtr same = skin(alike);
+    const AgreementReference reference(full, same, 1);
+    const double apart =
+        AgreementReference(full, bookcase_skin(), 1)
+            .gaps_of(reference.trace(half, bookcase_skin()), bookcase_skin(), 0.02);
+    EXPECT_LT(reference.gaps_of(reference.trace(half, same), same, 0.02), 0.7 * apart);
+    EXPECT_EQ(AgreementReference(Mesh{}, same, 1).gaps_of(reference.trace(half, same), same, 0.1),
+              0);
+}

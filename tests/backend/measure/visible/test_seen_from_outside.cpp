@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards which triangles count as seen from outside: none that is, none missed between others.
+#include "measure/visible/seen_from_outside.h"
+#include "scenes/small_meshes.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+
+// A group's shell lost the boards of its roofs, and its levels had holes where tiles had gone.
+TEST(SeenFromOutside, BoardBetweenTilesIsSeenThroughTheirGaps) {
+    constexpr int kSide = 24;
+    constexpr float kTile = 0.995f;  // of a cell's width
+    Mesh mesh = shapes::quad(kSide, kSide);
+    for (const double height : {-0.002, 0.002}) {
+        for (int i = 0; i < kSide * kSide; ++i)
+            append(mesh, shapes::quad(kTile, kTile),
+                   {glm::dmat3(1.0), {i % kSide, i / kSide, height}});
+    }
+    const ray::Scene scene(mesh);
+    for (const uint64_t seed : {1u, 2u, 3u}) {
+        const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, scene, 24, seed);
+        EXPECT_EQ(seen, std::vector<uint8_t>(seen.size(), 1)) << seed;
+    }
+}
+
+TEST(SeenFromOutside, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
+    Mesh mesh = shapes::box(glm::dvec3(0), glm::dvec3(2));
+    append(mesh, shapes::sphere(0.5, 3), {glm::dmat3(1.0), glm::dvec3(1)});
+    append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0.5, 0.5, 0.25}});
+    append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {5, 5, 5}});
+    mesh.triangles.emplace_back(0, 0, 0);
+    const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, ray::Scene(mesh), 16, 1);
+    const size_t sphere = 1280;
+    for (size_t i = 0; i < 12; ++i)
+        EXPECT_EQ(seen[i], 1) << i;
+    for (size_t i = 12; i < 12 + sphere + 2; ++i)
+        EXPECT_EQ(seen[i], 0) << i;
+    for (size_t i = 12 + sphere + 2; i < seen.size(); ++i)
+        EXPECT_EQ(seen[i], 1) << i;
+}
