@@ -150,6 +150,7 @@ class Checkout:
         for name, options in scene.exports:
             out = ["--out", str(files / name)]
             codes.append(self._batch(folder, "export", scene.blend, *store, *options, *out))
+        set_aside_logs(files, folder)
         return codes
 
     def _batch(self, folder: Path, verb: str, blend: Path, *options: str) -> int:
@@ -160,6 +161,12 @@ class Checkout:
         if code not in MADE:
             raise Failed(f"batch.py {verb} ended with exit code {code}:\n{end_of(log)}")
         return code
+
+
+def set_aside_logs(files: Path, folder: Path) -> None:
+    """batch.py writes a log with times beside a store and a scene; only what is in them counts."""
+    for log in files.glob("*.log"):
+        log.rename(folder / log.name)
 
 
 def digest_of(paths, top: Path) -> str:

@@ -234,6 +234,14 @@ class Folders(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("cmake --preset release", said.getvalue())
 
+    def test_logs_are_not_compared_but_what_is_in_stores_is(self):
+        files = self.written(
+            "files", {"store.log": b"0:01", "store/r/odd.log": b"", "1px/a.pov": b""}
+        )
+        compare_checkouts.set_aside_logs(files, self.folder)
+        self.assertEqual(sorted(same_bits.listed(files)), ["1px/a.pov", "store/r/odd.log"])
+        self.assertEqual((self.folder / "store.log").read_bytes(), b"0:01")
+
     def test_which_scenes(self):
         files = self.written("real", {f"{name}.blend": b"x" * size for name, size in SIZES.items()})
         real = sorted(files.glob("*.blend"))
