@@ -42,7 +42,7 @@ if __name__ == "__main__":
     sys.path[0] = str(PACKAGE.parent)
 
 from lodestone import bl_info  # noqa: E402
-from lodestone.core import batch_log, batch_page, locked_folder, report  # noqa: E402
+from lodestone.core import batch_log, batch_page, locked_folder, run_report  # noqa: E402
 from lodestone.core.batch_arguments import jobs, parse, parser  # noqa: E402
 from lodestone.core.batch_console import Console  # noqa: E402
 from lodestone.core.batch_jobs import FileJob  # noqa: E402
@@ -96,7 +96,7 @@ class Run:
             task.leave()
         code = of_many(made["exit_code"] for made in self._in_order())
         if self.options.json:
-            self._write(report.write, self.options.json, self._whole(code), "report")
+            self._write(run_report.write, self.options.json, self._whole(code), "report")
         self._write_page()
         if len(self.work) > 1:
             rows = rows_of(self._in_order())
@@ -147,7 +147,7 @@ class Run:
     def _whole(self, code: ExitCode) -> dict:
         if len(self.work) == 1:
             return self.reports[0]
-        return report.many_report(self.options.verb, self._in_order(), code)
+        return run_report.many_report(self.options.verb, self._in_order(), code)
 
     def _write_page(self) -> None:
         if not self.options.html:

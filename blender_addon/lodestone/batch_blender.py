@@ -22,24 +22,17 @@ import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, comparing  # noqa: E402
-from lodestone.core import file_names  # noqa: E402
-from lodestone.core import motion_file, process_session, progress, report  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, comparing, file_names  # noqa: E402
+from lodestone.core import motion_file, process_session, progress_text, run_report  # noqa: E402
 from lodestone.core import store_path, unseen  # noqa: E402
+from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
-from lodestone.core.picture import (  # noqa: E402
-    SceneFolder,
-    Settings,
-    cut_and_export,
-    make_picture,
-    remove_others,
-    used_files,
-)
+from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
+from lodestone.core.picture import remove_others, used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
-from lodestone.core.work import Stopped, Work  # noqa: E402
 
 
 NO_LEVELS = (
@@ -52,10 +45,10 @@ class FileRun:
 
     def __init__(self, job: FileJob) -> None:
         self.job = job
-        self.result = report.file_report(job.verb, job.file, ExitCode.DONE)
+        self.result = run_report.file_report(job.verb, job.file, ExitCode.DONE)
         self.problems = Problems()
         self.work = Work()
-        self.clock = progress.StageClock(0)
+        self.clock = progress_text.StageClock(0)
         self._said = 0.0
         self._still = None
         self._poses: poses.Poses | None = None
@@ -85,11 +78,11 @@ class FileRun:
         if code == ExitCode.DONE and self.problems.wrong:
             code = ExitCode.FAILED if self.job.strict else ExitCode.INCOMPLETE
             text = f"the picture is incomplete: {self.problems.wrong[0].sentence}"
-        self.result.update(report.file_report(self.job.verb, self.job.file, code, text))
-        self.result["problems"] = report.problems_part(self.problems)
+        self.result.update(run_report.file_report(self.job.verb, self.job.file, code, text))
+        self.result["problems"] = run_report.problems_part(self.problems)
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
         self.result["memory"] = {"blender_peak_bytes": peak}
-        report.write(self.job.report, self.result)
+        run_report.write(self.job.report, self.result)
         return code
 
     # ---- Before ----
@@ -142,7 +135,7 @@ class FileRun:
             if self.job.pictures and not requests:
                 continue
             scene.frame_set(frame)
-            self.clock = progress.StageClock(frame)
+            self.clock = progress_text.StageClock(frame)
             pictures += [
                 {**({"frame": frame} if self.job.frames else {}), **made}
                 for made in self._frame(scene, requests)
@@ -184,12 +177,12 @@ class FileRun:
             requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
-            self.result.setdefault("model", report.model_part(totals))
+            self.result.setdefault("model", run_report.model_part(totals))
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)
             if totals.occurrences == 0 and not requirements.something(scene, self.problems):
                 raise Failed(ExitCode.FAILED, requirements.NOTHING)
-            self.clock.tail = f"{progress.count(totals.triangles_placed)} triangles"
+            self.clock.tail = f"{progress_text.count(totals.triangles_placed)} triangles"
             store = store_path.store_folder(self.job.file, self.job.store)
             self.result["store"] = str(store)
             try:
@@ -228,7 +221,7 @@ class FileRun:
         models = self._poses.models if self._poses is not None else ()
         options = native.BuildOptions(threads=self.job.threads, poses=models)
         done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
-        part = report.build_part(done)
+        part = run_report.build_part(done)
         self.result.setdefault("build", part)
         return part
 
@@ -299,12 +292,12 @@ class FileRun:
     # ---- What is told at once, for the case that this process does not live to its report ----
 
     def _tell(self, **event) -> None:
-        path = Path(self.job.report).with_name(report.EVENTS)
+        path = Path(self.job.report).with_name(run_report.EVENTS)
         with open(path, "a", encoding="utf-8") as file:
             file.write(json.dumps(event) + "\n")
 
     def _tell_picture(self, out: str, made: dict) -> None:
-        problems = report.problems_part(self.problems)
+        problems = run_report.problems_part(self.problems)
         new, self._told = problems[self._told :], len(problems)
         self._tell(out=out, made={**made, **({"problems": new} if new else {})})
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from .core import compare_plan, file_names, report
+from .core import compare_plan, file_names, run_report
 from .core.exit_codes import ExitCode, Failed
 from .core.native import lodestone_native as native
 from .core.picture import Settings
@@ -21,7 +21,7 @@ def save(scene, exr: Path, out: Path, with_alpha: bool, stamp: dict[str, str]) -
     stamp's text in it. The old one is replaced only when the new one is complete."""
     format_ = scene.render.image_settings
     before = (format_.file_format, format_.color_mode, format_.color_depth)
-    temporary = out.with_name(report.temporary_name())
+    temporary = out.with_name(run_report.temporary_name())
     image = bpy.data.images.load(str(exr))
     try:
         if format_.file_format != "PNG":
@@ -49,7 +49,7 @@ def save_compared(scene, made, out: Path, settings: Settings) -> dict[str, str]:
         target = out.with_name(f"{name}_{word}.png")
         save(scene, path, target, False, how.stamp())
         paths[f"{word}_picture"] = str(target)
-    temporary = out.with_name(report.temporary_name())
+    temporary = out.with_name(run_report.temporary_name())
     try:
         native.image_write_png(str(temporary), made.image)
         native.image_add_text(str(temporary), settings.stamp())
@@ -83,7 +83,7 @@ def save_thumbnail(picture: str, target: str) -> None:
 
 def copy_exr(source: Path, target: Path) -> None:
     """POV-Ray's own picture, beside the one that is shown."""
-    temporary = target.with_name(report.temporary_name(".exr"))
+    temporary = target.with_name(run_report.temporary_name(".exr"))
     try:
         shutil.copyfile(source, temporary)
         os.replace(temporary, target)

@@ -15,8 +15,17 @@ from dataclasses import replace
 import bpy
 
 from . import handlers, preferences, preview, render_job
-from .bridge import camera, ignored, lenses, poses, quality, render_result, requirements
-from .bridge import scene, shutter
+from .bridge import (
+    camera,
+    ignored,
+    lenses,
+    poses,
+    quality,
+    render_result,
+    requirements,
+    scene,
+    shutter,
+)
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
 from .core import (
@@ -26,15 +35,15 @@ from .core import (
     last_check,
     last_render,
     motion_file,
-    progress,
+    progress_text,
     store_path,
 )
+from .core.background_calls import Stopped, Work
 from .core.native import lodestone_native as native
 from .core.picture import Settings, make_identities, make_picture
+from .core.printable_text import printable, sentence, valid
 from .core.problems import ERROR, Problems
 from .core.render_folder import RenderFolder
-from .core.text import printable, sentence, valid
-from .core.work import Stopped, Work
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
@@ -128,7 +137,7 @@ class _Run:
             self.ray_classes = 0
         self.work = Work()
         self.frame = self.scene.frame_current
-        self.clock = progress.StageClock(self.frame)
+        self.clock = progress_text.StageClock(self.frame)
         self._shown = ""
 
     def render(self):
@@ -154,7 +163,7 @@ class _Run:
             shown = self.depsgraph.scene
             if totals.occurrences == 0 and not requirements.something(shown, self.problems):
                 raise Refused("nothing_to_render", requirements.NOTHING)
-            triangles = progress.count(totals.triangles_placed)
+            triangles = progress_text.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
             closing = None
             if levels and self.coarser:

@@ -13,10 +13,10 @@ from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .bridge.settings import SceneSettings
 from .core import edits
+from .core.background_calls import Stopped
 from .core.native import lodestone_native as native
+from .core.printable_text import sentence, valid
 from .core.problems import Problems
-from .core.text import sentence, valid
-from .core.work import Stopped
 
 _request = None
 

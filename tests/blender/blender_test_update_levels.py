@@ -214,11 +214,11 @@ class UpdateLevels(unittest.TestCase):
         self.assertEqual(len(set(uids.values())), 2)
 
     def test_the_users_datablocks_are_equal_before_and_after_clear(self):
-        from lodestone.core import identity
+        from lodestone.core import stable_ids
 
         before, held = all_described(), ours()
         for item in (*bpy.data.collections, *bpy.data.objects):  # also ids nobody needs go
-            item.lodestone.uid = identity.stable_id(item.name)
+            item.lodestone.uid = stable_ids.stable_id(item.name)
         bpy.ops.lodestone.update_levels()
         self.assertEqual(all_described(), before)
         bpy.ops.lodestone.clear_levels()

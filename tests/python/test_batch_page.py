@@ -8,10 +8,10 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_page, report
+from lodestone.core import batch_page, run_report
 from lodestone.core.batch_rows import rows_of, table, tally
 from lodestone.core.exit_codes import ExitCode
-from lodestone.core.text import printable
+from lodestone.core.printable_text import printable
 
 HOSTILE = (
     "<script>alert(1)</script>",
@@ -28,7 +28,7 @@ HOSTILE = (
 
 
 def made(name, code=ExitCode.DONE, **values):
-    return {**report.file_report("render", f"/scenes/{name}.blend", code), **values}
+    return {**run_report.file_report("render", f"/scenes/{name}.blend", code), **values}
 
 
 def cut(triangles, error, name="Tree"):

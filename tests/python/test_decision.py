@@ -5,7 +5,7 @@ import math
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core.decision import ANY_LEVEL, UNDECIDED, Decision, decision
+from lodestone.core.placement_decision import ANY_LEVEL, UNDECIDED, Decision, decision
 from lodestone_native import ANY_LEVEL as NATIVE_ANY_LEVEL
 
 

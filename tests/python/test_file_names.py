@@ -9,12 +9,12 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_views, report, store_path
+from lodestone.core import batch_views, run_report, store_path
 from lodestone.core.batch_arguments import jobs, parser
 from lodestone.core.batch_jobs import PictureRequest
 from lodestone.core.file_names import fitting, folder_name
+from lodestone.core.printable_text import printable, sentence, valid
 from lodestone.core.problems import WARNING, Problems
-from lodestone.core.text import printable, sentence, valid
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
 import hostile_names as hostile  # noqa: E402
@@ -95,8 +95,10 @@ class FileNames(unittest.TestCase):
 
     def test_temporary_pictures_are_known_by_their_owner(self):
         for ending in (".png", ".exr"):
-            self.assertEqual(report.temporary_owner(report.temporary_name(ending)), os.getpid())
-        self.assertEqual(report.temporary_owner(".lodestone-1.png.exr"), 0)
+            self.assertEqual(
+                run_report.temporary_owner(run_report.temporary_name(ending)), os.getpid()
+            )
+        self.assertEqual(run_report.temporary_owner(".lodestone-1.png.exr"), 0)
 
     def test_views_that_nothing_can_be_called_are_refused(self):
         options = parser().parse_args(["render", "a.blend", "--out", "a.png"])
@@ -118,7 +120,7 @@ class Text(unittest.TestCase):
     def test_a_path_that_is_no_text_can_be_reported_and_read_again(self):
         path = os.fsdecode(b"/scenes/caf\xe9.blend")
         with tempfile.TemporaryDirectory() as folder:
-            report.write(f"{folder}/report.json", {"input": path, "name": "名"})
+            run_report.write(f"{folder}/report.json", {"input": path, "name": "名"})
             text = Path(folder, "report.json").read_text("utf-8")
             self.assertIn("名", text)
             self.assertEqual(json.loads(text)["input"], path)

@@ -5,7 +5,7 @@ import time
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core import causes, last_check
+from lodestone.core import last_check, problem_causes
 from lodestone.core.problems import ERROR, INFO, WARNING, Problem, Problems
 
 
@@ -74,15 +74,15 @@ class Collecting(unittest.TestCase):
 
 class ByCause(unittest.TestCase):
     def test_nothing_gives_no_row(self):
-        found = causes.split((), {})
+        found = problem_causes.split((), {})
         self.assertEqual((found.shown, found.ignored), ((), ()))
-        self.assertEqual(causes.headline(found), "No problems")
-        self.assertEqual(causes.exact_line(0, 0), "")
+        self.assertEqual(problem_causes.headline(found), "No problems")
+        self.assertEqual(problem_causes.exact_line(0, 0), "")
 
     def test_one_row_with_the_number_of_objects(self):
         used = users(Bark_old=[f"Tree.{i}" for i in range(12)])
         problems = [material("Bark_old", "Noise Texture is drawn flat")]
-        (row,) = causes.split(problems, used).shown
+        (row,) = problem_causes.split(problems, used).shown
         self.assertEqual(
             row.sentence, 'Material "Bark_old": Noise Texture is drawn flat (12 objects)'
         )
@@ -91,7 +91,7 @@ class ByCause(unittest.TestCase):
     def test_materials_with_one_cause_are_one_row(self):
         used = users(A=["One", "Two"], B=["Two"], C=["Three"])
         problems = [material(name, "clearcoat is left out") for name in "ABC"]
-        (row,) = causes.split(problems, used).shown
+        (row,) = problem_causes.split(problems, used).shown
         self.assertEqual(row.sentence, "3 materials: clearcoat is left out (3 objects)")
         self.assertEqual([name for _, _, name in row.objects], ["One", "Two", "Three"])
 
@@ -100,13 +100,13 @@ class ByCause(unittest.TestCase):
             Problem(n, INFO, "soft_shadow", f'Shadows of light "{n}" are sharp', "light")
             for n in ("Key", "Fill", "Rim")
         ]
-        (row,) = causes.split(problems, {}).shown
+        (row,) = problem_causes.split(problems, {}).shown
         self.assertEqual(row.sentence, 'Shadows of light "Key" are sharp (and 2 more)')
         self.assertEqual(len(row.objects), 3)
 
     def test_a_name_that_is_part_of_the_text_does_not_join_different_causes(self):
         problems = [material("e", "one thing"), material("e", "other thing")]
-        self.assertEqual(len(causes.split(problems, {}).shown), 2)
+        self.assertEqual(len(problem_causes.split(problems, {}).shown), 2)
 
     def test_the_worst_come_first_and_the_key_does_not_depend_on_who_has_it(self):
         problems = [
@@ -115,37 +115,39 @@ class ByCause(unittest.TestCase):
             material("A", "e", ERROR),
             material("B", "w"),
         ]
-        rows = causes.split(problems, {}).shown
+        rows = problem_causes.split(problems, {}).shown
         self.assertEqual([row.severity for row in rows], [ERROR, WARNING, INFO])
-        alone = causes.split([material("B", "w")], {}).shown[0]
+        alone = problem_causes.split([material("B", "w")], {}).shown[0]
         self.assertEqual(rows[1].key, alone.key)
-        self.assertEqual(causes.headline(causes.split(problems, {})), "1 error, 1 warning")
+        self.assertEqual(
+            problem_causes.headline(problem_causes.split(problems, {})), "1 error, 1 warning"
+        )
 
     def test_an_ignored_problem_is_shown_again_when_it_changes_or_another_has_it(self):
         old = material("A", "clearcoat is left out")
         changed = material("A", "sheen is left out")
         other = material("B", "clearcoat is left out")
-        found = causes.split([old, changed, other], {}, {old.key})
+        found = problem_causes.split([old, changed, other], {}, {old.key})
         self.assertEqual([p for row in found.ignored for p in row.problems], [old])
         self.assertEqual([p for row in found.shown for p in row.problems], [changed, other])
 
     def test_what_stops_every_picture_cannot_be_ignored(self):
         problem = Problem("", ERROR, "povray_missing", "POV-Ray was not found")
-        found = causes.split([problem], {}, {problem.key})
+        found = problem_causes.split([problem], {}, {problem.key})
         self.assertEqual(len(found.shown), 1)
         self.assertTrue(found.shown[0].about_setup)
 
     def test_the_report_names_everything(self):
         used = {("material", "//l.blend", "A"): (("object", "", "One"),)}
         problems = [material("A", "grey", library="//l.blend"), material("B", "grey")]
-        text = causes.split(problems, used).shown[0].report
+        text = problem_causes.split(problems, used).shown[0].report
         for name in ('"A" (//l.blend)', '"B"', '"One"', "2 materials: grey (1 object)"):
             self.assertIn(name, text)
 
     def test_hostile_names_stay_text(self):
         for name in ('"', '""', 'a" b', "new\nline", "\udcff", "x" * 63, "{0}", "%s"):
             used = {("material", "", name): (("object", "", name),)}
-            (row,) = causes.split([material(name, "grey")], used).shown
+            (row,) = problem_causes.split([material(name, "grey")], used).shown
             self.assertIn("grey", row.sentence)
             self.assertEqual(len(row.key), 16)
             self.assertIn("(1 object)", row.report)
@@ -155,7 +157,7 @@ class ByCause(unittest.TestCase):
         used = users(**{name: [name, "Shared"] for name in names})
         problems = [material(name, "grey") for name in names]
         start = time.process_time()
-        (row,) = causes.split(problems, used).shown
+        (row,) = problem_causes.split(problems, used).shown
         self.assertEqual(len(row.objects), 20_001)
         self.assertLess(time.process_time() - start, 5.0)
 
@@ -170,8 +172,8 @@ class Checks(unittest.TestCase):
         found += [material("M0", "and flat"), Problem("Cube", ERROR, "nan", "bad", "object")]
         check = last_check.Check(tuple(found), used)
         self.assertEqual(check.exact_materials, (318, 342))
-        self.assertEqual(causes.exact_line(318, 342), "318 of 342 materials exact (93 %)")
-        self.assertEqual(causes.exact_line(341, 342), "341 of 342 materials exact (99 %)")
+        self.assertEqual(problem_causes.exact_line(318, 342), "318 of 342 materials exact (93 %)")
+        self.assertEqual(problem_causes.exact_line(341, 342), "341 of 342 materials exact (99 %)")
 
     def test_each_scene_has_its_own_until_the_file_changes(self):
         check = last_check.Check(())

@@ -4,13 +4,13 @@
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core import progress
+from lodestone.core import progress_text
 
 
 class Texts(unittest.TestCase):
     def test_clock(self):
         for seconds, text in ((0, "0:00"), (59.9, "0:59"), (754, "12:34"), (3723, "1:02:03")):
-            self.assertEqual(progress.clock(seconds), text)
+            self.assertEqual(progress_text.clock(seconds), text)
 
     def test_count(self):
         for number, text in (
@@ -23,24 +23,24 @@ class Texts(unittest.TestCase):
             (22410332, "22.4 M"),
             (3.4e9, "3.4 G"),
         ):
-            self.assertEqual(progress.count(number), text)
+            self.assertEqual(progress_text.count(number), text)
 
     def test_length(self):
         for metres, text in ((0, "0 mm"), (0.0004, "0.4 mm"), (0.011, "11 mm"), (1.25, "1.25 m")):
-            self.assertEqual(progress.length(metres), text)
+            self.assertEqual(progress_text.length(metres), text)
 
     def test_memory(self):
         for size, text in ((12, "12 B"), (310e6, "310 MB"), (5.2e9, "5.2 GB")):
-            self.assertEqual(progress.memory(size), text)
+            self.assertEqual(progress_text.memory(size), text)
 
     def test_percent_of_nothing_is_nothing(self):
-        self.assertEqual(progress.percent(1, 0), "0 %")
-        self.assertEqual(progress.percent(1, 20), "5 %")
+        self.assertEqual(progress_text.percent(1, 0), "0 %")
+        self.assertEqual(progress_text.percent(1, 20), "5 %")
 
 
 class StageClock(unittest.TestCase):
     def test_finished_stages_keep_their_time_and_the_running_one_its_share(self):
-        clock = progress.StageClock(7)
+        clock = progress_text.StageClock(7)
         clock.tail = "22.4 M triangles"
         self.assertEqual(clock.line("Export", 10.0), "Frame 7 | Export | 22.4 M triangles")
         clock.line("Parse", 13.0)

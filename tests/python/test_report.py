@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import report
+from lodestone.core import run_report
 from lodestone.core.exit_codes import ExitCode
 from lodestone.core.problems import ERROR, WARNING, Problems
 
@@ -20,7 +20,7 @@ class Report(unittest.TestCase):
         self.path = Path(folder.name) / "report.json"
 
     def test_says_what_and_how(self):
-        made = report.file_report("render", "a.blend", ExitCode.POVRAY, "POV-Ray is missing")
+        made = run_report.file_report("render", "a.blend", ExitCode.POVRAY, "POV-Ray is missing")
         self.assertEqual(made["schema"], 1)
         self.assertEqual((made["status"], made["exit_code"]), ("povray_failed", 5))
 
@@ -29,8 +29,8 @@ class Report(unittest.TestCase):
         names = ['quote"', "new\nline", "{brace}", "名前", "\udcff"]
         for name in names:
             problems.add(name, WARNING, "texture_mean", f"Material {name}")
-        value = {"problems": report.problems_part(problems)}
-        report.write(self.path, value)
+        value = {"problems": run_report.problems_part(problems)}
+        run_report.write(self.path, value)
         found = json.loads(self.path.read_text("utf-8"))["problems"]
         self.assertEqual([p["object"] for p in found[:4]], names[:4])
         self.assertEqual(len(found), 5)
@@ -38,22 +38,22 @@ class Report(unittest.TestCase):
     def test_has_the_rights_that_the_user_gives_new_files(self):
         before = os.umask(0o027)
         try:
-            report.write(self.path, {})
+            run_report.write(self.path, {})
         finally:
             os.umask(before)
         self.assertEqual(self.path.stat().st_mode & 0o777, 0o640)
 
     def test_a_failed_write_keeps_the_old_one_and_leaves_nothing(self):
-        report.write(self.path, {"old": 1})
+        run_report.write(self.path, {"old": 1})
         with self.assertRaises(TypeError):
-            report.write(self.path, {"bad": object()})
+            run_report.write(self.path, {"bad": object()})
         self.assertEqual(json.loads(self.path.read_text()), {"old": 1})
         self.assertEqual(os.listdir(self.path.parent), ["report.json"])
 
     def test_several_files_are_all_in_it(self):
-        one = report.file_report("build", "a.blend", ExitCode.DONE)
-        two = report.file_report("build", "b.blend", ExitCode.UNREADABLE)
-        whole = report.many_report("build", [one, two], ExitCode.FAILED)
+        one = run_report.file_report("build", "a.blend", ExitCode.DONE)
+        two = run_report.file_report("build", "b.blend", ExitCode.UNREADABLE)
+        whole = run_report.many_report("build", [one, two], ExitCode.FAILED)
         self.assertEqual([f["exit_code"] for f in whole["files"]], [0, 4])
         self.assertEqual(whole["exit_code"], 1)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..core import edits, identity
+from ..core import edits, stable_ids
 from . import ids, quality
 from .ids import name_of
 
@@ -71,7 +71,7 @@ def issue_uids(things: Iterable[Thing]) -> list[tuple[Any, str]]:
         (kind, "", name_of(item), stored, decided(item))
         for (kind, item), stored in zip(local, before)
     ]
-    uids = identity.assign_uids(described, filter(None, others))
+    uids = stable_ids.assign_uids(described, filter(None, others))
     changed = []
     for (_, item), old, uid in zip(local, before, uids):
         if old != uid:
@@ -212,17 +212,17 @@ def levels_uids(item: Any, roles: ids.Roles | None = None) -> list[str]:
     if item.type == "MESH" and item.data is not None:
         shared = ids.uid_of("mesh", item.data)
         slots = [slot.material for slot in item.material_slots]
-        linked = identity.stable_id(shared, *(ids.named_id_of(m) for m in slots))
+        linked = stable_ids.stable_id(shared, *(ids.named_id_of(m) for m in slots))
         uids = [shared, linked, own]
     role_of = roles.of if roles else ids.role_of
     if "ENVIRONMENT" in map(role_of, (item, *item.users_collection)):
-        uids = [identity.stable_id(uid, "environment") for uid in uids] + uids
+        uids = [stable_ids.stable_id(uid, "environment") for uid in uids] + uids
     elif role_of(item) == "ORDINARY":
-        uids = [identity.stable_id(uid, "ordinary") for uid in uids] + uids
+        uids = [stable_ids.stable_id(uid, "ordinary") for uid in uids] + uids
     loose = ids.loose_parts(item)
     if loose != ids.AUTOMATIC:
-        uids = [identity.stable_id(uid, "loose", loose) for uid in uids] + uids
+        uids = [stable_ids.stable_id(uid, "loose", loose) for uid in uids] + uids
     if item.instance_collection is not None:
         uids.append(ids.uid_of("collection", item.instance_collection))
-    uids += [identity.stable_id(own, "instances"), identity.stable_id(own, "hair")]
+    uids += [stable_ids.stable_id(own, "instances"), stable_ids.stable_id(own, "hair")]
     return uids

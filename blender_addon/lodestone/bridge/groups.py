@@ -7,8 +7,8 @@ from itertools import repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..core import identity
-from ..core.decision import Decision
+from ..core import stable_ids
+from ..core.placement_decision import Decision
 from . import ids
 from .ids import name_of
 from .instances import Context, Emitted, Entry, offset
@@ -183,7 +183,7 @@ class Groups:
         for what in _ASIDE_NAMES:
             lifted = getattr(aside, what)
             if lifted:
-                uid = identity.stable_id(ids.scene_uid(branch.name), what)
+                uid = stable_ids.stable_id(ids.scene_uid(branch.name), what)
                 name = f"{branch.name} {_ASIDE_NAMES[what]}"
                 group = self._intern(uid, name, False, lifted, what == "changing")
                 placements.add(group, IDENTITY, name)
@@ -277,7 +277,7 @@ class Groups:
         for emitted, group in known:
             if _same_but_for_rounding(emitted, entry.emitted):
                 return group
-        uid = identity.stable_id(ids.uid_of("object", entry.object), "instances")
+        uid = stable_ids.stable_id(ids.uid_of("object", entry.object), "instances")
         children = Placements()
         for leaf, place, hidden, decision in entry.emitted:
             children.add(leaf.object, place, leaf.data, hidden, decision)

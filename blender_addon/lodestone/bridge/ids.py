@@ -7,10 +7,10 @@ from typing import Any
 
 import bpy
 
-from ..core import identity
-from ..core.decision import UNDECIDED, Decision, decision
+from ..core import stable_ids
 from ..core.native import lodestone_native as native
-from ..core.text import readable
+from ..core.placement_decision import UNDECIDED, Decision, decision
+from ..core.printable_text import readable
 
 
 _STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # what add-ons store, among custom properties
@@ -81,20 +81,20 @@ def stored_uid(datablock: Any) -> str:
 def uid_of(kind: str, datablock: Any) -> str:
     """The stored uid of an object or collection, else one made of its library and name."""
     stored = stored_uid(datablock)
-    if identity.is_uid(stored):
+    if stable_ids.is_uid(stored):
         return stored
-    return identity.named_id(kind, library_of(datablock), name_of(datablock))
+    return stable_ids.named_id(kind, library_of(datablock), name_of(datablock))
 
 
 def scene_uid(name: str) -> str:
-    return identity.named_id("scene", "", name)
+    return stable_ids.named_id("scene", "", name)
 
 
 def named_id_of(material: Any | None) -> str:
     """A material's id by library and name; "" for an empty slot."""
     if material is None:
         return ""
-    return identity.named_id("material", library_of(material), name_of(material))
+    return stable_ids.named_id("material", library_of(material), name_of(material))
 
 
 def role_of(datablock: Any) -> str:
@@ -148,7 +148,7 @@ class Roles:
 def same_linked(a: Key, b: Key) -> bool:
     """Whether two keys of linked things mean one: Blender makes a library's path relative or
     absolute as files are saved and moved."""
-    return a[0] == b[0] and a[2] == b[2] and identity.same_library(a[1], b[1])
+    return a[0] == b[0] and a[2] == b[2] and stable_ids.same_library(a[1], b[1])
 
 
 def role(environment: bool, ordinary: bool) -> int:
@@ -168,6 +168,6 @@ class Uids:
         chosen, attempt = uid, 0
         while chosen in self._taken:
             attempt += 1
-            chosen = identity.stable_id(uid, "again", attempt)
+            chosen = stable_ids.stable_id(uid, "again", attempt)
         self._taken.add(chosen)
         return chosen

@@ -14,7 +14,7 @@ from typing import Any
 
 from mathutils import Matrix
 
-from ..core.decision import UNDECIDED, Decision
+from ..core.placement_decision import UNDECIDED, Decision
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from . import ids, strands
 from .glow import Glows

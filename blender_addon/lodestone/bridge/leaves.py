@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..core import identity
+from ..core import stable_ids
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, Problems
 from . import ids, mesh, mesh_uvs, strands
@@ -186,7 +186,7 @@ class Leaves:
         buffers = strands.hair(shown, len(slots), textured)
         if buffers is None:
             return None
-        uid = self._uid(identity.stable_id(ids.uid_of("object", owner), HAIR), color, look)
+        uid = self._uid(stable_ids.stable_id(ids.uid_of("object", owner), HAIR), color, look)
         name, role = f"{name_of(owner)} {HAIR}", ids.role(look.environment, look.ordinary)
         item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
         name = f"{name_of(shown)} {HAIR}"
@@ -197,7 +197,7 @@ class Leaves:
     ) -> Leaf:
         # A point shows its first material only
         indices = self._indices(slots[:1], color, look)
-        uid = self._uid(identity.stable_id(ids.uid_of("object", owner), POINT), color, look)
+        uid = self._uid(stable_ids.stable_id(ids.uid_of("object", owner), POINT), color, look)
         name, role = f"{name_of(owner)} {POINT}", ids.role(look.environment, look.ordinary)
         item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
         return Leaf(item, uid, f"{name_of(shown.data)} {POINT}", _names(slots), 1)
@@ -218,17 +218,17 @@ class Leaves:
 
     def _uid(self, base: str, color: Color | None, look: Look) -> str:
         if color is not None:
-            base = identity.stable_id(base, "color", *color)
+            base = stable_ids.stable_id(base, "color", *color)
         if look.environment:
-            base = identity.stable_id(base, "environment")
+            base = stable_ids.stable_id(base, "environment")
         elif look.ordinary:
-            base = identity.stable_id(base, "ordinary")
+            base = stable_ids.stable_id(base, "ordinary")
         if look.holdout:
-            base = identity.stable_id(base, "holdout")
+            base = stable_ids.stable_id(base, "holdout")
         if look.deforms:
-            base = identity.stable_id(base, "deforms")
+            base = stable_ids.stable_id(base, "deforms")
         if look.loose != ids.AUTOMATIC:
-            base = identity.stable_id(base, "loose", look.loose)
+            base = stable_ids.stable_id(base, "loose", look.loose)
         return self._uids.claim(base)
 
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:
@@ -236,7 +236,7 @@ class Leaves:
         if shown.type != "MESH" or owner.type != "MESH":
             return ids.uid_of("object", owner), name_of(owner)
         if shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes
-            base = identity.stable_id(ids.uid_of("object", owner), "nodes", name_of(shown.data))
+            base = stable_ids.stable_id(ids.uid_of("object", owner), "nodes", name_of(shown.data))
             return base, f"{name_of(owner)}: {name_of(shown.data)}"
         if owner.is_modified(self._scene, "RENDER"):
             return ids.uid_of("object", owner), name_of(owner)
@@ -245,7 +245,7 @@ class Leaves:
             own = [ids.named_id_of(m) for m in shown.data.materials]
             linked = [ids.named_id_of(m) for m in slots]
             if own != linked:  # materials linked to the object
-                base = identity.stable_id(base, *linked)
+                base = stable_ids.stable_id(base, *linked)
         return base, name_of(shown.data)
 
 

@@ -4,7 +4,7 @@
 from array import array
 from typing import Any
 
-from ..core.decision import UNDECIDED, Decision
+from ..core.placement_decision import UNDECIDED, Decision
 from .listed import Rows
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from ..core.decision import UNDECIDED, Decision
+from ..core.placement_decision import UNDECIDED, Decision
 from ..core.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
 from ..core.preview_worker import MOST_TRIANGLES, LiveThing, Things
 from . import ids, preview_live

@@ -11,13 +11,13 @@ from typing import Any
 import bpy
 from mathutils import Vector
 
-from ..core import exr, srgb
+from ..core import exr_bytes, srgb
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from .ids import name_of
 from .image_means import ImageHeads, ImageMeans
-from .pixels import read_pixels
 from .node_values import NodeValues
+from .pixels import read_pixels
 from .sky_nodes import SkyNodes, Unknown
 from .sky_texture import mean_of_sky
 
@@ -128,7 +128,7 @@ class _Reader:
             self._note(ERROR, "image_missing", f'image "{name_of(image)}" cannot be read')
             return None
         width, height, pixels = found
-        return self._model.add_picture(name_of(image), data=exr.encode(width, height, pixels))
+        return self._model.add_picture(name_of(image), data=exr_bytes.encode(width, height, pixels))
 
     # ---- Nodes, looked at all around ----
 
@@ -161,7 +161,7 @@ class _Reader:
                     pixels.extend(_in_range(light(at)))
                 except (ArithmeticError, ValueError, TypeError):
                     pixels.extend((0.0, 0.0, 0.0))
-        data = exr.encode(WIDTH, HEIGHT, pixels)
+        data = exr_bytes.encode(WIDTH, HEIGHT, pixels)
         return World((0.0, 0.0, 0.0), self._model.add_picture(name_of(self._world), data=data))
 
     def _add_suns(self, nodes: SkyNodes, light: "Light") -> None:

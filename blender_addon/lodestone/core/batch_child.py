@@ -8,7 +8,7 @@ import subprocess
 import time
 from collections.abc import Callable
 
-from . import process_session, progress
+from . import process_session, progress_text
 from .child_log import ChildLog
 from .process_session import Member
 
@@ -135,10 +135,10 @@ class Child:
 
 def _too_large(used: int, limit: int, members: list[Member]) -> str:
     parts = [
-        f"{member.name} {progress.memory(member.bytes)}"
+        f"{member.name} {progress_text.memory(member.bytes)}"
         for member in sorted(members, key=lambda member: -member.bytes)[:3]
     ]
     return (
-        f"stopped at {progress.memory(used)} of memory, more than the "
-        f"{progress.memory(limit)} of --max-memory ({', '.join(parts)})"
+        f"stopped at {progress_text.memory(used)} of memory, more than the "
+        f"{progress_text.memory(limit)} of --max-memory ({', '.join(parts)})"
     )

@@ -5,10 +5,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import progress
+from . import progress_text
 from .batch_rows import Row
+from .printable_text import printable
 from .problems import Problem
-from .text import printable
 
 
 class Console:
@@ -57,7 +57,7 @@ class Console:
         if compared and self._total == 1:  # of several the table tells
             self.line(compared.sentence)
         if self._total > 1:
-            took = f" in {progress.clock(report['wall_s'])}" if "wall_s" in report else ""
+            took = f" in {progress_text.clock(report['wall_s'])}" if "wall_s" in report else ""
             again = " by an earlier run" if report.get("resumed") is True else ""
             status = report.get("cause") or report["status"]
             self.line(f"{self._place(number)} {name}: {status}{again or took}")

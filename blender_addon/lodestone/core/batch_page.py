@@ -10,11 +10,11 @@ from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
-from . import progress
+from . import progress_text
 from .batch_rows import Row, tally
 from .exit_codes import ExitCode
+from .printable_text import printable
 from .problems import Problem
-from .text import printable
 
 _LARGEST_THUMBNAIL = 200_000
 _MOST_PROBLEMS = 200
@@ -85,8 +85,8 @@ def write(path: str, text: str) -> None:
 def _row(row: Row, target: Path, compared: bool) -> str:
     path = Path(row.file)
     numbers = (
-        "" if row.wall_s is None else progress.clock(row.wall_s),
-        "" if row.peak_bytes is None else progress.memory(row.peak_bytes),
+        "" if row.wall_s is None else progress_text.clock(row.wall_s),
+        "" if row.peak_bytes is None else progress_text.memory(row.peak_bytes),
         _triangles(row),
         _error(row),
         *((_difference(row), _seconds(row)) if compared else ()),
@@ -147,9 +147,11 @@ def _problems(row: Row) -> str:
 
 def _triangles(row: Row) -> str:
     if row.triangles is None:
-        return "" if row.triangles_placed is None else progress.count(row.triangles_placed)
-    placed = "" if row.triangles_placed is None else progress.count(row.triangles_placed)
-    return progress.count(row.triangles) + (f"<br><small>of {placed}</small>" if placed else "")
+        return "" if row.triangles_placed is None else progress_text.count(row.triangles_placed)
+    placed = "" if row.triangles_placed is None else progress_text.count(row.triangles_placed)
+    return progress_text.count(row.triangles) + (
+        f"<br><small>of {placed}</small>" if placed else ""
+    )
 
 
 def _error(row: Row) -> str:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import progress
+from . import progress_text
 from .exit_codes import ExitCode
-from .text import printable
+from .printable_text import printable
 
 _ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # any failure: 0
 
@@ -49,9 +49,10 @@ class Compared(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        (placed, drawn), (before, after) = self.triangles, self.seconds
+        placed, drawn = map(progress_text.count, self.triangles)
+        before, after = self.seconds
         return (
-            f"{self.difference}; {progress.count(drawn)} of {progress.count(placed)} triangles, "
+            f"{self.difference}; {drawn} of {placed} triangles, "
             f"POV-Ray {after:.1f} of {before:.1f} s"
         )
 
@@ -124,10 +125,10 @@ def table(rows: Iterable[Row]) -> str:
         lines.append(
             (
                 printable(row.status),
-                "" if row.wall_s is None else progress.clock(row.wall_s),
-                "" if row.peak_bytes is None else progress.memory(row.peak_bytes),
-                "" if row.triangles is None else progress.count(row.triangles),
-                "" if row.triangles_placed is None else progress.count(row.triangles_placed),
+                "" if row.wall_s is None else progress_text.clock(row.wall_s),
+                "" if row.peak_bytes is None else progress_text.memory(row.peak_bytes),
+                "" if row.triangles is None else progress_text.count(row.triangles),
+                "" if row.triangles_placed is None else progress_text.count(row.triangles_placed),
                 "" if row.error_px is None else f"{row.error_px:.2f} px",
                 *(differs if compared else ()),
                 printable(Path(row.file).name),

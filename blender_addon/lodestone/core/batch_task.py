@@ -13,7 +13,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import batch_inputs, batch_resume, blend_header, locked_folder, png_file, report, store_path
+from . import (
+    batch_inputs,
+    batch_resume,
+    blend_header,
+    locked_folder,
+    png_file,
+    run_report,
+    store_path,
+)
 from .batch_child import CANCELLED, Child
 from .batch_jobs import FileJob
 from .batch_resume import Found
@@ -89,7 +97,7 @@ class FileTask:
                     carried[picture.out] = {"picture": picture.out, "skipped": True}
         self._carried = carried
         if carried and all(picture.out in carried for _, picture in job.wanted()):
-            self._end(report.file_report(job.verb, job.file, ExitCode.DONE))
+            self._end(run_report.file_report(job.verb, job.file, ExitCode.DONE))
             return None
         self._store = store_path.store_folder(job.file, job.store)
         self._settle(keep=False)
@@ -153,17 +161,17 @@ class FileTask:
             except OSError:
                 continue
             for name in names:
-                owner = report.temporary_owner(name)
+                owner = run_report.temporary_owner(name)
                 if owner and not os.path.exists(f"/proc/{owner}"):
                     Path(folder, name).unlink(missing_ok=True)
 
     def _refuse(self, code: ExitCode, text: str) -> None:
         self._carried = dict(self.found.pictures)
-        self._end(report.file_report(self.job.verb, self.job.file, code, text))
+        self._end(run_report.file_report(self.job.verb, self.job.file, code, text))
 
     def leave(self) -> None:
         """It is not begun: the run was interrupted before."""
-        made = report.file_report(self.job.verb, self.job.file, ExitCode.CANCELLED, "not begun")
+        made = run_report.file_report(self.job.verb, self.job.file, ExitCode.CANCELLED, "not begun")
         self._began, self._carried = time.monotonic(), dict(self.found.pictures)
         self._end({**made, "cause": NOT_BEGUN})
 
@@ -176,7 +184,7 @@ class FileTask:
     def look(self) -> None:
         """Takes over what is finished, before anything can happen to the rest."""
         try:
-            with open(self._folder.path / report.EVENTS, "rb") as file:
+            with open(self._folder.path / run_report.EVENTS, "rb") as file:
                 file.seek(self._read)
                 lines = file.read().split(b"\n")[:-1]  # what follows is not whole yet
         except OSError:
@@ -217,7 +225,7 @@ class FileTask:
         written = _written(self._folder.path / "report.json")
         if child.cause:
             code = ExitCode.CANCELLED if child.cause == CANCELLED else ExitCode.FAILED
-            made = report.file_report(job.verb, job.file, code, child.explanation)
+            made = run_report.file_report(job.verb, job.file, code, child.explanation)
             made = {**written, **made, "cause": child.cause}
         elif written:
             made = written
@@ -246,7 +254,7 @@ class FileTask:
             how = f"signal {_signal_name(-returncode)}"
         file = self.job.file
         text = f"Blender died on the file ({how}){blend_header.written_by(file)}"
-        made = report.file_report(self.job.verb, file, ExitCode.UNREADABLE, text)
+        made = run_report.file_report(self.job.verb, file, ExitCode.UNREADABLE, text)
         return {**made, "cause": CRASH, "log_tail": self._log.last_lines}
 
     def _keep(self, name: str, suffix: str) -> str | None:
@@ -315,7 +323,7 @@ def _take_over_problems(
     if wrong and made["exit_code"] == ExitCode.DONE:
         code = ExitCode.FAILED if job.strict else ExitCode.INCOMPLETE
         text = f"the picture is incomplete: {wrong[0].sentence}"
-        made.update(report.file_report(job.verb, job.file, code, text))
+        made.update(run_report.file_report(job.verb, job.file, code, text))
 
 
 def _results(job: FileJob, made: dict[str, Any]) -> list[str]:

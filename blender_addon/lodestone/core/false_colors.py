@@ -7,7 +7,7 @@ Colors are linear Rec.709, 0...1.
 from collections.abc import Sequence
 from typing import Any
 
-from . import progress, srgb
+from . import progress_text, srgb
 from .native import lodestone_native as native
 
 Color = tuple[float, float, float]
@@ -88,8 +88,8 @@ def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
         shown = [(f"{error:.3g} px", color) for error, color in shares]
         return [("Original", ORIGINAL), *shown, (f"above {pixel_error:.3g} px", ABOVE)]
     if mode == COST:
-        bounds = [(f"up to {progress.count(most)}", color) for most, color in _COSTS[1:-1]]
-        more = f"more than {progress.count(_COSTS[-2][0])} triangles"
+        bounds = [(f"up to {progress_text.count(most)}", color) for most, color in _COSTS[1:-1]]
+        more = f"more than {progress_text.count(_COSTS[-2][0])} triangles"
         return [("Box, ellipsoid", _COSTS[0][1]), *bounds, (more, _COSTS[-1][1])]
     words = ["Original", *(f"LOD {lod}" for lod in range(1, _LEVELS)), f"LOD {_LEVELS}+"]
     meshes = [(word, of_level(native.Kind.MESH, lod)) for lod, word in enumerate(words)]

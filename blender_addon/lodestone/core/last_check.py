@@ -4,7 +4,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from . import causes
+from . import problem_causes
 from .problems import Problem, Subject
 
 
@@ -13,15 +13,15 @@ class Check:
     """Problems, and which objects show each material in use."""
 
     problems: tuple[Problem, ...]
-    users: causes.Users = field(default_factory=dict)
-    _splits: dict[frozenset[str], causes.Split] = field(default_factory=dict, compare=False)
+    users: problem_causes.Users = field(default_factory=dict)
+    _splits: dict[frozenset[str], problem_causes.Split] = field(default_factory=dict, compare=False)
 
-    def split(self, ignored: Collection[str] = ()) -> causes.Split:
+    def split(self, ignored: Collection[str] = ()) -> problem_causes.Split:
         """By cause; made once for the same decisions, panels ask at every redraw."""
         key = frozenset(ignored)
         if key not in self._splits:
             self._splits.clear()
-            self._splits[key] = causes.split(self.problems, self.users, key)
+            self._splits[key] = problem_causes.split(self.problems, self.users, key)
         return self._splits[key]
 
     @property

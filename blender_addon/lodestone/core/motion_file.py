@@ -9,7 +9,7 @@ import json
 import os
 from pathlib import Path
 
-from . import identity
+from . import stable_ids
 
 _KINDS = ("still_shape", "still_place")
 _MOST_BYTES = 1 << 26
@@ -30,7 +30,7 @@ def read(store: Path) -> dict[str, list[str]]:
     for kind in _KINDS:
         uids = value.get(kind)
         if isinstance(uids, list):
-            found[kind] = [uid for uid in uids if isinstance(uid, str) and identity.is_uid(uid)]
+            found[kind] = [uid for uid in uids if isinstance(uid, str) and stable_ids.is_uid(uid)]
     return found
 
 

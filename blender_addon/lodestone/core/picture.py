@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from . import cost_model, identity, locked_folder, quality_tree, report, unseen
+from . import cost_model, locked_folder, quality_tree, run_report, stable_ids, unseen
 from .native import lodestone_native as native
 
 PICTURE = "picture.exr"
@@ -85,7 +85,7 @@ class Settings:
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
-            "Lodestone Settings": identity.stable_id(native.version(), *(str(v) for v in shown)),
+            "Lodestone Settings": stable_ids.stable_id(native.version(), *(str(v) for v in shown)),
         }
 
 
@@ -129,7 +129,7 @@ def _cut_and_export(
     folder.mkdir(parents=True, exist_ok=True)
     with settings.cut(model, camera, size, job) as cut:
         view, summary = cut.view, cut.summary()
-        parts = {"cut": report.cut_part(summary)}
+        parts = {"cut": run_report.cut_part(summary)}
         met = unseen.met(cut)
         if met is not None:
             parts["cut"]["rays"] = unseen.part(met)
@@ -138,7 +138,7 @@ def _cut_and_export(
         in_use = levels_in_use(model, cut)
         shaded = replace(settings, pixel_error=cut.pixel_error)  # as roughly as it is drawn
         exported = native.povray_export(cut, str(folder), shaded.povray(), job)
-    parts["export"] = report.export_part(exported)
+    parts["export"] = run_report.export_part(exported)
     lights = 0 if settings.false_color or settings.covered_only else model.light_count()
     quality = shaded.quality
     antialias = native.Antialias[quality.antialias]
@@ -172,7 +172,7 @@ def make_picture(
     ran = native.povray_run(str(folder), PICTURE, settings.povray(), new_job("Trace"))
     if store is not None and not (settings.false_color or settings.covered_only):
         cost_model.write(store, cost_model.learn(work, ran, ratios))
-    parts["povray"] = report.povray_part(ran)
+    parts["povray"] = run_report.povray_part(ran)
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
     return Picture(folder / PICTURE, parts, in_use, predicted)

@@ -5,7 +5,7 @@ Without Blender and without a GPU."""
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from . import progress
+from . import progress_text
 from .preview_tree import NOT_FORCED
 from .preview_worker import Picture, Wanted
 
@@ -79,8 +79,8 @@ class View:
         if picture is None:
             return ["reading levels"]
         parts = [
-            f"{progress.count(picture.triangles)} of "
-            f"{progress.count(picture.triangles_before)} triangles",
+            f"{progress_text.count(picture.triangles)} of "
+            f"{progress_text.count(picture.triangles_before)} triangles",
             f"{picture.drawn:,} drawn of {picture.occurrences:,}",
             f"Pixel Error {picture.pixel_error:.3g}",
         ]

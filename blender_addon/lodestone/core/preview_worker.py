@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import false_colors, preview_tree, progress
+from . import false_colors, preview_tree, progress_text
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS
 from .preview_tree import NOT_FORCED, Changes, Names, Tree
@@ -305,7 +305,7 @@ class Worker:
                 return
             if wanted.force != NOT_FORCED:
                 self._out.append(
-                    Failed(viewport, TOO_FINE.format(wanted.force, progress.count(triangles)))
+                    Failed(viewport, TOO_FINE.format(wanted.force, progress_text.count(triangles)))
                 )
                 yield None
                 return

@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
-from . import identity
-from .text import valid
+from . import stable_ids
+from .printable_text import valid
 
 INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)
@@ -50,7 +50,7 @@ class Problem:
     @cached_property
     def key(self) -> str:
         """16 hex digits by which a decision about it is kept: a changed text is a new problem."""
-        return identity.stable_id(self.code, *self.subject, self.message)
+        return stable_ids.stable_id(self.code, *self.subject, self.message)
 
     def as_dict(self) -> dict[str, str]:
         return asdict(self)

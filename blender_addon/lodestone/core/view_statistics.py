@@ -6,7 +6,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from . import report, unseen
+from . import run_report, unseen
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS, Settings
 
@@ -84,7 +84,7 @@ class Chooser:
 
     def _statistics(self, cut: Any, start: float, pixel_error: float) -> Statistics:
         summary = cut.summary()
-        part = report.cut_part(summary)
+        part = run_report.cut_part(summary)
         met = unseen.met(cut)
         return Statistics(
             triangles_before=self._before[0],

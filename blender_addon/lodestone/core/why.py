@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from . import progress, unseen
+from . import progress_text, unseen
 from .native import lodestone_native as native
 
 KINDS = {
@@ -107,7 +107,7 @@ def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
 def _main_line(reason: Any, asked: float) -> str:
     """41 m · 11 mm = 0.9 px ≤ 1 px."""
     error = reason.error * reason.stretch
-    text = f"{metres(reason.z)} {_DOT} {progress.length(error)}"
+    text = f"{metres(reason.z)} {_DOT} {progress_text.length(error)}"
     text += f" = {pixels(reason.error_px)}"
     judged = reason.error_px
     if judged > 0.0 and reason.factor != 1.0:

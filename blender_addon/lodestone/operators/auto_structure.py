@@ -15,9 +15,9 @@ import bpy
 
 from .. import extract_engine
 from ..bridge import structure
-from ..core import motion_file, progress, store_path
+from ..core import motion_file, progress_text, store_path
 from ..core.native import lodestone_native as native
-from ..core.text import sentence
+from ..core.printable_text import sentence
 from . import session as sessions
 from .polled import Polled
 
@@ -48,15 +48,15 @@ class Preview:
     bytes_after: int | None = None
 
     def lines(self):
-        less = progress.percent(self.cost_after, self.cost_before)
+        less = progress_text.percent(self.cost_after, self.cost_before)
         lines = [
             f"{self.groups:,} new collections",
             f"Expected Cost {self.cost_before:,.1f} \N{RIGHTWARDS ARROW} {self.cost_after:,.1f}"
             f"   {less}",
         ]
         if self.bytes_before is not None:
-            before, after = map(progress.memory, (self.bytes_before, self.bytes_after))
-            share = progress.percent(self.bytes_after, self.bytes_before)
+            before, after = map(progress_text.memory, (self.bytes_before, self.bytes_after))
+            share = progress_text.percent(self.bytes_after, self.bytes_before)
             lines.append(f"POV-Ray Memory {before} \N{RIGHTWARDS ARROW} {after}   {share}")
         return lines
 
@@ -209,7 +209,7 @@ class LODESTONE_OT_auto_structure(Polled, sessions.InWindow, bpy.types.Operator)
             sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
         if session.working():
-            share = progress.percent(session.work.fraction, 1.0)
+            share = progress_text.percent(session.work.fraction, 1.0)
             sessions.status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
             return {"PASS_THROUGH"}
         session.measured()

@@ -5,10 +5,10 @@ import bpy
 
 from .. import handlers, preferences
 from ..bridge import ids, ignored, requirements, scene_check
-from ..core import causes, last_check, last_render, store_path
+from ..core import last_check, last_render, problem_causes, store_path
 from ..core.native import lodestone_native as native
+from ..core.printable_text import sentence
 from ..core.problems import Problems
-from ..core.text import sentence
 from .polled import Polled
 
 
@@ -48,7 +48,7 @@ class LODESTONE_OT_check_scene(Polled, bpy.types.Operator):
         except UnicodeDecodeError as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
-        self.report({"INFO"}, causes.headline(found.split(ignored.keys(context.scene))))
+        self.report({"INFO"}, problem_causes.headline(found.split(ignored.keys(context.scene))))
         for area in context.screen.areas if context.screen else ():
             if area.type == "PROPERTIES":
                 area.tag_redraw()

@@ -15,7 +15,7 @@ import bpy
 from .. import handlers
 from ..bridge import quality
 from ..bridge.settings import SceneSettings
-from ..core import compare_plan, progress
+from ..core import compare_plan, progress_text
 from ..panels import ENGINE
 from . import session as sessions
 from .polled import Polled
@@ -175,7 +175,7 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         step = _running.plan.step
         if bpy.app.is_job_running("RENDER"):
             word = compare_plan.WORDS[step]
-            sessions.status(context, progress.comparing(step + 1, SLOTS, word))
+            sessions.status(context, progress_text.comparing(step + 1, SLOTS, word))
             return {"PASS_THROUGH"}
         try:
             _running.rendered()

@@ -14,10 +14,10 @@ from mathutils import Vector
 
 from .. import preferences
 from ..bridge import kept_view
-from ..core import false_colors, kept_model, legend_strip, overview, work
+from ..core import background_calls, false_colors, kept_model, legend_strip, overview
 from ..core.native import lodestone_native as native
 from ..core.picture import PICTURE
-from ..core.text import sentence
+from ..core.printable_text import sentence
 from . import read_levels
 from . import session as sessions
 
@@ -70,7 +70,7 @@ def picture(kept, asked, mode, seen, size, folder, program, new_job):
     to see it from, None for the view's own."""
     with kept.lock:
         if kept.closed:
-            raise work.Stopped
+            raise background_calls.Stopped
         cut = kept.cut(asked)
         view = cut.view
         cut.set_colors(false_colors.colors(cut, mode))
@@ -180,7 +180,7 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
             if kept is None or kept_view.old(kept, scene):
                 kept = read_levels.read_levels(scene)
             asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
-            into_image(request.make(kept, asked, work.Work().new_job))
+            into_image(request.make(kept, asked, background_calls.Work().new_job))
         except FAILURES as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}

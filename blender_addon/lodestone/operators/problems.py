@@ -5,7 +5,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..bridge import ids, ignored
-from ..core import causes, last_check
+from ..core import last_check, problem_causes
 from .polled import InObjectMode, Polled
 
 
@@ -138,7 +138,7 @@ def text_of(context, key=""):
         return "".join(cause.report + "\n" for cause in found.shown if cause.key == key)
     lines = [cause.report for cause in found.shown]
     lines += [f"ignored {cause.report}" for cause in found.ignored]
-    exact = causes.exact_line(*last_check.get(context.scene.name).exact_materials)
+    exact = problem_causes.exact_line(*last_check.get(context.scene.name).exact_materials)
     return "\n".join([*lines, *([exact] if exact else [])]) + "\n"
 
 

@@ -12,8 +12,8 @@ from ..bridge.settings import SceneSettings
 from ..core import kept_model, motion_file, store_path
 from ..core.native import lodestone_native as native
 from ..core.picture import Settings
+from ..core.printable_text import sentence
 from ..core.store_levels import is_store
-from ..core.text import sentence
 from . import session as sessions
 from .polled import Polled
 

@@ -11,9 +11,9 @@ import traceback
 import bpy
 
 from .. import extract_engine, handlers, render_job
-from ..core import work
+from ..core import background_calls
 from ..core.native import lodestone_native as native
-from ..core.text import sentence
+from ..core.printable_text import sentence
 
 INTERVAL_S = 0.1
 FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)
@@ -26,7 +26,7 @@ class Session:
     def __init__(self, request):
         self.request = request
         self.extraction = None
-        self.work = work.Work()
+        self.work = background_calls.Work()
         self._outcome = {}
         self._thread = None
         self._reading = contextlib.ExitStack()
@@ -43,11 +43,11 @@ class Session:
             return True
         self._reading.close()
         if self.work.stopping:
-            raise work.Stopped
+            raise background_calls.Stopped
         if self.request.error is not None:
             raise self.request.error
         if self.request.extraction is None:
-            raise work.Stopped
+            raise background_calls.Stopped
         self.extraction = self.request.extraction
         self.was_read()
         return False
@@ -57,14 +57,14 @@ class Session:
 
     def start(self, function):
         """Calls it on a thread, which alone touches the model meanwhile."""
-        self._thread = work.start(function, self._outcome)
+        self._thread = background_calls.start(function, self._outcome)
 
     def working(self):
         return self._thread is not None and self._thread.is_alive()
 
     def worked(self):
         """What the function returned; raises what it raised, Stopped when it was stopped."""
-        return work.finish(self._outcome, self.work.stopping)
+        return background_calls.finish(self._outcome, self.work.stopping)
 
     def stop(self):
         """Asks what runs to stop; reading() and worked() raise Stopped when it has."""
@@ -136,7 +136,7 @@ class InWindow:
             return {"PASS_THROUGH"}
         try:
             return self.step(context, session)
-        except (*self.failures, work.Stopped) as error:
+        except (*self.failures, background_calls.Stopped) as error:
             return self.stop(context, session, error)
         except Exception as error:
             traceback.print_exc()
@@ -152,7 +152,7 @@ class InWindow:
                 return {"RUNNING_MODAL"}
         left = self.left_by(session)
         session.close()
-        if error is not None and not isinstance(error, work.Stopped):
+        if error is not None and not isinstance(error, background_calls.Stopped):
             self.report({"ERROR"}, sentence(error))
         elif left:
             self.report({"INFO"}, left)
@@ -201,7 +201,7 @@ def _start_reading(context, request):
 
 
 def _raise_stopped():
-    raise work.Stopped
+    raise background_calls.Stopped
 
 
 def stop_running():

@@ -9,9 +9,9 @@ from bpy.props import BoolProperty
 
 from .. import extract_engine
 from ..bridge import decisions
-from ..core import edits, motion_file, progress, store_path
+from ..core import edits, motion_file, progress_text, store_path
 from ..core.native import lodestone_native as native
-from ..core.text import sentence
+from ..core.printable_text import sentence
 from . import session as sessions
 from .polled import Polled
 
@@ -101,7 +101,7 @@ class _InWindow(sessions.InWindow):
         if session.working():
             total = session.estimate.built
             done = min(total, int(session.work.fraction * total))
-            sessions.status(context, progress.building(done, total))
+            sessions.status(context, progress_text.building(done, total))
             return {"PASS_THROUGH"}
         report = session.worked()
         edits.settle()
@@ -180,8 +180,8 @@ class LODESTONE_OT_build_levels(_InWindow, bpy.types.Operator):
         if session is not None and session.estimate is not None:
             estimate = session.estimate
             column.label(text=f"{estimate.built:,} of {estimate.objects:,} objects and groups")
-            column.label(text=f"{progress.count(estimate.triangles)} triangles to simplify")
-            column.label(text=f"About {progress.clock(max(1.0, estimate.wall_s))} minutes")
+            column.label(text=f"{progress_text.count(estimate.triangles)} triangles to simplify")
+            column.label(text=f"About {progress_text.clock(max(1.0, estimate.wall_s))} minutes")
             column.label(text=f"Into {session.store}", icon="FILE_FOLDER")
 
     def execute(self, context):

@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import compare_plan, progress
+from ..core import compare_plan, progress_text
 from . import EnginePanel
 
 
@@ -24,7 +24,7 @@ class LODESTONE_RENDER_PT_compare(EnginePanel, Panel):
         names, values = split.column(align=True), split.column(align=True)
         names.label(text="Pixel Error")
         values.label(
-            text=f"{found.pixel_error:g} px, {progress.count(found.pixels)} pixels covered"
+            text=f"{found.pixel_error:g} px, {progress_text.count(found.pixels)} pixels covered"
         )
         names.label(text="Mean, Largest")
         values.label(text=f"{255 * found.mean:.2f}, {255 * found.max:.0f} of 255")
@@ -32,7 +32,7 @@ class LODESTONE_RENDER_PT_compare(EnginePanel, Panel):
         values.label(text=f"{found.ssim:.4f}")
         for place, (path, share) in enumerate(found.worst):
             names.label(text="" if place else "Differ Most")
-            text = f"{progress.percent(share, 1.0)}   {path.rsplit('/', 1)[-1]}"
+            text = f"{progress_text.percent(share, 1.0)}   {path.rsplit('/', 1)[-1]}"
             values.operator("lodestone.select_object", text=text, emboss=False).path = path
 
 

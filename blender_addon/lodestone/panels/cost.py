@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import last_render, progress
+from ..core import last_render, progress_text
 from . import EnginePanel
 
 
@@ -26,15 +26,15 @@ class LODESTONE_RENDER_PT_cost(EnginePanel, Panel):
         expected, took = seconds(render.predicted_s), seconds(render.actual_s)
         values.label(text=f"expected {expected}, took {took}")
         names.label(text="Memory")
-        expected = progress.memory(render.predicted_bytes)
-        values.label(text=f"expected {expected}, took {progress.memory(render.actual_bytes)}")
+        expected = progress_text.memory(render.predicted_bytes)
+        values.label(text=f"expected {expected}, took {progress_text.memory(render.actual_bytes)}")
 
 
 def seconds(value):
     """0.8 s, 12 s, 2:05."""
     if value < 10.0:
         return f"{value:.1f} s"
-    return f"{value:.0f} s" if value < 60.0 else progress.clock(value)
+    return f"{value:.0f} s" if value < 60.0 else progress_text.clock(value)
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_cost,))

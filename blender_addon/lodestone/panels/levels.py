@@ -5,7 +5,7 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import decisions, ids
-from ..core import last_render, progress, store_levels, store_path
+from ..core import last_render, progress_text, store_levels, store_path
 from ..core.native import lodestone_native as native
 
 _KINDS = {
@@ -70,8 +70,8 @@ def draw_levels(layout, context, item):
         kind = "Original" if level.lod == 0 else _KINDS.get(level.kind, "?")
         row.label(text=f"LOD {level.lod}", icon=icon)
         row.label(text=kind)
-        row.label(text=progress.count(level.triangles))
-        row.label(text=progress.length(level.error))
+        row.label(text=progress_text.count(level.triangles))
+        row.label(text=progress_text.length(level.error))
         times = in_use.get(level.lod, 0)
         row.label(text=f"\N{MULTIPLICATION SIGN} {times:,}" if times else "")
 

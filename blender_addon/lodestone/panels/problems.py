@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import causes, last_check
+from ..core import last_check, problem_causes
 from ..core.problems import ERROR, INFO, WARNING
 from ..operators import problems as operators
 from . import EnginePanel
@@ -46,7 +46,7 @@ class LODESTONE_RENDER_PT_problems(EnginePanel, Panel):
             column.label(text=f"and {more:,} more: Copy lists them", icon="BLANK1")
         if not found.shown:
             column.label(text="No problems", icon="CHECKMARK")
-        exact = causes.exact_line(*last_check.get(context.scene.name).exact_materials)
+        exact = problem_causes.exact_line(*last_check.get(context.scene.name).exact_materials)
         if exact:
             column.label(text=exact, icon="MATERIAL")
         if found.ignored:

@@ -6,7 +6,7 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import live_view, quality
-from ..core import progress, unseen
+from ..core import progress_text, unseen
 from ..core.native import lodestone_native as native
 from . import EnginePanel
 
@@ -53,7 +53,7 @@ def _draw_found(layout, context):
             names.label(text="" if place else one.ray_class.label)
             values.label(text=line)
     names.label(text="POV-Ray Keeps")
-    values.label(text=f"{progress.count(found.met.triangles)} triangles for all of them")
+    values.label(text=f"{progress_text.count(found.met.triangles)} triangles for all of them")
 
 
 def lines_of(numbers, seen):
@@ -61,9 +61,9 @@ def lines_of(numbers, seen):
     if not numbers.own:
         lines = ["Nothing coarser may be used"]
     else:
-        met, of = progress.count(numbers.triangles), progress.count(seen)
+        met, of = progress_text.count(numbers.triangles), progress_text.count(seen)
         lines = [
-            f"{met} of {of} triangles   {progress.percent(numbers.triangles, seen)}",
+            f"{met} of {of} triangles   {progress_text.percent(numbers.triangles, seen)}",
             f"Off by at most {bound(numbers.largest_error_px)}",
         ]
     for number, why in (

@@ -7,7 +7,7 @@ from bpy.types import Panel
 
 from .. import handlers
 from ..bridge import lenses, live_view
-from ..core import last_render, progress
+from ..core import last_render, progress_text
 from ..core.native import lodestone_native as native
 
 _ARROW = "\N{RIGHTWARDS ARROW}"
@@ -45,9 +45,17 @@ class LODESTONE_RENDER_PT_levels_view(Panel):
 def _draw_live(layout, context, found):
     names, values = _columns(layout)
     _row(
-        names, values, "Triangles", _change(progress.count, found.triangles_before, found.triangles)
+        names,
+        values,
+        "Triangles",
+        _change(progress_text.count, found.triangles_before, found.triangles),
     )
-    _row(names, values, "POV-Ray Memory", _change(progress.memory, found.bytes_before, found.bytes))
+    _row(
+        names,
+        values,
+        "POV-Ray Memory",
+        _change(progress_text.memory, found.bytes_before, found.bytes),
+    )
     _draw_kinds(names, values, found.kinds)
     _draw_largest(names, values, found.largest_error_px, found.largest_error_name)
     settings = context.scene.lodestone
@@ -60,7 +68,7 @@ def _draw_live(layout, context, found):
 def _draw_viewport(layout, found):
     """What the 3D view's own Pixel Error and budget come to."""
     names, values = _columns(layout)
-    text = _change(progress.count, found.triangles_before, found.triangles)
+    text = _change(progress_text.count, found.triangles_before, found.triangles)
     _row(names, values, "Triangles in 3D View", text)
     _row(names, values, "Its Pixel Error", f"{found.pixel_error:.2f} px")
     if not found.fits:
@@ -71,7 +79,7 @@ def _draw_last(layout, render):
     names, values = _columns(layout)
     _row(
         names, values, "Triangles",
-        _change(progress.count, render.triangles_placed, render.triangles),
+        _change(progress_text.count, render.triangles_placed, render.triangles),
     )  # fmt: skip
     _draw_kinds(names, values, render.kinds)
     _draw_largest(names, values, render.largest_error_px, render.largest_error_name)
@@ -88,7 +96,7 @@ def _row(names, values, name, value):
 
 
 def _change(written, before, after):
-    return f"{written(before)} {_ARROW} {written(after)}   {progress.percent(after, before)}"
+    return f"{written(before)} {_ARROW} {written(after)}   {progress_text.percent(after, before)}"
 
 
 def _draw_kinds(names, values, kinds):

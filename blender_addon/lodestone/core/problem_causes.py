@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from . import identity
+from . import stable_ids
 from .problems import ERROR, SEVERITIES, WARNING, Problem, Subject
 
 _PLURALS = {"library": "libraries", "": "things"}
@@ -30,7 +30,7 @@ class Cause:
     @cached_property
     def key(self) -> str:
         """Stays the same as long as the cause is there, whoever has it."""
-        return identity.stable_id(*self.problems[0].cause)
+        return stable_ids.stable_id(*self.problems[0].cause)
 
     @property
     def about_setup(self) -> bool:
