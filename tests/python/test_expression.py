@@ -6,10 +6,10 @@ import unittest
 from array import array
 
 import addon_path  # noqa: F401
-from lodestone.core import blend
-from lodestone.core import expression as e
-from lodestone.core.affine import affine, peeled
-from lodestone.core.expression import Op
+from lodestone.core.expression import node_math
+from lodestone.core.expression import color_expression as e
+from lodestone.core.expression.affine_texel import affine, peeled
+from lodestone.core.expression.color_expression import Op
 from lodestone.core.native import lodestone_native as native
 
 OPERATIONS = [op for op in Op if op not in {Op.CONSTANT, Op.TEXEL, Op.CHANNEL, Op.LUMA}]
@@ -124,10 +124,10 @@ class Folding(unittest.TestCase):
         self.assertAlmostEqual(e.ramp(e.number(0.0), TABLE).value[0], 0.1)
 
     def test_unknown_operations_are_told(self):
-        self.assertIsNone(blend.maths("NEW IN 6.0", [e.ONE]))
-        self.assertIsNone(blend.maths("SINE", [e.texel("image")]))
-        self.assertIsNone(blend.blend("HUE", e.ONE, e.ONE, e.ONE))
-        self.assertEqual(blend.maths("LOGARITHM", [e.ZERO, e.ONE]).value[0], 0.0)
+        self.assertIsNone(node_math.maths("NEW IN 6.0", [e.ONE]))
+        self.assertIsNone(node_math.maths("SINE", [e.texel("image")]))
+        self.assertIsNone(node_math.blend("HUE", e.ONE, e.ONE, e.ONE))
+        self.assertEqual(node_math.maths("LOGARITHM", [e.ZERO, e.ONE]).value[0], 0.0)
 
 
 if __name__ == "__main__":

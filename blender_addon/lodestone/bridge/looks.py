@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..core.expression import Color
+from ..core.expression.color_expression import Color
 from ..core.native import lodestone_native as native
 from .coordinates import IDENTITY_2D, Coordinates
 from .image_sources import Source

@@ -8,8 +8,8 @@ nothing turns gray silently. What counts is what Cycles draws: EEVEE's blend mod
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..core import expression as e
-from ..core.expression import Expression, Op
+from ..core.expression import color_expression as e
+from ..core.expression.color_expression import Expression, Op
 from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
 from . import graph, ids, looks

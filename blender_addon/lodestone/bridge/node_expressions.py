@@ -9,9 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..core import blend
-from ..core import expression as e
-from ..core.expression import Color, Expression, Op
+from ..core.expression import node_math
+from ..core.expression import color_expression as e
+from ..core.expression.color_expression import Color, Expression, Op
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING
 from . import graph, node_tables
@@ -241,7 +241,7 @@ class NodeExpressions:
         if node.type == "MIX_RGB" or node.clamp_factor:
             part = e.clamp(part)
         kind = node.blend_type if node.type == "MIX_RGB" or node.data_type == "RGBA" else "MIX"
-        result = blend.blend(kind, first, second, part)
+        result = node_math.blend(kind, first, second, part)
         if result is None:
             words = f"mixing by {kind.lower().replace('_', ' ')} is drawn as plain mixing"
             self._note(WARNING, "node_color", words)
@@ -251,7 +251,7 @@ class NodeExpressions:
 
     def _math(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression | None:
         args = [self.number(s, groups, depth) for s in node.inputs if s.enabled]
-        result = blend.maths(node.operation, args)
+        result = node_math.maths(node.operation, args)
         if result is None:
             words = f"Math ({node.operation.lower()}) is drawn as its first value"
             self._note(WARNING, "node_color", words)
@@ -270,7 +270,7 @@ class NodeExpressions:
             return e.add(e.add(parts[0], parts[1]), parts[2])
         known = {"ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM"}
         if kind in known | {"MAXIMUM", "FLOOR", "CEIL", "MODULO", "SNAP", "WRAP"}:
-            return blend.maths(kind, args)
+            return node_math.maths(kind, args)
         return None
 
     def _map_range(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression | None:
@@ -280,15 +280,15 @@ class NodeExpressions:
         value, *limits = [self.number(s, groups, depth) for s in node.inputs if s.enabled]
         low, high, to_low, to_high = limits[:4]
         if kind == "LINEAR":
-            result = blend.mapped(value, low, high, to_low, to_high)
+            result = node_math.mapped(value, low, high, to_low, to_high)
             if not node.clamp:
                 return result
             if to_low.constant and to_high.constant:
                 ends = sorted((to_low.value[0], to_high.value[0]))
                 return e.clamp(result, *ends)
-        part = e.clamp(blend.mapped(value, low, high, e.ZERO, e.ONE))
+        part = e.clamp(node_math.mapped(value, low, high, e.ZERO, e.ONE))
         if kind != "LINEAR":
-            part = blend.smooth(kind, part)
+            part = node_math.smooth(kind, part)
         return e.mix(to_low, to_high, part)
 
     def _clamp(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression:
@@ -323,7 +323,7 @@ class NodeExpressions:
         color = self.color(node.inputs[4], groups, depth)
         if all(v.constant and v.value[0] == n for v, n in ((hue, 0.5), (saturation, 1.0))):
             return e.mix(color, e.multiply(color, value), share)
-        return e.mix(color, blend.hue_saturation(color, hue, saturation, value), share)
+        return e.mix(color, node_math.hue_saturation(color, hue, saturation, value), share)
 
     def _ramp(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression:
         value = self.number(node.inputs[0], groups, depth)

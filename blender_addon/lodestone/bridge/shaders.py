@@ -4,8 +4,8 @@
 from dataclasses import replace
 from typing import Any
 
-from ..core import expression as e
-from ..core.expression import Expression
+from ..core.expression import color_expression as e
+from ..core.expression.color_expression import Expression
 from ..core.problems import INFO, WARNING
 from . import compat, graph
 from .node_expressions import NodeExpressions, Note, mean_of

@@ -5,8 +5,8 @@ expressions."""
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..core import expression as e
-from ..core.expression import Expression
+from ..core.expression import color_expression as e
+from ..core.expression.color_expression import Expression
 from ..core.problems import WARNING
 from .node_expressions import Note, mean_of
 

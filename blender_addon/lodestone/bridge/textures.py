@@ -10,9 +10,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from ..core import expression as e
-from ..core.affine import Affine, affine, peeled
-from ..core.expression import Color, Expression, Op
+from ..core.expression import color_expression as e
+from ..core.expression.affine_texel import Affine, affine, peeled
+from ..core.expression.color_expression import Color, Expression, Op
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING
 from .coordinates import IDENTITY_2D, Coordinates, between

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from . import srgb
-from .native import lodestone_native as native
+from .. import srgb
+from ..native import lodestone_native as native
 
 Op = native.BakeOp
 Color = tuple[float, float, float]

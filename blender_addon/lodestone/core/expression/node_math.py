@@ -7,7 +7,7 @@ source: the operations as Blender's manual defines them and Cycles computes them
 import math
 from collections.abc import Callable
 
-from .expression import (
+from .color_expression import (
     ONE,
     ZERO,
     Expression,

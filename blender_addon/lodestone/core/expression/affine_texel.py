@@ -4,8 +4,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from .expression import WEIGHTS, Color, Expression, Op, walk
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
+from .color_expression import WEIGHTS, Color, Expression, Op, walk
 
 Channel = native.Channel
 _SAME = 1e-9
