@@ -23,8 +23,7 @@ from lodestone import batch_pictures, extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
 from lodestone.core import batch_inputs, blend_header, comparing, file_names  # noqa: E402
-from lodestone.core import motion_file, process_session, progress_text, run_report  # noqa: E402
-from lodestone.core import store_path, unseen  # noqa: E402
+from lodestone.core import process_session, progress_text, run_report, unseen  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
@@ -33,6 +32,7 @@ from lodestone.core.native import lodestone_native as native  # noqa: E402
 from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
 from lodestone.core.picture import remove_others, used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
+from lodestone.core.store import motion_file, store_path  # noqa: E402
 
 
 NO_LEVELS = (

@@ -4,8 +4,8 @@
 import bpy
 from bpy.props import StringProperty
 
-from .core import store_path
 from .core.native import lodestone_native as native
+from .core.store import store_path
 
 _status_cache: dict[str, list[tuple[str, str]]] = {}
 

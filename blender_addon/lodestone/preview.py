@@ -19,10 +19,11 @@ from .bridge import ids, lenses, preview_scene, viewport_view
 from .bridge.decisions import edits_of
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import edits, preview_worker, store_levels, store_path
+from .core import edits, preview_worker
 from .core.preview_view import View
 from .core.preview_worker import Failed, Made, Picture, Wanted
 from .core.problems import Problems
+from .core.store import store_levels, store_path
 
 ENGINE = "LODESTONE_POVRAY"
 UPLOAD_S = 0.015  # of a redraw

@@ -230,7 +230,7 @@ class Drawn(unittest.TestCase):
 
     def chosen(self):
         """{group's name: triangles drawn of it}."""
-        from lodestone.core import store_levels, store_path
+        from lodestone.core.store import store_levels, store_path
 
         bpy.context.view_layer.update()
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))

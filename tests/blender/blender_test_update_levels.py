@@ -83,7 +83,7 @@ class UpdateLevels(unittest.TestCase):
     def levels(self, item):
         """What the panel shows of an object or a collection."""
         from lodestone.bridge import decisions
-        from lodestone.core import store_levels, store_path
+        from lodestone.core.store import store_levels, store_path
 
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
         self.assertEqual(store.problem, "")

@@ -30,7 +30,8 @@ class Viewport(unittest.TestCase):
         self.scene = bpy.context.scene
         bpy.ops.lodestone.update_levels()
         from lodestone.bridge import preview_scene
-        from lodestone.core import preview_worker, store_path
+        from lodestone.core import preview_worker
+        from lodestone.core.store import store_path
 
         self.preview_scene, self.preview_worker = preview_scene, preview_worker
         names = preview_scene.names_of(self.scene)
@@ -165,7 +166,7 @@ class Viewport(unittest.TestCase):
 
     def test_statistics_of_the_viewport_follow_its_pins(self):
         from lodestone.bridge import live_view
-        from lodestone.core import store_levels, store_path
+        from lodestone.core.store import store_levels, store_path
 
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
         live_view.forget()

@@ -9,12 +9,13 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_views, run_report, store_path
+from lodestone.core import batch_views, run_report
 from lodestone.core.batch_arguments import jobs, parser
 from lodestone.core.batch_jobs import PictureRequest
 from lodestone.core.file_names import fitting, folder_name
 from lodestone.core.printable_text import printable, sentence, valid
 from lodestone.core.problems import WARNING, Problems
+from lodestone.core.store import store_path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
 import hostile_names as hostile  # noqa: E402

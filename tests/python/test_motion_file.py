@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import motion_file
+from lodestone.core.store import motion_file
 
 NOTHING = {"still_shape": [], "still_place": []}
 

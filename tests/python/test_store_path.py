@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import store_path
+from lodestone.core.store import store_path
 
 
 class StoreFolder(unittest.TestCase):

@@ -8,12 +8,13 @@ from typing import Any
 
 import bpy
 
-from ..core import preview_tree, store_levels, store_path, view_statistics
+from ..core import preview_tree, view_statistics
 from ..core.native import lodestone_native as native
 from ..core.picture import Settings
 from ..core.problems import Problems
-from . import camera as cameras
+from ..core.store import store_levels, store_path
 from . import lenses, preview_scene, quality, viewport_view
+from . import camera as cameras
 from .scene_check import rendered_objects
 from .settings import SceneSettings
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from ..core import store_path
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
+from ..core.store import store_path
 from .ids import name_of
 from .leaves import DRAWN, GREASE_PENCIL
 

@@ -13,15 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import (
-    batch_inputs,
-    batch_resume,
-    blend_header,
-    locked_folder,
-    png_file,
-    run_report,
-    store_path,
-)
+from . import batch_inputs, batch_resume, blend_header, locked_folder, png_file, run_report
 from .batch_child import CANCELLED, Child
 from .batch_jobs import FileJob
 from .batch_resume import Found
@@ -30,7 +22,8 @@ from .exit_codes import STATUS, ExitCode
 from .file_names import fitting
 from .locked_folder import LockedFolder
 from .problems import ERROR, Problem
-from .store_levels import INDEX
+from .store import store_path
+from .store.store_levels import INDEX
 
 CRASH, NOT_BEGUN = "crash", "not_begun"
 PROGRESS = "Lodestone: progress: "

@@ -20,7 +20,7 @@ from . import false_colors, preview_tree, progress_text
 from .native import lodestone_native as native
 from .picture import POVRAY_KINDS
 from .preview_tree import NOT_FORCED, Changes, Names, Tree
-from .store_levels import is_store
+from .store.store_levels import is_store
 
 MOST_TRIANGLES = 8_000_000  # of a picture, whatever its budget: 0.2 GB
 COARSE_FIRST = 8.0  # times Pixel Error

@@ -15,9 +15,10 @@ import bpy
 
 from .. import extract_engine
 from ..bridge import structure
-from ..core import motion_file, progress_text, store_path
+from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
+from ..core.store import motion_file, store_path
 from . import session as sessions
 from .polled import Polled
 

@@ -9,11 +9,12 @@ import bpy
 from .. import extract_engine, handlers
 from ..bridge import lenses, quality
 from ..bridge.settings import SceneSettings
-from ..core import kept_model, motion_file, store_path
+from ..core import kept_model
 from ..core.native import lodestone_native as native
 from ..core.picture import Settings
 from ..core.printable_text import sentence
-from ..core.store_levels import is_store
+from ..core.store import motion_file, store_path
+from ..core.store.store_levels import is_store
 from . import session as sessions
 from .polled import Polled
 

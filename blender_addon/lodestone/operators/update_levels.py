@@ -9,9 +9,10 @@ from bpy.props import BoolProperty
 
 from .. import extract_engine
 from ..bridge import decisions
-from ..core import edits, motion_file, progress_text, store_path
+from ..core import edits, progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
+from ..core.store import motion_file, store_path
 from . import session as sessions
 from .polled import Polled
 

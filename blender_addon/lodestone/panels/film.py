@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import store_path
+from ..core.store import store_path
 from . import EnginePanel
 
 

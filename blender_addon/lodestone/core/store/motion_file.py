@@ -9,7 +9,7 @@ import json
 import os
 from pathlib import Path
 
-from . import stable_ids
+from .. import stable_ids
 
 _KINDS = ("still_shape", "still_place")
 _MOST_BYTES = 1 << 26

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 INDEX = "tileset.json"
 

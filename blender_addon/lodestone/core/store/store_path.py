@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from . import file_names
+from .. import file_names
 
 FOLDER = "lodestone"
 
