@@ -22,15 +22,17 @@ import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, comparing, file_names  # noqa: E402
-from lodestone.core import process_session, progress_text, run_report, unseen  # noqa: E402
+from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
+from lodestone.core import progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
-from lodestone.core.picture import SceneFolder, Settings, cut_and_export, make_picture  # noqa: E402
-from lodestone.core.picture import remove_others, used_files  # noqa: E402
+from lodestone.core.picture import compare_pictures, unseen_detail  # noqa: E402
+from lodestone.core.picture.picture_maker import SceneFolder, Settings, cut_and_export  # noqa: E402
+from lodestone.core.picture.picture_maker import make_picture, remove_others  # noqa: E402
+from lodestone.core.picture.picture_maker import used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.store import motion_file, store_path  # noqa: E402
 
@@ -255,7 +257,7 @@ class FileRun:
         if self.job.keep == "always" and self.job.many_pictures:
             kept = kept / file_names.folder_name(picture.out)
         compares = self.job.verb == "compare"
-        make = comparing.compare if compares else make_picture
+        make = compare_pictures.compare if compares else make_picture
         with self._scene_folder(kept) as folder:
             try:
                 made = self._long(
@@ -346,7 +348,7 @@ def _asked(modifiers, picture: PictureRequest):
     if picture.off_screen is not None:
         changed["off_screen"] = native.OffScreen[picture.off_screen.upper()]
     if picture.ray_classes is not None:
-        changed["ray_classes"] = unseen.rays_of(picture.ray_classes)
+        changed["ray_classes"] = unseen_detail.rays_of(picture.ray_classes)
     if not changed:
         return modifiers
     return replace(native.Modifiers() if modifiers is None else modifiers, **changed)

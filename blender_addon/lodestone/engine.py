@@ -28,13 +28,14 @@ from .bridge import (
 )
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import compare_plan, edits, kept_model, last_check, last_render, progress_text
+from .core import edits, kept_model, last_check, last_render, progress_text
 from .core.background_calls import Stopped, Work
 from .core.native import lodestone_native as native
-from .core.picture import Settings, make_identities, make_picture
+from .core.picture import compare_plan
+from .core.picture.picture_maker import Settings, make_identities, make_picture
+from .core.picture.render_folder import RenderFolder
 from .core.printable_text import printable, sentence, valid
 from .core.problems import ERROR, Problems
-from .core.render_folder import RenderFolder
 from .core.store import motion_file, store_path
 
 # Where each stage starts on the progress bar, and how much of it it takes

@@ -7,7 +7,7 @@ from mathutils import Vector
 
 from . import handlers
 from .bridge import live_view
-from .core import lens_rim
+from .core.picture import lens_rim
 from .operators import screen_lenses
 
 _RIM = (0.35, 0.75, 1.0, 0.9)

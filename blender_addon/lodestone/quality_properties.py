@@ -5,7 +5,7 @@ until it is set, and one that is stored, which is below 0 while it inherits."""
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
 from .bridge import quality
-from .core import quality_tree, unseen
+from .core.picture import quality_tree, unseen_detail
 
 
 def _reader(key):
@@ -65,5 +65,5 @@ class RayClasses:
 
     __annotations__ = {
         one.key: BoolProperty(name=one.label, description=one.description, default=False)
-        for one in unseen.CLASSES
+        for one in unseen_detail.CLASSES
     }

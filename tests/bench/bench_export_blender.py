@@ -67,7 +67,7 @@ def lodestone(folder: Path, addons: Path) -> dict:
     from lodestone import extract_engine
     from lodestone.bridge import scene as extraction
     from lodestone.core.native import lodestone_native as native
-    from lodestone.core.picture import Settings, cut_and_export
+    from lodestone.core.picture.picture_maker import Settings, cut_and_export
 
     native.version()  # loads the library
     spent, before = 0.0, 0

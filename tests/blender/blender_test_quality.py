@@ -11,8 +11,8 @@ import bpy
 
 import blender_scenes as scenes
 from lodestone.bridge import lenses, quality, viewport_view
-from lodestone.core import quality_tree
 from lodestone.core.native import lodestone_native as native
+from lodestone.core.picture import quality_tree
 
 NUMBERS = [control for control in quality_tree.CONTROLS if control.least is not None]
 

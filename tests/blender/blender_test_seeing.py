@@ -30,7 +30,8 @@ class Seeing(unittest.TestCase):
         bpy.context.view_layer.update()
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         self.scene = bpy.context.scene
-        from lodestone.core import compare_plan, kept_model, last_render
+        from lodestone.core import kept_model, last_render
+        from lodestone.core.picture import compare_plan
 
         self.plans, self.kept, self.renders = compare_plan, kept_model, last_render
         self.addCleanup(kept_model.clear)
@@ -285,8 +286,8 @@ class Seeing(unittest.TestCase):
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_false_colors_are_the_levels_of_the_scene_camera_from_anywhere(self):
-        from lodestone.core import false_colors
         from lodestone import lodestone_native as native
+        from lodestone.core.picture import false_colors
 
         self.scene.lodestone.pixel_error_render = 2.0
         self.scene.render.resolution_x, self.scene.render.resolution_y = 320, 180

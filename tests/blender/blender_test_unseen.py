@@ -13,12 +13,13 @@ import bpy
 import blender_scenes as scenes
 from lodestone.bridge import live_view, quality
 from lodestone.bridge.settings import SceneSettings
-from lodestone.core import last_render, unseen
+from lodestone.core import last_render
 from lodestone.core.native import lodestone_native as native
+from lodestone.core.picture import unseen_detail
 from lodestone.panels import unseen as panel
 
 BOTH = int(native.Rays.SHADOW | native.Rays.REFLECTION)
-KEYS = [one.key for one in unseen.CLASSES]
+KEYS = [one.key for one in unseen_detail.CLASSES]
 
 
 class Settings(unittest.TestCase):
@@ -31,7 +32,7 @@ class Settings(unittest.TestCase):
         self.assertEqual(quality.ray_classes(SceneSettings(self.scene)), 0)
 
     def test_each_class_is_its_own_bit(self):
-        for one in unseen.CLASSES:
+        for one in unseen_detail.CLASSES:
             setattr(self.settings, one.key, True)
             self.assertEqual(quality.ray_classes(self.settings), one.rays)
             setattr(self.settings, one.key, False)
@@ -60,8 +61,8 @@ class Settings(unittest.TestCase):
 class Words(unittest.TestCase):
     def numbers(self, **values):
         usual = dict(own=5, triangles=1_200_000, largest_error_px=0.93, needed=0, shaped=0)
-        usual |= dict(touching=0, ray_class=unseen.CLASSES[0])
-        return unseen.RayNumbers(**(usual | values))
+        usual |= dict(touching=0, ray_class=unseen_detail.CLASSES[0])
+        return unseen_detail.RayNumbers(**(usual | values))
 
     def test_what_is_saved_and_its_bound(self):
         lines = panel.lines_of(self.numbers(), 2_700_000)

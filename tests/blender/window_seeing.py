@@ -93,7 +93,7 @@ def it_is_off_when_another_file_is_opened():
 
 
 def compare_fills_the_slots():
-    from lodestone.core import compare_plan
+    from lodestone.core.picture import compare_plan
 
     scene = bpy.context.scene
     scene.lodestone.pixel_error_render = 4.0

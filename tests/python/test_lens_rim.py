@@ -5,7 +5,7 @@ import math
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core import lens_rim
+from lodestone.core.picture import lens_rim
 
 
 class Rim(unittest.TestCase):

@@ -15,7 +15,7 @@ from unittest import mock
 import addon_path
 from lodestone.core import locked_folder
 from lodestone.core.locked_folder import LockedFolder
-from lodestone.core.picture import SceneFolder
+from lodestone.core.picture.picture_maker import SceneFolder
 
 DYING = """
 import os, sys

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import addon_path  # noqa: F401
 from lodestone.core.native import lodestone_native as native
-from lodestone.core.picture import bent_by
+from lodestone.core.picture.picture_maker import bent_by
 
 EYE = native.Camera("eye", False, (0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1), 0.1)
 PLACE = (1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)

@@ -5,8 +5,8 @@ import math
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core import quality_tree
-from lodestone.core.quality_tree import CONTROLS, inherits, quality
+from lodestone.core.picture import quality_tree
+from lodestone.core.picture.quality_tree import CONTROLS, inherits, quality
 
 PRESETS = (8.0, 2.0, 1.0, 0.0)
 

@@ -10,7 +10,14 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core import compare_plan, cost_model, false_colors, legend_strip, overview, why
+from lodestone.core.picture import (
+    compare_plan,
+    cost_model,
+    false_colors,
+    legend_strip,
+    overview_camera,
+    why_sentences,
+)
 from lodestone_native import Antialias, Camera, Drawn, Image, Kind, Object
 
 WORK = cost_model.Work(245_000_000, 1_000_000, 640 * 360, 640, 360, 1, 1, 2)
@@ -137,7 +144,7 @@ class Legend(unittest.TestCase):
 class Overview(unittest.TestCase):
     def test_everything_and_the_camera_are_in_the_picture(self):
         for camera in (CAMERA, Camera("D", True, (50, 3, 9), (0, 0, -1), (1, 0, 0), (0, 1, 0), 1)):
-            found = overview.overview(camera, (3.0, 4.0, 5.0), 2.0, (200, 100))
+            found = overview_camera.overview(camera, (3.0, 4.0, 5.0), 2.0, (200, 100))
             self.assertEqual((found.aperture, found.orthographic), (0.0, False))
             self.assertAlmostEqual(math.hypot(*found.direction), 1.0)
             inside = [camera.position, (5, 4, 5), (1, 4, 5), (3, 4, 7), (3, 6, 5), (3, 2, 3.1)]
@@ -181,7 +188,7 @@ class _Cut:
 
 
 def explain(drawn=Drawn.ITSELF, **values):
-    return why.explain(_Cut(**values), drawn, 0)
+    return why_sentences.explain(_Cut(**values), drawn, 0)
 
 
 class Why(unittest.TestCase):
@@ -205,9 +212,9 @@ class Why(unittest.TestCase):
         self.assertIn("Use does not allow that one", explain(pinned=1).lines)
 
     def test_a_neighbor_that_opens_the_group_is_named(self):
-        before = why.native.most_demanding
-        self.addCleanup(setattr, why.native, "most_demanding", before)
-        why.native.most_demanding = lambda model, group: "Kitchen/Door"
+        before = why_sentences.native.most_demanding
+        self.addCleanup(setattr, why_sentences.native, "most_demanding", before)
+        why_sentences.native.most_demanding = lambda model, group: "Kitchen/Door"
         values = {"coarser_object": Object(9, 1), "coarser_factor": math.inf, "lod": 0}
         lines = explain(**values).lines
         self.assertIn("Group House as LOD 3  Box would be 19 px", lines)
@@ -221,7 +228,7 @@ class Why(unittest.TestCase):
             def choice_path(self, position):
                 return ""
 
-        found = why.explain(Root(), Drawn.IN_GROUP, 0)
+        found = why_sentences.explain(Root(), Drawn.IN_GROUP, 0)
         self.assertEqual(found.title, "In group House: LOD 2  Simplified")
 
     def test_nothing_coarser_and_nothing_drawn(self):

@@ -11,8 +11,9 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core import batch_arguments, unseen, why
+from lodestone.core import batch_arguments
 from lodestone.core.batch_jobs import FileJob
+from lodestone.core.picture import unseen_detail, why_sentences
 from lodestone_native import Drawn, Kind, Met, Modifiers, Object, OffScreen, Rays
 from test_seeing import _Cut
 
@@ -21,24 +22,24 @@ BOTH = Rays.SHADOW | Rays.REFLECTION
 
 class Words(unittest.TestCase):
     def test_none_is_no_class(self):
-        self.assertEqual((unseen.rays_of("none"), unseen.text_of(0)), (0, "none"))
-        self.assertEqual(unseen.mask([]), 0)
+        self.assertEqual((unseen_detail.rays_of("none"), unseen_detail.text_of(0)), (0, "none"))
+        self.assertEqual(unseen_detail.mask([]), 0)
 
     def test_settings_and_words_name_the_same_bits(self):
-        for one in unseen.CLASSES:
-            self.assertEqual(unseen.mask([one.key]), one.rays)
-            self.assertEqual(unseen.rays_of(one.word), one.rays)
-            self.assertEqual(unseen.text_of(one.rays), one.word)
-        self.assertEqual(unseen.rays_of("reflection,shadow"), BOTH)
-        self.assertEqual(unseen.text_of(BOTH), "shadow,reflection")
+        for one in unseen_detail.CLASSES:
+            self.assertEqual(unseen_detail.mask([one.key]), one.rays)
+            self.assertEqual(unseen_detail.rays_of(one.word), one.rays)
+            self.assertEqual(unseen_detail.text_of(one.rays), one.word)
+        self.assertEqual(unseen_detail.rays_of("reflection,shadow"), BOTH)
+        self.assertEqual(unseen_detail.text_of(BOTH), "shadow,reflection")
 
     def test_nonsense_is_named(self):
         for text in ("", "shadows", "shadow,", "shadow;reflection", "none,shadow", "\0", "9" * 999):
             with self.assertRaises(ValueError, msg=text):
-                unseen.rays_of(text)
+                unseen_detail.rays_of(text)
 
     def test_tooltips_are_sentences_without_a_full_stop(self):
-        for one in unseen.CLASSES:
+        for one in unseen_detail.CLASSES:
             self.assertGreater(len(one.description), 40)
             self.assertFalse(one.description.endswith("."))
 
@@ -62,18 +63,18 @@ class Numbers(unittest.TestCase):
     def test_a_cut_without_classes_is_not_asked(self):
         for modifiers in (None, Modifiers(), Modifiers(off_screen=OffScreen.SHADOWS)):
             cut = _Rays(modifiers)
-            self.assertIsNone(unseen.met(cut))
+            self.assertIsNone(unseen_detail.met(cut))
             self.assertEqual(cut.asked, [])
 
     def test_each_class_is_told_once_in_the_panel_s_order(self):
         cut = _Rays(Modifiers(ray_classes=BOTH))
-        found = unseen.met(cut)
+        found = unseen_detail.met(cut)
         self.assertEqual(cut.asked, [Rays.SHADOW, Rays.REFLECTION])
         self.assertEqual([one.triangles for one in found.classes], [200, 100])
         self.assertEqual((found.triangles, found.bytes), (1200, 5000))
 
     def test_the_report_has_every_number(self):
-        found = unseen.part(unseen.met(_Rays(Modifiers(ray_classes=Rays.SHADOW))))
+        found = unseen_detail.part(unseen_detail.met(_Rays(Modifiers(ray_classes=Rays.SHADOW))))
         self.assertEqual(
             json.loads(json.dumps(found)),
             {
@@ -157,7 +158,7 @@ class _Met(_Cut):
 
 class Why(unittest.TestCase):
     def lines(self, ray_classes=Rays.SHADOW, **met):
-        return why.explain(_Met(ray_classes, **met), Drawn.ITSELF, 0).lines[2:]
+        return why_sentences.explain(_Met(ray_classes, **met), Drawn.ITSELF, 0).lines[2:]
 
     def test_classes_that_are_off_are_not_spoken_of(self):
         self.assertEqual(self.lines(ray_classes=0, met=Met.OWN), ())

@@ -4,7 +4,8 @@
 from dataclasses import replace
 from typing import Any
 
-from ..core import kept_model, why
+from ..core import kept_model
+from ..core.picture import why_sentences
 from ..core.problems import Problems
 from . import camera, ids, lenses, live_view, preview_live, render_result
 from .settings import SceneSettings
@@ -45,6 +46,6 @@ def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None"
         cut = kept.cut(now(kept, scene, depsgraph))
         world = preview_live.expected_world(item.evaluated_get(depsgraph))
         drawn, position = kept.find([ids.key_of("object", item.original)], world)
-        return why.explain(cut, drawn, position)
+        return why_sentences.explain(cut, drawn, position)
     finally:
         kept.lock.release()

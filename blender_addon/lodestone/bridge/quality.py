@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene's controls of quality, between its settings and core/quality_tree.py."""
+"""A scene's controls of quality, between its settings and core/picture/quality_tree.py."""
 
 from typing import Any
 
-from ..core import quality_tree, unseen
+from ..core.picture import quality_tree, unseen_detail
 
 AUTOMATIC = "AUTOMATIC"  # the Antialiasing that inherits
 OWN = "own_"  # what is stored of a control with a number: below 0 it inherits
@@ -46,7 +46,9 @@ def ray_classes(settings: Any) -> int:
     """Of renders, as native.Rays: those that may meet coarser levels than the camera's."""
     if not settings.use_levels:
         return 0
-    return unseen.mask(one.key for one in unseen.CLASSES if getattr(settings, one.key))
+    return unseen_detail.mask(
+        one.key for one in unseen_detail.CLASSES if getattr(settings, one.key)
+    )
 
 
 def inherit(settings: Any, key: str) -> None:

@@ -6,8 +6,8 @@ import math
 import re
 from collections.abc import Callable
 
-from . import unseen
-from .quality_tree import Control
+from .picture import unseen_detail
+from .picture.quality_tree import Control
 
 _MAX_SIZE = 65536
 
@@ -79,15 +79,17 @@ def control(wanted: Control) -> Callable[[str], float]:
 
 def off_screen(text: str) -> str:
     """One of unseen.OFF_SCREEN."""
-    if text not in unseen.OFF_SCREEN:
-        raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(unseen.OFF_SCREEN)}")
+    if text not in unseen_detail.OFF_SCREEN:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is none of {', '.join(unseen_detail.OFF_SCREEN)}"
+        )
     return text
 
 
 def ray_classes(text: str) -> str:
     """As unseen.text_of() has it."""
     try:
-        return unseen.text_of(unseen.rays_of(text))
+        return unseen_detail.text_of(unseen_detail.rays_of(text))
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
 

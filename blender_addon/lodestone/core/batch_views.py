@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import batch_values, quality_tree
+from . import batch_values
 from .batch_jobs import PictureRequest
+from .picture import quality_tree
 
 ANTIALIAS = ("automatic", "off", "final", "reference")
 NUMBERS = tuple(control for control in quality_tree.CONTROLS if control.least is not None)

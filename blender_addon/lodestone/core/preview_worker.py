@@ -16,9 +16,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import false_colors, preview_tree, progress_text
+from . import preview_tree, progress_text
 from .native import lodestone_native as native
-from .picture import POVRAY_KINDS
+from .picture import false_colors
+from .picture.picture_maker import POVRAY_KINDS
 from .preview_tree import NOT_FORCED, Changes, Names, Tree
 from .store.store_levels import is_store
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compare: the frame by its originals, by its levels, and their difference, in three render slots.
 
-No setting is touched: the engine asks core/compare_plan.py what the picture is to be. The
+No setting is touched: the engine asks core/picture/compare_plan.py what the picture is to be. The
 compositor alone, which would work on the difference, is off while that is shown.
 """
 
@@ -15,7 +15,8 @@ import bpy
 from .. import handlers
 from ..bridge import quality
 from ..bridge.settings import SceneSettings
-from ..core import compare_plan, progress_text
+from ..core import progress_text
+from ..core.picture import compare_plan
 from ..panels import ENGINE
 from . import session as sessions
 from .polled import Polled

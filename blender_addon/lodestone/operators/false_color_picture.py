@@ -14,9 +14,10 @@ from mathutils import Vector
 
 from .. import preferences
 from ..bridge import kept_view
-from ..core import background_calls, false_colors, kept_model, legend_strip, overview
+from ..core import background_calls, kept_model
 from ..core.native import lodestone_native as native
-from ..core.picture import PICTURE
+from ..core.picture import false_colors, legend_strip, overview_camera
+from ..core.picture.picture_maker import PICTURE
 from ..core.printable_text import sentence
 from . import read_levels
 from . import session as sessions
@@ -78,8 +79,10 @@ def picture(kept, asked, mode, seen, size, folder, program, new_job):
         if seen is None:
             shown = replace(view, camera=replace(view.camera, aperture=0.0))
         elif seen == OVERVIEW:
-            center, radius = overview.bound_of(cut)
-            shown = replace(shown, camera=overview.overview(view.camera, center, radius, size))
+            center, radius = overview_camera.bound_of(cut)
+            shown = replace(
+                shown, camera=overview_camera.overview(view.camera, center, radius, size)
+            )
         else:
             shown = replace(shown, camera=seen)
         options = native.PovrayOptions(false_color=True, program=program)

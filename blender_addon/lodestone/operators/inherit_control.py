@@ -5,7 +5,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..bridge import quality
-from ..core import quality_tree
+from ..core.picture import quality_tree
 from .polled import Polled
 
 

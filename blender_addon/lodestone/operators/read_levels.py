@@ -11,7 +11,7 @@ from ..bridge import lenses, quality
 from ..bridge.settings import SceneSettings
 from ..core import kept_model
 from ..core.native import lodestone_native as native
-from ..core.picture import Settings
+from ..core.picture.picture_maker import Settings
 from ..core.printable_text import sentence
 from ..core.store import motion_file, store_path
 from ..core.store.store_levels import is_store

@@ -4,7 +4,8 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import compare_plan, progress_text
+from ..core import progress_text
+from ..core.picture import compare_plan
 from . import EnginePanel
 
 

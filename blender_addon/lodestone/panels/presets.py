@@ -9,7 +9,7 @@ from bl_ui.utils import PresetPanel
 from bpy.types import Operator, Panel
 
 from ..bridge import quality
-from ..core import quality_tree, unseen
+from ..core.picture import quality_tree, unseen_detail
 
 # Name: Pixel Error, from which everything else follows
 PRESETS = {
@@ -33,7 +33,7 @@ _KEPT = (
     "budget_viewport",
     "coarser_moving_dark",
     "off_screen",
-    *(ray_class.key for ray_class in unseen.CLASSES),
+    *(ray_class.key for ray_class in unseen_detail.CLASSES),
     "antialias",
     *(quality.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
 )

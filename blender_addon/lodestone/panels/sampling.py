@@ -5,7 +5,7 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import quality
-from ..core import quality_tree
+from ..core.picture import quality_tree
 from . import EnginePanel
 from .overrides import draw_control
 

@@ -6,8 +6,9 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import live_view, quality
-from ..core import progress_text, unseen
+from ..core import progress_text
 from ..core.native import lodestone_native as native
+from ..core.picture import unseen_detail
 from . import EnginePanel
 
 
@@ -26,7 +27,7 @@ class LODESTONE_RENDER_PT_unseen(EnginePanel, Panel):
         column.active = not exact
         column.prop(settings, "off_screen")
         boxes = column.column(heading="Coarser In", align=True)
-        for one in unseen.CLASSES:
+        for one in unseen_detail.CLASSES:
             boxes.prop(settings, one.key)
         if exact:
             why = "Pixel Error is 0" if settings.use_levels else "Levels are off"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .picture import SceneFolder, remove_others, used_files
+from .picture_maker import SceneFolder, remove_others, used_files
 
 
 class RenderFolder:

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 FILE = "cost.json"
 _PARSE_S_PER_BYTE = 5.2e-6 / 245

@@ -5,7 +5,7 @@ from array import array
 from collections.abc import Sequence
 from typing import Any
 
-from . import lettering
+from . import bitmap_letters
 from .false_colors import Color
 
 BACK: Color = (0.02, 0.02, 0.02)
@@ -19,7 +19,7 @@ def laid_out(
     """(left, line, word, color) of each entry, in pixels of a picture so wide."""
     found, left, line = [], _EDGE, 0
     for word, color in entries:
-        needed = _SIDE + 3 + lettering.width(word)
+        needed = _SIDE + 3 + bitmap_letters.width(word)
         if left > _EDGE and (left + needed) * scale > width:
             left, line = _EDGE, line + 1
         found.append((left, line, word, color))
@@ -46,7 +46,7 @@ def with_legend(image: Any, title: str, entries: Sequence[tuple[str, Color]]) ->
         if color != BACK:
             fill(left * scale, top * scale, _SIDE * scale, color)
         first = left + _SIDE + 3 if color != BACK else left
-        for x, y in lettering.pixels(word):
+        for x, y in bitmap_letters.pixels(word):
             fill((first + x) * scale, (top + 1 + y) * scale, scale, INK)
     pixels = array("f", image.pixels)
     pixels[3::4] = array("f", (1.0,)) * (image.width * image.height)

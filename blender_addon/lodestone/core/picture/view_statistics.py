@@ -6,9 +6,10 @@ from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from . import run_report, unseen
-from .native import lodestone_native as native
-from .picture import POVRAY_KINDS, Settings
+from .. import run_report
+from ..native import lodestone_native as native
+from . import unseen_detail
+from .picture_maker import POVRAY_KINDS, Settings
 
 _ENDLESS = 1e300  # metres
 
@@ -29,7 +30,7 @@ class Statistics:
     pixel_error: float
     fits: bool
     choose_s: float
-    met: unseen.Met | None = None  # by classes of rays that have levels of their own
+    met: unseen_detail.Met | None = None  # by classes of rays that have levels of their own
 
 
 class Chooser:
@@ -85,7 +86,7 @@ class Chooser:
     def _statistics(self, cut: Any, start: float, pixel_error: float) -> Statistics:
         summary = cut.summary()
         part = run_report.cut_part(summary)
-        met = unseen.met(cut)
+        met = unseen_detail.met(cut)
         return Statistics(
             triangles_before=self._before[0],
             triangles=summary.triangles,

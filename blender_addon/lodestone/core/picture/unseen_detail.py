@@ -5,7 +5,7 @@ shadows, what its mirrors show), which may meet coarser levels than the camera s
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 
 class RayClass(NamedTuple):

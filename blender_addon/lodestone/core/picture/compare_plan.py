@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 ORIGINALS, LEVELS, DIFFERENCE = 0, 1, 2
 WORDS = ("originals", "levels", "difference")
@@ -77,7 +77,7 @@ class Plan:
         return self.comparison is not None if self.step == DIFFERENCE else self.has_this
 
     def take(self, made: Any, shown: Path, paths: list[str]) -> None:
-        """This step's core.picture.Picture, which of its choices each pixel shows, and their
+        """This step's core.picture.picture_maker.Picture, which of its choices each pixel shows, and their
         paths."""
         os.replace(shown, self._shown(self.step))
         shutil.copyfile(made.path, self.picture(self.step))

@@ -7,8 +7,8 @@ Colors are linear Rec.709, 0...1.
 from collections.abc import Sequence
 from typing import Any
 
-from . import progress_text, srgb
-from .native import lodestone_native as native
+from .. import progress_text, srgb
+from ..native import lodestone_native as native
 
 Color = tuple[float, float, float]
 

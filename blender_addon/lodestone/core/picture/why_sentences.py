@@ -5,8 +5,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from . import progress_text, unseen
-from .native import lodestone_native as native
+from .. import progress_text
+from ..native import lodestone_native as native
+from . import unseen_detail
 
 KINDS = {
     native.Kind.MESH: "Simplified",
@@ -90,7 +91,7 @@ _KEPT = {
 def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
     """What its shadow and its images in mirrors are of, where they may be coarser."""
     modifiers, lines = cut.view.modifiers, []
-    for one in unseen.CLASSES:
+    for one in unseen_detail.CLASSES:
         if modifiers is None or not modifiers.ray_classes & int(one.rays):
             continue
         met = cut.choice_rays(position, one.rays)

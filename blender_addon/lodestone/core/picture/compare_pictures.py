@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from . import compare_plan
-from .picture import Picture, Settings, make_identities, make_picture
+from .picture_maker import Picture, Settings, make_identities, make_picture
 
 STEPS = (compare_plan.ORIGINALS, compare_plan.LEVELS)
 

@@ -5,7 +5,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 _TILT = math.radians(35)  # how far from above the horizon it looks down
 _HALF_FOV = math.radians(20)

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from . import cost_model, locked_folder, quality_tree, run_report, stable_ids, unseen
-from .native import lodestone_native as native
+from .. import locked_folder, run_report, stable_ids
+from ..native import lodestone_native as native
+from . import cost_model, quality_tree, unseen_detail
 
 PICTURE = "picture.exr"
 POVRAY_KINDS = sum(
@@ -130,9 +131,9 @@ def _cut_and_export(
     with settings.cut(model, camera, size, job) as cut:
         view, summary = cut.view, cut.summary()
         parts = {"cut": run_report.cut_part(summary)}
-        met = unseen.met(cut)
+        met = unseen_detail.met(cut)
         if met is not None:
-            parts["cut"]["rays"] = unseen.part(met)
+            parts["cut"]["rays"] = unseen_detail.part(met)
         if settings.budget:
             parts["cut"].update(pixel_error=cut.pixel_error, fits=cut.fits)
         in_use = levels_in_use(model, cut)
