@@ -3,7 +3,7 @@
 
 Nothing in the file is written: levels are drawn beside the scene, for each viewport those that
 suit it. A redraw uploads for some milliseconds and draws; everything else is a thread's
-(core/preview_worker.py). Objects that were moved or hidden since levels were built follow; what has
+(core/preview/preview_worker.py). Objects that were moved or hidden since levels were built follow; what has
 another shape is drawn as it is.
 """
 
@@ -19,9 +19,10 @@ from .bridge import ids, lenses, preview_scene, viewport_view
 from .bridge.decisions import edits_of
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import edits, preview_worker
-from .core.preview_view import View
-from .core.preview_worker import Failed, Made, Picture, Wanted
+from .core import edits
+from .core.preview import preview_worker
+from .core.preview.preview_worker import Failed, Made, Picture, Wanted
+from .core.preview.viewport_state import View
 from .core.problems import Problems
 from .core.store import store_levels, store_path
 

@@ -3,7 +3,7 @@
 
 import time
 
-from .core import preview_view
+from .core.preview import viewport_state
 
 MOST_BYTES = 1_000_000_000  # of batches that are kept; beyond it those go that nobody shows
 KEPT_S = 20.0  # that batches nobody shows are kept, for when one looks back
@@ -135,7 +135,7 @@ class Pool:
             if held is None:
                 continue
             held.used = now
-            if held.batch is None or preview_view.outside(planes, held.box):
+            if held.batch is None or viewport_state.outside(planes, held.box):
                 continue
             held.batch.draw(program)
             drawn += 1
@@ -239,7 +239,7 @@ class Canvas:
             program.uniform_float("to_clip", matrix)
             program.uniform_float("eye", eye)
             program.uniform_float("sun", sun)
-            planes = preview_view.planes_of([tuple(row) for row in matrix])
+            planes = viewport_state.planes_of([tuple(row) for row in matrix])
             drawn = pool.draw(keys, planes, program)
             gpu.state.depth_mask_set(False)
             gpu.state.depth_test_set("NONE")

@@ -30,7 +30,7 @@ class Viewport(unittest.TestCase):
         self.scene = bpy.context.scene
         bpy.ops.lodestone.update_levels()
         from lodestone.bridge import preview_scene
-        from lodestone.core import preview_worker
+        from lodestone.core.preview import preview_worker
         from lodestone.core.store import store_path
 
         self.preview_scene, self.preview_worker = preview_scene, preview_worker

@@ -12,9 +12,10 @@ from types import SimpleNamespace
 from unittest import mock
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core import edits, preview_tree, preview_view, preview_worker
-from lodestone.core.preview_tree import IDENTITY, Change, Names
-from lodestone.core.preview_worker import Made, Picture, Things, Wanted
+from lodestone.core import edits
+from lodestone.core.preview import preview_tree, preview_worker, viewport_state
+from lodestone.core.preview.preview_tree import IDENTITY, Change, Names
+from lodestone.core.preview.preview_worker import Made, Picture, Things, Wanted
 from lodestone_native import Camera, Cut, MeshBuffers, Model, View
 
 ROOT, GROUP, LEAF = "r" * 16, "c" * 16, "a" * 16
@@ -322,7 +323,7 @@ class Views(unittest.TestCase):
         return SimpleNamespace(keys=keys, final=final)
 
     def test_a_picture_is_shown_when_all_its_batches_are_there(self):
-        view, there = preview_view.View(), {1}
+        view, there = viewport_state.View(), {1}
         view.next = self.picture((1, 2))
         self.assertEqual(view.advance(there.__contains__), [2])
         self.assertIsNone(view.shown)
@@ -332,7 +333,7 @@ class Views(unittest.TestCase):
         self.assertIsNone(view.next)
 
     def test_the_same_is_asked_for_once(self):
-        view = preview_view.View()
+        view = viewport_state.View()
         self.assertTrue(view.wants(WANTED))
         self.assertFalse(view.wants(replace(WANTED, things=Things({(1, 1): Change()}))))
         self.assertTrue(view.wants(replace(WANTED, state=1)))
@@ -344,15 +345,15 @@ class Views(unittest.TestCase):
         near, far = 0.1, 100.0
         a, b = (far + near) / (near - far), 2 * far * near / (near - far)
         matrix = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, a, b), (0, 0, -1, 0))
-        planes = preview_view.planes_of(matrix)
-        self.assertFalse(preview_view.outside(planes, (-1, -1, -6, 1, 1, -5)))
-        self.assertFalse(preview_view.outside(planes, (-9, -9, -9, 9, 9, 9)))
-        self.assertTrue(preview_view.outside(planes, (-1, -1, 5, 1, 1, 6)))
-        self.assertTrue(preview_view.outside(planes, (7, -1, -6, 9, 1, -5)))
-        self.assertTrue(preview_view.outside(planes, (-1, -1, -300, 1, 1, -200)))
+        planes = viewport_state.planes_of(matrix)
+        self.assertFalse(viewport_state.outside(planes, (-1, -1, -6, 1, 1, -5)))
+        self.assertFalse(viewport_state.outside(planes, (-9, -9, -9, 9, 9, 9)))
+        self.assertTrue(viewport_state.outside(planes, (-1, -1, 5, 1, 1, 6)))
+        self.assertTrue(viewport_state.outside(planes, (7, -1, -6, 9, 1, -5)))
+        self.assertTrue(viewport_state.outside(planes, (-1, -1, -300, 1, 1, -200)))
 
     def test_what_is_drawn_is_told_in_words(self):
-        view = preview_view.View()
+        view = viewport_state.View()
         self.assertEqual(view.line(), "Lodestone: reading levels")
         things = Things({}, (), 2, 1)
         view.shown = Picture(

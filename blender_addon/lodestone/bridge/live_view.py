@@ -8,10 +8,10 @@ from typing import Any
 
 import bpy
 
-from ..core import preview_tree
 from ..core.native import lodestone_native as native
 from ..core.picture import view_statistics
 from ..core.picture.picture_maker import Settings
+from ..core.preview import preview_tree
 from ..core.problems import Problems
 from ..core.store import store_levels, store_path
 from . import lenses, preview_scene, quality, viewport_view

@@ -9,7 +9,7 @@ from typing import Any
 from mathutils import Matrix
 
 from ..core.native import lodestone_native as native
-from ..core.preview_worker import LiveThing
+from ..core.preview.preview_worker import LiveThing
 from ..core.problems import Problems
 from . import ids, mesh
 from .leaves import material_slots

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..core.placement_decision import UNDECIDED, Decision
-from ..core.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
-from ..core.preview_worker import MOST_TRIANGLES, LiveThing, Things
+from ..core.preview.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
+from ..core.preview.preview_worker import MOST_TRIANGLES, LiveThing, Things
 from . import ids, preview_live
 from .fingerprints import Fingerprints
 from .ids import name_of

@@ -5,7 +5,7 @@ Without Blender and without a GPU."""
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from . import progress_text
+from .. import progress_text
 from .preview_tree import NOT_FORCED
 from .preview_worker import Picture, Wanted
 

@@ -16,12 +16,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import preview_tree, progress_text
-from .native import lodestone_native as native
-from .picture import false_colors
-from .picture.picture_maker import POVRAY_KINDS
+from .. import progress_text
+from ..native import lodestone_native as native
+from ..picture import false_colors
+from ..picture.picture_maker import POVRAY_KINDS
+from ..store.store_levels import is_store
+from . import preview_tree
 from .preview_tree import NOT_FORCED, Changes, Names, Tree
-from .store.store_levels import is_store
 
 MOST_TRIANGLES = 8_000_000  # of a picture, whatever its budget: 0.2 GB
 COARSE_FIRST = 8.0  # times Pixel Error

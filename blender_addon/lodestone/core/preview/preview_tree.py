@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from .native import lodestone_native as native
-from .placement_decision import ANY_LEVEL
+from ..native import lodestone_native as native
+from ..placement_decision import ANY_LEVEL
 
 Rows = tuple[float, ...]  # row-major 3x4
 
