@@ -42,14 +42,15 @@ if __name__ == "__main__":
     sys.path[0] = str(PACKAGE.parent)
 
 from lodestone import bl_info  # noqa: E402
-from lodestone.core import batch_log, batch_page, locked_folder, run_report  # noqa: E402
-from lodestone.core.batch_arguments import jobs, parse, parser  # noqa: E402
-from lodestone.core.batch_console import Console  # noqa: E402
-from lodestone.core.batch_jobs import FileJob  # noqa: E402
-from lodestone.core.batch_queue import Interrupts, Queue  # noqa: E402
-from lodestone.core.batch_resume import Earlier, Found  # noqa: E402
-from lodestone.core.batch_rows import rows_of, table, tally  # noqa: E402
-from lodestone.core.batch_task import JOB_FOLDER, FileTask, Limits, Surroundings  # noqa: E402
+from lodestone.core import locked_folder, run_report  # noqa: E402
+from lodestone.core.batch import html_page, run_log  # noqa: E402
+from lodestone.core.batch.child_queue import Interrupts, Queue  # noqa: E402
+from lodestone.core.batch.command_line import jobs, parse, parser  # noqa: E402
+from lodestone.core.batch.earlier_runs import Earlier, Found  # noqa: E402
+from lodestone.core.batch.file_jobs import FileJob  # noqa: E402
+from lodestone.core.batch.file_task import JOB_FOLDER, FileTask, Limits, Surroundings  # noqa: E402
+from lodestone.core.batch.report_rows import rows_of, table, tally  # noqa: E402
+from lodestone.core.batch.run_console import Console  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, of_many  # noqa: E402
 
 
@@ -66,7 +67,7 @@ class Run:
         self.interrupts = interrupts
         self.console = Console(len(work))
         self.reports: dict[int, dict] = {}
-        self.log: batch_log.BatchLog | None = None
+        self.log: run_log.BatchLog | None = None
         self.unwritten: set[str] = set()  # names of what could not be written
         self._page_at = 0.0
         beside = options.log or options.html
@@ -85,9 +86,9 @@ class Run:
 
     def run(self) -> ExitCode:
         locked_folder.settle(Path(tempfile.gettempdir()), JOB_FOLDER)  # of killed runs
-        earlier = Earlier(batch_log.read(self.options.log) if self.options.resume else ())
+        earlier = Earlier(run_log.read(self.options.log) if self.options.resume else ())
         if self.options.log:
-            self.log = batch_log.BatchLog(self.options.log)
+            self.log = run_log.BatchLog(self.options.log)
             started = time.strftime("%Y-%m-%dT%H:%M:%S%z")
             verb, files = self.options.verb, len(self.work)
             self._record("run", verb=verb, files=files, time=started)
@@ -156,8 +157,8 @@ class Run:
         title = f"Lodestone: {self.options.verb}"
         about = time.strftime("%Y-%m-%d %H:%M:%S %z")
         left = len(self.work) - len(reports)
-        page = batch_page.page(rows_of(reports), title, about, Path(self.options.html), left)
-        self._write(batch_page.write, self.options.html, page, "page")
+        page = html_page.page(rows_of(reports), title, about, Path(self.options.html), left)
+        self._write(html_page.write, self.options.html, page, "page")
 
     def _write(self, write, path: str, value, name: str) -> None:
         try:

@@ -22,10 +22,10 @@ import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
 from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
 from lodestone.bridge.settings import SceneSettings  # noqa: E402
-from lodestone.core import batch_inputs, blend_header, file_names, process_session  # noqa: E402
-from lodestone.core import progress_text, run_report  # noqa: E402
+from lodestone.core import file_names, progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
-from lodestone.core.batch_jobs import FileJob, PictureRequest  # noqa: E402
+from lodestone.core.batch import blend_header, input_stamps, process_session  # noqa: E402
+from lodestone.core.batch.file_jobs import FileJob, PictureRequest  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
@@ -105,7 +105,7 @@ class FileRun:
 
     def _open(self) -> None:
         try:
-            blend = batch_inputs.read(self.job.file, ())  # before anybody can change it
+            blend = input_stamps.read(self.job.file, ())  # before anybody can change it
             bpy.ops.wm.open_mainfile(
                 filepath=self.job.file, load_ui=False, use_scripts=self.job.trust_scripts
             )
@@ -114,7 +114,7 @@ class FileRun:
             text += blend_header.written_by(self.job.file)
             raise Failed(ExitCode.UNREADABLE, f"Blender cannot read the file: {text}") from None
         others = bpy.utils.blend_paths(absolute=True, packed=False, local=False)
-        self._tell(inputs={**blend, "others": batch_inputs.stamps(others)})
+        self._tell(inputs={**blend, "others": input_stamps.stamps(others)})
         blend_check.repair_names(self.problems)
         blend_check.check_file(self.problems, self.job.trust_scripts)
 

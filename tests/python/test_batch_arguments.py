@@ -10,9 +10,9 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core.batch_arguments import jobs, parser
-from lodestone.core.batch_arguments import parse as parse_options
-from lodestone.core.batch_jobs import FileJob
+from lodestone.core.batch.command_line import jobs, parser
+from lodestone.core.batch.command_line import parse as parse_options
+from lodestone.core.batch.file_jobs import FileJob
 
 
 def parse(*arguments):

@@ -8,8 +8,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_page, run_report
-from lodestone.core.batch_rows import rows_of, table, tally
+from lodestone.core import run_report
+from lodestone.core.batch import html_page
+from lodestone.core.batch.report_rows import rows_of, table, tally
 from lodestone.core.exit_codes import ExitCode
 from lodestone.core.printable_text import printable
 
@@ -103,7 +104,7 @@ class Page(unittest.TestCase):
         self.target = self.folder / "night.html"
 
     def read(self, *reports, **values):
-        self.text = batch_page.page(
+        self.text = html_page.page(
             rows_of(reports), "Lodestone: render", "today", self.target, **values
         )
         return Reader(self.text)
@@ -147,7 +148,7 @@ class Page(unittest.TestCase):
             self.assertIn(printable(name), page.text)
             self.assertNotIn("\x1b", page.text)
             self.assertNotIn("\u202e", page.text)
-            batch_page.write(str(self.target), self.text)
+            html_page.write(str(self.target), self.text)
             self.assertTrue(self.target.read_text("utf-8"))
 
     def everything(self, name):

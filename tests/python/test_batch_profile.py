@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core.batch_arguments import jobs, parse
+from lodestone.core.batch.command_line import jobs, parse
 
 
 class Profile(unittest.TestCase):

@@ -11,10 +11,10 @@ import unittest
 from pathlib import Path
 
 import addon_path
-from lodestone.core import batch_child, process_session
-from lodestone.core.batch_child import Child
-from lodestone.core.batch_queue import Interrupts, Queue
-from lodestone.core.child_log import ChildLog
+from lodestone.core.batch import child_process, process_session
+from lodestone.core.batch.child_log import ChildLog
+from lodestone.core.batch.child_process import Child
+from lodestone.core.batch.child_queue import Interrupts, Queue
 
 GREEDY = "x = bytearray(150 << 20); import time; time.sleep(60)"
 
@@ -93,7 +93,7 @@ class Supervised(unittest.TestCase):
         start = time.monotonic()
         (task,) = self.run_all(text, timeout_s=0.3)
         self.assertLess(time.monotonic() - start, 4.0)
-        self.assertEqual(task.child.cause, batch_child.TIMEOUT)
+        self.assertEqual(task.child.cause, child_process.TIMEOUT)
         self.assertIn("0.3 s of --timeout", task.child.explanation)
         self.assertTrue(gone((self.folder / "pid").read_text().strip()))
 
@@ -101,7 +101,7 @@ class Supervised(unittest.TestCase):
         # Not the child itself: another process group of its session, as POV-Ray is.
         text = f"setsid -w true; {sys.executable} -c '{GREEDY}' & echo $! > {self.folder}/pid; wait"
         (task,) = self.run_all(text, max_bytes=100 << 20)
-        self.assertEqual(task.child.cause, batch_child.MEMORY)
+        self.assertEqual(task.child.cause, child_process.MEMORY)
         self.assertRegex(task.child.explanation, r"stopped at 1\d\d MB .*105 MB of --max-memory")
         self.assertRegex(task.child.explanation, r"python\S* 1\d\d MB")
         self.assertGreater(task.child.peak_bytes, 100 << 20)

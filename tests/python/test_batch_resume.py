@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_inputs, batch_log, batch_resume
-from lodestone.core.batch_arguments import jobs, parser
-from lodestone.core.batch_resume import Earlier
+from lodestone.core.batch import earlier_runs, input_stamps, run_log
+from lodestone.core.batch.command_line import jobs, parser
+from lodestone.core.batch.earlier_runs import Earlier
 
 
 class Resume(unittest.TestCase):
@@ -34,17 +34,17 @@ class Resume(unittest.TestCase):
     def note(self, job=None, exit_code=0, inputs=None):
         """What a run that came to its end leaves in the log."""
         job = job or self.job
-        inputs = inputs or batch_inputs.read(job.file, [str(self.image)])
-        name = batch_inputs.identity(inputs)
-        log = batch_log.BatchLog(self.log)
+        inputs = inputs or input_stamps.read(job.file, [str(self.image)])
+        name = input_stamps.identity(inputs)
+        log = run_log.BatchLog(self.log)
         log.add("inputs", id=name, file=job.file, inputs=inputs)
         report = {"exit_code": exit_code, "input": job.file, "picture": str(self.out)}
-        outputs = batch_resume.outputs([str(self.out)])
+        outputs = earlier_runs.outputs([str(self.out)])
         log.add("file", file=job.file, key=job.key(), inputs=name, outputs=outputs, report=report)
         log.close()
 
     def found(self, job=None):
-        return Earlier(batch_log.read(self.log)).find(job or self.job)
+        return Earlier(run_log.read(self.log)).find(job or self.job)
 
     def test_nothing_is_known_without_a_log(self):
         self.assertIsNone(self.found().report)
@@ -92,10 +92,10 @@ class Resume(unittest.TestCase):
         for number in (1001, 1002):
             (self.folder / f"wall.{number}.png").write_bytes(b"tile")
         path = str(self.folder / "wall.<UDIM>.png")
-        before = batch_inputs.stamp(path)
+        before = input_stamps.stamp(path)
         self.assertEqual(before[0], 8)
         (self.folder / "wall.1002.png").write_bytes(b"longer tile")
-        self.assertNotEqual(batch_inputs.stamp(path), before)
+        self.assertNotEqual(input_stamps.stamp(path), before)
 
     def test_other_settings_are_another_job(self):
         self.note()
@@ -119,9 +119,9 @@ class Resume(unittest.TestCase):
         self.out.unlink()
         self.out.mkdir()
         job = self.job_of("--frames=1-3")
-        inputs = batch_inputs.read(job.file, [])
-        name = batch_inputs.identity(inputs)
-        log = batch_log.BatchLog(self.log)
+        inputs = input_stamps.read(job.file, [])
+        name = input_stamps.identity(inputs)
+        log = run_log.BatchLog(self.log)
         log.add("inputs", id=name, file=job.file, inputs=inputs)
         wanted = list(job.wanted())
         for frame, picture in wanted[:2]:
@@ -132,7 +132,7 @@ class Resume(unittest.TestCase):
                 key=job.picture_key(frame, picture),
                 inputs=name,
                 out=picture.out,
-                outputs=batch_resume.outputs([picture.out]),
+                outputs=earlier_runs.outputs([picture.out]),
                 made={"picture": picture.out, "number": frame},
             )
         log.close()

@@ -9,9 +9,10 @@ import unittest
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import batch_views, run_report
-from lodestone.core.batch_arguments import jobs, parser
-from lodestone.core.batch_jobs import PictureRequest
+from lodestone.core import run_report
+from lodestone.core.batch import views_file
+from lodestone.core.batch.command_line import jobs, parser
+from lodestone.core.batch.file_jobs import PictureRequest
 from lodestone.core.file_names import fitting, folder_name
 from lodestone.core.printable_text import printable, sentence, valid
 from lodestone.core.problems import WARNING, Problems
@@ -114,7 +115,7 @@ class FileNames(unittest.TestCase):
             ):
                 path.write_text(f"[{entry}]")
                 with self.assertRaisesRegex(ValueError, "entry 0"):
-                    batch_views.read_views(str(path), options)
+                    views_file.read_views(str(path), options)
 
 
 class Text(unittest.TestCase):

@@ -8,7 +8,7 @@ import zlib
 from pathlib import Path
 
 import addon_path  # noqa: F401
-from lodestone.core import blend_header, png_file
+from lodestone.core.batch import blend_header, png_check
 
 
 def chunk(name, data=b""):
@@ -32,14 +32,14 @@ class Png(unittest.TestCase):
 
     def whole(self, data):
         self.path.write_bytes(data)
-        return png_file.is_whole(self.path)
+        return png_check.is_whole(self.path)
 
     def test_a_whole_one_is(self):
         self.assertTrue(self.whole(WHOLE))
 
     def test_nothing_a_folder_and_an_empty_file_are_not(self):
-        self.assertFalse(png_file.is_whole(self.path))
-        self.assertFalse(png_file.is_whole(self.path.parent))
+        self.assertFalse(png_check.is_whole(self.path))
+        self.assertFalse(png_check.is_whole(self.path.parent))
         self.assertFalse(self.whole(b""))
 
     def test_no_part_of_one_is(self):

@@ -11,8 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core import batch_arguments
-from lodestone.core.batch_jobs import FileJob
+from lodestone.core.batch import command_line
+from lodestone.core.batch.file_jobs import FileJob
 from lodestone.core.picture import unseen_detail, why_sentences
 from lodestone_native import Drawn, Kind, Met, Modifiers, Object, OffScreen, Rays
 from test_seeing import _Cut
@@ -103,8 +103,8 @@ class Asked(unittest.TestCase):
                     said.append(f"{name}={path}")
             if views is None:
                 said.append("--out=a.png")
-            options = batch_arguments.parse([*said, *arguments])
-            (job,) = batch_arguments.jobs(options)
+            options = command_line.parse([*said, *arguments])
+            (job,) = command_line.jobs(options)
         return [(p.off_screen, p.ray_classes) for p in FileJob.load(job.dump()).pictures]
 
     def test_what_is_not_said_is_as_the_file_has_it(self):

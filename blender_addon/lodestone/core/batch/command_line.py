@@ -6,11 +6,11 @@ from argparse import BooleanOptionalAction
 from dataclasses import replace
 from pathlib import Path
 
-from . import batch_values
-from .batch_jobs import FileJob, PictureRequest
-from .batch_profile import read_profile
-from .batch_views import ANTIALIAS, NUMBERS, VIEW_KEYS, overrides_of, read_views, unseen_of
-from .file_names import LONGEST, fitting, folder_name
+from ..file_names import LONGEST, fitting, folder_name
+from . import option_values
+from .file_jobs import FileJob, PictureRequest
+from .profile_file import read_profile
+from .views_file import ANTIALIAS, NUMBERS, VIEW_KEYS, overrides_of, read_views, unseen_of
 
 KEEP = ("failed", "never", "always")
 _EPILOG = (
@@ -78,13 +78,13 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
                       help="run the scripts and drivers of the files; they may do anything you "
                       "may")  # fmt: skip
     run = verb.add_argument_group("the run")
-    run.add_argument("--jobs", type=batch_values.children, default=1, metavar="N",
+    run.add_argument("--jobs", type=option_values.children, default=1, metavar="N",
                      help="files at once; default 1")  # fmt: skip
-    run.add_argument("--threads", type=batch_values.threads, default=0, metavar="N",
+    run.add_argument("--threads", type=option_values.threads, default=0, metavar="N",
                      help="for each file; default: all, shared among the jobs")  # fmt: skip
-    run.add_argument("--timeout", type=batch_values.positive, metavar="S",
+    run.add_argument("--timeout", type=option_values.positive, metavar="S",
                      help="seconds for each file")  # fmt: skip
-    run.add_argument("--max-memory", type=batch_values.memory, metavar="SIZE", help="8G, 500M: for "
+    run.add_argument("--max-memory", type=option_values.memory, metavar="SIZE", help="8G, 500M: for "
                      "each file, Blender and POV-Ray together; one above it is stopped"
                      )  # fmt: skip
     run.add_argument("--resume", action="store_true", help="skip what --log says was done, if its "
@@ -97,28 +97,28 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
 
 
 def _add_picture(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("--pixel-error", type=batch_values.pixels, metavar="PX",
+    verb.add_argument("--pixel-error", type=option_values.pixels, metavar="PX",
                       help="largest deviation in the picture, in pixels; 0: originals; "
                       "default: the file's")  # fmt: skip
     verb.add_argument("--out", metavar="PATH", help="where it goes: for one picture the file, "
                       "else a folder")  # fmt: skip
-    verb.add_argument("--frames", type=batch_values.frame_range, metavar="A-B",
+    verb.add_argument("--frames", type=option_values.frame_range, metavar="A-B",
                       help="default: the current")  # fmt: skip
     verb.add_argument("--camera", default="", metavar="NAME", help="default: the scene's")
-    verb.add_argument("--size", type=batch_values.size, metavar="WxH",
+    verb.add_argument("--size", type=option_values.size, metavar="WxH",
                       help="default: the scene's")  # fmt: skip
     verb.add_argument("--antialias", choices=ANTIALIAS, help="default: the file's")
     for control in NUMBERS:
-        verb.add_argument("--" + control.key.replace("_", "-"), type=batch_values.control(control),
+        verb.add_argument("--" + control.key.replace("_", "-"), type=option_values.control(control),
                           metavar="PX" if control.unit else "N",
                           help=f"overrides {control.label}; default: the file's")  # fmt: skip
-    verb.add_argument("--budget", type=batch_values.memory, metavar="SIZE", help="50M, 2G: what "
+    verb.add_argument("--budget", type=option_values.memory, metavar="SIZE", help="50M, 2G: what "
                       "POV-Ray's scene may take; the Pixel Error grows until it fits"
                       )  # fmt: skip
-    verb.add_argument("--off-screen", type=batch_values.off_screen, metavar="HOW", help="how fine "
+    verb.add_argument("--off-screen", type=option_values.off_screen, metavar="HOW", help="how fine "
                       "what the picture does not show is: full, reflected (as shadows and mirrors "
                       "need) or shadows; default: the file's")  # fmt: skip
-    verb.add_argument("--ray-classes", type=batch_values.ray_classes, metavar="LIST", help="which "
+    verb.add_argument("--ray-classes", type=option_values.ray_classes, metavar="LIST", help="which "
                       "rays may meet coarser levels than the camera's: shadow, reflection or both "
                       "with a comma, or none; default: the file's")  # fmt: skip
 

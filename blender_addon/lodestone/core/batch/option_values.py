@@ -6,8 +6,8 @@ import math
 import re
 from collections.abc import Callable
 
-from .picture import unseen_detail
-from .picture.quality_tree import Control
+from ..picture import unseen_detail
+from ..picture.quality_tree import Control
 
 _MAX_SIZE = 65536
 

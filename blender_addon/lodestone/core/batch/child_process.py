@@ -8,7 +8,8 @@ import subprocess
 import time
 from collections.abc import Callable
 
-from . import process_session, progress_text
+from .. import progress_text
+from . import process_session
 from .child_log import ChildLog
 from .process_session import Member
 

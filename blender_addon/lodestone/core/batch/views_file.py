@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import batch_values
-from .batch_jobs import PictureRequest
-from .picture import quality_tree
+from ..picture import quality_tree
+from . import option_values
+from .file_jobs import PictureRequest
 
 ANTIALIAS = ("automatic", "off", "final", "reference")
 NUMBERS = tuple(control for control in quality_tree.CONTROLS if control.least is not None)
@@ -62,12 +62,12 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
         raise ValueError(f"{where}: antialias is one of {', '.join(ANTIALIAS)}")
     try:
         wanted = entry.get("size")
-        chosen = options.size if wanted is None else batch_values.size(size_text(wanted))
+        chosen = options.size if wanted is None else option_values.size(size_text(wanted))
         error = entry.get("pixel_error", options.pixel_error)
         return PictureRequest(
             out=str(Path(out).absolute()),
             camera=camera,
-            pixel_error=None if error is None else batch_values.pixels(str(error)),
+            pixel_error=None if error is None else option_values.pixels(str(error)),
             antialias=antialias,
             overrides=overrides_of({**vars(options), **entry}),
             budget=budget_of({**vars(options), **entry}),
@@ -83,19 +83,19 @@ def _view(path: str, number: int, entry: Any, options: argparse.Namespace) -> Pi
 def overrides_of(values: Mapping[str, Any]) -> dict[str, float]:
     """The controls that are said, by key. Raises argparse.ArgumentTypeError."""
     said = ((control, values.get(control.key)) for control in NUMBERS)
-    return {c.key: batch_values.control(c)(str(v)) for c, v in said if v is not None}
+    return {c.key: option_values.control(c)(str(v)) for c, v in said if v is not None}
 
 
 def budget_of(values: Mapping[str, Any]) -> int | None:
     """Bytes. Raises argparse.ArgumentTypeError."""
     said = values.get("budget")
-    return None if said is None else batch_values.memory(str(said))
+    return None if said is None else option_values.memory(str(said))
 
 
 def unseen_of(values: Mapping[str, Any]) -> dict[str, str | None]:
     """How fine what is not seen directly is asked for. Raises argparse.ArgumentTypeError."""
     said = ((key, values.get(key)) for key in ("off_screen", "ray_classes"))
-    return {k: None if v is None else getattr(batch_values, k)(str(v)) for k, v in said}
+    return {k: None if v is None else getattr(option_values, k)(str(v)) for k, v in said}
 
 
 def _possible(name: str) -> bool:

@@ -13,17 +13,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import batch_inputs, batch_resume, blend_header, locked_folder, png_file, run_report
-from .batch_child import CANCELLED, Child
-from .batch_jobs import FileJob
-from .batch_resume import Found
+from .. import locked_folder, run_report
+from ..exit_codes import STATUS, ExitCode
+from ..file_names import fitting
+from ..locked_folder import LockedFolder
+from ..problems import ERROR, Problem
+from ..store import store_path
+from ..store.store_levels import INDEX
+from . import blend_header, earlier_runs, input_stamps, png_check
 from .child_log import ChildLog
-from .exit_codes import STATUS, ExitCode
-from .file_names import fitting
-from .locked_folder import LockedFolder
-from .problems import ERROR, Problem
-from .store import store_path
-from .store.store_levels import INDEX
+from .child_process import CANCELLED, Child
+from .earlier_runs import Found
+from .file_jobs import FileJob
 
 CRASH, NOT_BEGUN = "crash", "not_begun"
 PROGRESS = "Lodestone: progress: "
@@ -86,7 +87,7 @@ class FileTask:
         carried = dict(self.found.pictures)
         if self.around.skip_existing:
             for _, picture in job.wanted():
-                if picture.out not in carried and png_file.is_whole(picture.out):
+                if picture.out not in carried and png_check.is_whole(picture.out):
                     carried[picture.out] = {"picture": picture.out, "skipped": True}
         self._carried = carried
         if carried and all(picture.out in carried for _, picture in job.wanted()):
@@ -193,7 +194,7 @@ class FileTask:
         file = self.job.file
         if "inputs" in event:
             self._inputs = event["inputs"]
-            name = batch_inputs.identity(self._inputs)
+            name = input_stamps.identity(self._inputs)
             self.around.record("inputs", id=name, file=file, inputs=self._inputs)
         elif "made" in event:
             out, made = event["out"], event["made"]
@@ -204,9 +205,9 @@ class FileTask:
                     "picture",
                     file=file,
                     key=self.job.picture_key(*next(wanted)),
-                    inputs=batch_inputs.identity(self._inputs),
+                    inputs=input_stamps.identity(self._inputs),
                     out=out,
-                    outputs=batch_resume.outputs([_result(made)]),
+                    outputs=earlier_runs.outputs([_result(made)]),
                     made=made,
                 )
 
@@ -287,13 +288,13 @@ class FileTask:
             made["resumed"] = len(self.found.pictures)
         made["wall_s"] = round(time.monotonic() - self._began, 3)
         self.report = made
-        inputs = batch_inputs.identity(self._inputs) if self._inputs is not None else ""
+        inputs = input_stamps.identity(self._inputs) if self._inputs is not None else ""
         self.around.record(
             "file",
             file=job.file,
             key=job.key(),
             inputs=inputs,
-            outputs=batch_resume.outputs(_results(job, made)),
+            outputs=earlier_runs.outputs(_results(job, made)),
             report={k: v for k, v in made.items() if k != "log_tail"},
         )
         self.around.done(self)

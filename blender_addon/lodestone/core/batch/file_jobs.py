@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from .file_names import LONGEST, fitting
+from ..file_names import LONGEST, fitting
 
 
 @dataclass(frozen=True)

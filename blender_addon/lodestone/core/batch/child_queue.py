@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Protocol
 
 from . import process_session
-from .batch_child import CANCELLED, Child
+from .child_process import CANCELLED, Child
 
 _TICK_S = 0.05  # how often the clock, the memory and the signals are looked at
 _WALK_S = 0.25  # how often new processes are looked for

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import progress_text
-from .exit_codes import ExitCode
-from .printable_text import printable
+from .. import progress_text
+from ..exit_codes import ExitCode
+from ..printable_text import printable
 
 _ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # any failure: 0
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .batch_views import size_text
+from .views_file import size_text
 
 # What belongs to one run and never to a profile
 ONE_RUN = ("files", "help", "html", "json", "log", "out", "profile", "resume", "views")

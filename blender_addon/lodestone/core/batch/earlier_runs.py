@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from . import batch_inputs
-from .batch_jobs import FileJob
-from .exit_codes import ExitCode
+from ..exit_codes import ExitCode
+from . import input_stamps
+from .file_jobs import FileJob
 
 FINISHED = (ExitCode.DONE, ExitCode.INCOMPLETE)  # once more would give the same
 
@@ -46,7 +46,7 @@ class Earlier:
             name = str(line.get("inputs"))
             if name not in known:
                 before = self._inputs.get(name)
-                known[name] = batch_inputs.unchanged(before, job.file, tick)
+                known[name] = input_stamps.unchanged(before, job.file, tick)
             return known[name]
 
         line = self._files.get(job.file)
@@ -70,7 +70,7 @@ def _finished(report: Any) -> bool:
 
 def outputs(paths: Iterable[str]) -> list[list[Any]]:
     """[path, stamp] of what was made, for a line of the log."""
-    return [[path, batch_inputs.stamp(path)] for path in paths]
+    return [[path, input_stamps.stamp(path)] for path in paths]
 
 
 def outputs_stay(line: dict[str, Any]) -> bool:
@@ -78,7 +78,7 @@ def outputs_stay(line: dict[str, Any]) -> bool:
     try:
         made = line["outputs"]
         return bool(made) and all(
-            known is not None and batch_inputs.stamp(path) == known for path, known in made
+            known is not None and input_stamps.stamp(path) == known for path, known in made
         )
     except (KeyError, TypeError, ValueError):
         return False

@@ -10,11 +10,11 @@ from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
-from . import progress_text
-from .batch_rows import Row, tally
-from .exit_codes import ExitCode
-from .printable_text import printable
-from .problems import Problem
+from .. import progress_text
+from ..exit_codes import ExitCode
+from ..printable_text import printable
+from ..problems import Problem
+from .report_rows import Row, tally
 
 _LARGEST_THUMBNAIL = 200_000
 _MOST_PROBLEMS = 200

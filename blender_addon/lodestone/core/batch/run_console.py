@@ -5,10 +5,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import progress_text
-from .batch_rows import Row
-from .printable_text import printable
-from .problems import Problem
+from .. import progress_text
+from ..printable_text import printable
+from ..problems import Problem
+from .report_rows import Row
 
 
 class Console:
