@@ -28,7 +28,7 @@ from .bridge import (
 )
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import edits, kept_model, last_check, last_render, progress_text
+from .core import progress_text
 from .core.background_calls import Stopped, Work
 from .core.native import lodestone_native as native
 from .core.picture import compare_plan
@@ -36,6 +36,7 @@ from .core.picture.picture_maker import Settings, make_identities, make_picture
 from .core.picture.render_folder import RenderFolder
 from .core.printable_text import printable, sentence, valid
 from .core.problems import ERROR, Problems
+from .core.session import changed_shapes, kept_model, last_check, last_render
 from .core.store import motion_file, store_path
 
 # Where each stage starts on the progress bar, and how much of it it takes
@@ -103,7 +104,7 @@ class _Run:
         self.engine = engine
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
-        edits.reading()
+        changed_shapes.reading()
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
@@ -230,7 +231,7 @@ class _Run:
             options = self._build_options(self.settings.view(view, size))
             self.left = model.build(str(self.store), options, self.work.new_job("Levels")).left
             if self.left == 0:
-                edits.settle()
+                changed_shapes.settle()
         try:
             kept = store_path.scene_folder(self.store)
             with _folder.use(kept, self.keep, self.frame) as folder:

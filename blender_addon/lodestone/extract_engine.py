@@ -12,11 +12,11 @@ from .bridge import camera, extraction_check, lenses, poses, quality, scene, shu
 from .bridge.ids import name_of
 from .bridge.requirements import NO_CAMERA
 from .bridge.settings import SceneSettings
-from .core import edits
 from .core.background_calls import Stopped
 from .core.native import lodestone_native as native
 from .core.printable_text import sentence, valid
 from .core.problems import Problems
+from .core.session import changed_shapes
 
 _request = None
 
@@ -148,7 +148,7 @@ def prepared(target, request):
     global _request
     render = target.render
     request.without_camera = target.camera is None
-    edits.reading()
+    changed_shapes.reading()
     names = ("engine", "use_compositing", "use_sequencer")
     before = {name: getattr(render, name) for name in names}
     camera_before, stand_in = target.camera, None

@@ -13,9 +13,9 @@ from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
 from . import forced_lod, handlers, preview
 from .bridge import kept_view
-from .core import kept_model
 from .core.native import lodestone_native as native
 from .core.picture import false_colors
+from .core.session import kept_model
 from .panels import viewport_levels
 
 MOST_TRIANGLES = 400_000

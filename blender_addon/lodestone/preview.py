@@ -3,8 +3,8 @@
 
 Nothing in the file is written: levels are drawn beside the scene, for each viewport those that
 suit it. A redraw uploads for some milliseconds and draws; everything else is a thread's
-(core/preview/preview_worker.py). Objects that were moved or hidden since levels were built follow; what has
-another shape is drawn as it is.
+(core/preview/preview_worker.py). Objects that were moved or hidden since levels were built follow;
+what has another shape is drawn as it is.
 """
 
 import itertools
@@ -19,11 +19,11 @@ from .bridge import ids, lenses, preview_scene, viewport_view
 from .bridge.decisions import edits_of
 from .bridge.ids import name_of
 from .bridge.settings import SceneSettings
-from .core import edits
 from .core.preview import preview_worker
 from .core.preview.preview_worker import Failed, Made, Picture, Wanted
 from .core.preview.viewport_state import View
 from .core.problems import Problems
+from .core.session import changed_shapes
 from .core.store import store_levels, store_path
 
 ENGINE = "LODESTONE_POVRAY"
@@ -48,7 +48,7 @@ class _Source:
         self.folder = store_path.store_folder(bpy.data.filepath)
         self.stamp = _stamp(self.folder)
         self.worker = preview_worker.Worker(self.folder, preview_scene.names_of(scene))
-        self.scene = preview_scene.Scene(edits.names())
+        self.scene = preview_scene.Scene(changed_shapes.names())
         self.views = weakref.WeakValueDictionary()  # by viewport
         self._lenses = self._sun = None  # not looked at since something has changed
 
@@ -341,14 +341,14 @@ def lines(context):
 
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
-    changed = edits.reported(
+    changed = changed_shapes.reported(
         edits_of(update.id)
         for update in depsgraph.updates
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Object)
     )
     if not changed:
         return
-    edits.note(changed)
+    changed_shapes.note(changed)
     for source in _sources.values():
         source.scene.touch(changed)
 
@@ -356,7 +356,7 @@ def _on_change(scene, depsgraph):
 @bpy.app.handlers.persistent
 def _on_load(*_):
     forget()
-    edits.clear()
+    changed_shapes.clear()
 
 
 def forget():

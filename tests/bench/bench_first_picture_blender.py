@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 import bpy
-from lodestone.core import last_render
+from lodestone.core.session import last_render
 
 PICTURES = (  # name, Pixel Error, Build on Render
     ("full", 0.0, "NONE"),

@@ -95,7 +95,7 @@ def rows_of(image):
 
 def render(scene):
     """(rows, CPU seconds, what last_render knows)"""
-    from lodestone.core import last_render
+    from lodestone.core.session import last_render
 
     before = used()
     bpy.ops.render.render(write_still=True)

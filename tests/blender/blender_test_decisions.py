@@ -122,7 +122,7 @@ class Decisions(Case):
         self.assertNotIn("lodestone", floor)
 
     def test_deciding_about_a_thing_is_not_taken_for_another_shape(self):
-        from lodestone.core import edits
+        from lodestone.core.session import changed_shapes
 
         mesh = scenes.cube_mesh()
         cube, twin = scenes.cube("Cube", data=mesh), scenes.cube("Twin", (3, 0, 0), data=mesh)
@@ -135,14 +135,14 @@ class Decisions(Case):
             lambda: setattr(cube.lodestone, "use_pin_viewport", True),
             lambda: decisions.copy(other, cube),
         ):
-            edits.clear()
+            changed_shapes.clear()
             change()
             bpy.context.view_layer.update()
-            self.assertEqual(edits.names(), set())
+            self.assertEqual(changed_shapes.names(), set())
         mesh.vertices[0].co.z += 1.0
         mesh.update()
         bpy.context.view_layer.update()
-        self.assertEqual(edits.names(), {cube.name, twin.name})
+        self.assertEqual(changed_shapes.names(), {cube.name, twin.name})
 
     def test_copied_to_the_selected_and_taken_back(self):
         source = scenes.cube("Source")
@@ -192,7 +192,7 @@ class Pictures(unittest.TestCase):
         bpy.ops.wm.save_as_mainfile(filepath=os.fspath(Path(folder.name) / "balls.blend"))
 
     def triangles(self):
-        from lodestone.core import last_render
+        from lodestone.core.session import last_render
 
         bpy.ops.render.render()
         return last_render.get(self.scene.name).triangles

@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.core import last_check, last_render
+from lodestone.core.session import last_check, last_render
 
 
 class Engine(unittest.TestCase):

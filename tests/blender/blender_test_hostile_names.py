@@ -121,7 +121,7 @@ class HostileNames(unittest.TestCase):
 
     def rendered(self, blend, names, stems, pixel_error):
         """(pixels, problems, paths that were made) of one field in a folder of its own."""
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
         from lodestone.operators.check_scene import check_scene
 
         folder = self.folder / str(len(list(self.folder.iterdir())))
@@ -239,7 +239,7 @@ class OtherNames(unittest.TestCase):
         return pixels
 
     def test_a_picture_does_not_depend_on_names_that_are_no_text(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         self.dressed()
         path = self.folder / "damaged.blend"
@@ -295,7 +295,7 @@ class OtherNames(unittest.TestCase):
         return scenes.link(target.objects[0])
 
     def test_a_library_at_a_path_of_any_bytes_may_be_missing(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         os.unlink(self.linked().library.filepath)
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "user.blend"))

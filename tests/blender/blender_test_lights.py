@@ -218,7 +218,7 @@ class Lights(unittest.TestCase):
         return made
 
     def glows(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         found = last_check.get(self.scene.name).problems
         return [problem.message for problem in found if problem.code == "glow"]

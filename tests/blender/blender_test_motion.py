@@ -332,7 +332,7 @@ class Followed(unittest.TestCase):
         self.assertEqual(scene.frame_current, 7)
         self.assertTrue((self.folder / "picture.png").is_file())
         from lodestone import engine
-        from lodestone.core import last_render
+        from lodestone.core.session import last_render
 
         self.assertEqual(engine._poses, {})
         used = last_render.get(scene.name)

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.core import last_check
+from lodestone.core.session import last_check
 
 
 def png_text(path):

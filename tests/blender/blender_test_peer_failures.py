@@ -82,7 +82,7 @@ class PeerFailures(Case):
 
     def found(self):
         """Codes of the last render's problems."""
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         problems = last_check.get(self.scene.name).problems
         return sorted((problem.object, problem.code) for problem in problems)

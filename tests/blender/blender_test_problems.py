@@ -107,7 +107,7 @@ class Problems(unittest.TestCase):
         self.assertEqual(found.exact_materials[0], 0)  # the second slot has no face
 
     def test_what_povray_cannot_do_of_lights_is_found_as_by_a_render(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         scenes.cube("Cube")
         kinds = {"Softbox": "AREA", "Dot": "AREA", "Lamp": "SPOT", "Ball": "POINT"}
@@ -231,7 +231,7 @@ class Problems(unittest.TestCase):
         self.assertEqual(names, {"By nodes", "Grass", "Pebble paint"})
 
     def test_every_view_layer_that_renders_is_checked(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         for name in ("A", "B", "C"):
             kept = scenes.collection(name, self.scene.collection)
@@ -316,7 +316,7 @@ class Problems(unittest.TestCase):
     # ---- F12 ----
 
     def test_a_render_leaves_its_check_even_when_it_is_refused(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         wearing(scenes.cube(), odd_material("Bark"))
         self.scene.render.engine = "LODESTONE_POVRAY"
@@ -410,7 +410,7 @@ class Problems(unittest.TestCase):
         self.assertIn("ignored warning: ", text_of(bpy.context))
 
     def test_another_file_has_not_been_checked(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         wearing(scenes.cube(), odd_material())
         check()

@@ -171,7 +171,7 @@ class Pins(unittest.TestCase):
         bpy.ops.wm.save_as_mainfile(filepath=os.fspath(Path(folder.name) / "balls.blend"))
 
     def in_use(self):
-        from lodestone.core import last_render
+        from lodestone.core.session import last_render
 
         bpy.ops.render.render()
         return [lod for found in last_render.get("Scene").in_use.values() for lod in found]

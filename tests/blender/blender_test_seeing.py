@@ -30,8 +30,8 @@ class Seeing(unittest.TestCase):
         bpy.context.view_layer.update()
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         self.scene = bpy.context.scene
-        from lodestone.core import kept_model, last_render
         from lodestone.core.picture import compare_plan
+        from lodestone.core.session import kept_model, last_render
 
         self.plans, self.kept, self.renders = compare_plan, kept_model, last_render
         self.addCleanup(kept_model.clear)

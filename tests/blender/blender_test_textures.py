@@ -162,7 +162,7 @@ class Images(TextureCase):
         self.assertEqual(shown(11), "0002")
 
     def test_checking_called_a_sequence_missing_that_does_not_refresh_by_itself(self):
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         (self.folder / "clip 0002.png").write_bytes(png(0, 255, 0))
         node = self.node("ShaderNodeTexImage", ("Color", self.base))

@@ -13,9 +13,9 @@ import bpy
 import blender_scenes as scenes
 from lodestone.bridge import live_view, quality
 from lodestone.bridge.settings import SceneSettings
-from lodestone.core import last_render
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import unseen_detail
+from lodestone.core.session import last_render
 from lodestone.panels import unseen as panel
 
 BOTH = int(native.Rays.SHADOW | native.Rays.REFLECTION)

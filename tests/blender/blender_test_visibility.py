@@ -73,7 +73,7 @@ class Visibility(Case):
         self.assertEqual([leaf.materials for leaf in extraction.leaves], [("Clay",)] * 2)
         self.assertIn(("Clay", "no_surface"), self.codes(extraction))
         bpy.ops.lodestone.check_scene()
-        from lodestone.core import last_check
+        from lodestone.core.session import last_check
 
         found = last_check.get(self.scene.name).problems
         self.assertIn("no_surface", [problem.code for problem in found])

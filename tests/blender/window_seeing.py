@@ -44,7 +44,7 @@ def shown():
 
 
 def colors_are_drawn_and_follow_the_camera():
-    from lodestone.core import kept_model
+    from lodestone.core.session import kept_model
 
     row_of_balls()
     with steps.window():

@@ -12,10 +12,10 @@ from types import SimpleNamespace
 from unittest import mock
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core import edits
 from lodestone.core.preview import preview_tree, preview_worker, viewport_state
 from lodestone.core.preview.preview_tree import IDENTITY, Change, Names
 from lodestone.core.preview.preview_worker import Made, Picture, Things, Wanted
+from lodestone.core.session import changed_shapes
 from lodestone_native import Camera, Cut, MeshBuffers, Model, View
 
 ROOT, GROUP, LEAF = "r" * 16, "c" * 16, "a" * 16
@@ -368,14 +368,14 @@ class Views(unittest.TestCase):
 
 class Edits(unittest.TestCase):
     def test_only_what_was_changed_after_the_last_reading_is_left(self):
-        edits.clear()
-        edits.note(["Before"])
-        edits.reading()
-        edits.note(["While"])
-        self.assertEqual(edits.names(), {"Before", "While"})
-        edits.settle()
-        self.assertEqual(edits.names(), {"While"})
-        edits.clear()
+        changed_shapes.clear()
+        changed_shapes.note(["Before"])
+        changed_shapes.reading()
+        changed_shapes.note(["While"])
+        self.assertEqual(changed_shapes.names(), {"Before", "While"})
+        changed_shapes.settle()
+        self.assertEqual(changed_shapes.names(), {"While"})
+        changed_shapes.clear()
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ import time
 import unittest
 
 import addon_path  # noqa: F401
-from lodestone.core import last_check, problem_causes
+from lodestone.core import problem_causes
 from lodestone.core.problems import ERROR, INFO, WARNING, Problem, Problems
+from lodestone.core.session import last_check
 
 
 def material(name, text, severity=WARNING, library="", code="node_color"):

@@ -6,7 +6,8 @@ from typing import Any
 
 import bpy
 
-from ..core import edits, stable_ids
+from ..core import stable_ids
+from ..core.session import changed_shapes
 from . import ids, quality
 from .ids import name_of
 
@@ -123,7 +124,7 @@ def tag(item: Any) -> None:
     """Tells the depsgraph that something else is decided: writing to a property group may not. It
     will say that there is another shape, too, which must not be believed."""
     if isinstance(item, bpy.types.Object):
-        edits.decided(*filter(None, edits_of(item)))
+        changed_shapes.decided(*filter(None, edits_of(item)))
     item.update_tag()
 
 

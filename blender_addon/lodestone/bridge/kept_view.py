@@ -4,9 +4,9 @@
 from dataclasses import replace
 from typing import Any
 
-from ..core import kept_model
 from ..core.picture import why_sentences
 from ..core.problems import Problems
+from ..core.session import kept_model
 from . import camera, ids, lenses, live_view, preview_live, render_result
 from .settings import SceneSettings
 
@@ -35,7 +35,7 @@ def old(kept: Any, scene: Any) -> bool:
     return kept.outdated or kept.frame != scene.frame_current or (moving and still)
 
 
-def explained(scene: Any, depsgraph: Any, item: Any) -> "why.Explanation | None":
+def explained(scene: Any, depsgraph: Any, item: Any) -> "why_sentences.Explanation | None":
     """Why an object is drawn as it is; None when the scene was not read yet, or is in use."""
     kept = kept_model.get(scene.name)
     if kept is None or not kept.lock.acquire(blocking=False):

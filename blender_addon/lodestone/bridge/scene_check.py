@@ -13,8 +13,8 @@ from itertools import compress
 from operator import attrgetter
 from typing import Any
 
-from ..core.last_check import Check
 from ..core.problems import Problems
+from ..core.session.last_check import Check
 from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
 from .image_means import ImageHeads

@@ -5,10 +5,11 @@ import bpy
 
 from .. import handlers, preferences
 from ..bridge import ids, ignored, requirements, scene_check
-from ..core import last_check, last_render, problem_causes
+from ..core import problem_causes
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
 from ..core.problems import Problems
+from ..core.session import last_check, last_render
 from ..core.store import store_path
 from .polled import Polled
 

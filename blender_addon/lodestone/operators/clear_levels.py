@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..bridge import decisions
-from ..core import last_render
+from ..core.session import last_render
 from ..core.store import store_levels, store_path
 from .polled import Polled
 

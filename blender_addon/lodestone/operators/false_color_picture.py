@@ -14,11 +14,12 @@ from mathutils import Vector
 
 from .. import preferences
 from ..bridge import kept_view
-from ..core import background_calls, kept_model
+from ..core import background_calls
 from ..core.native import lodestone_native as native
 from ..core.picture import false_colors, legend_strip, overview_camera
 from ..core.picture.picture_maker import PICTURE
 from ..core.printable_text import sentence
+from ..core.session import kept_model
 from . import read_levels
 from . import session as sessions
 

@@ -5,7 +5,8 @@ import bpy
 from bpy.props import StringProperty
 
 from ..bridge import ids, ignored
-from ..core import last_check, problem_causes
+from ..core import problem_causes
+from ..core.session import last_check
 from .polled import InObjectMode, Polled
 
 

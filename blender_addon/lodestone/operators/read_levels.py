@@ -9,10 +9,10 @@ import bpy
 from .. import extract_engine, handlers
 from ..bridge import lenses, quality
 from ..bridge.settings import SceneSettings
-from ..core import kept_model
 from ..core.native import lodestone_native as native
 from ..core.picture.picture_maker import Settings
 from ..core.printable_text import sentence
+from ..core.session import kept_model
 from ..core.store import motion_file, store_path
 from ..core.store.store_levels import is_store
 from . import session as sessions

@@ -9,9 +9,10 @@ from bpy.props import BoolProperty
 
 from .. import extract_engine
 from ..bridge import decisions
-from ..core import edits, progress_text
+from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
+from ..core.session import changed_shapes
 from ..core.store import motion_file, store_path
 from . import session as sessions
 from .polled import Polled
@@ -50,7 +51,7 @@ def update_levels(context, scope):
             options = build_options(extraction, keys, request.poses)
             store.mkdir(parents=True, exist_ok=True)
             report = model.build(str(store), options)
-            edits.settle()
+            changed_shapes.settle()
             return report
     except BaseException:
         decisions.take_back(changed)
@@ -105,7 +106,7 @@ class _InWindow(sessions.InWindow):
             sessions.status(context, progress_text.building(done, total))
             return {"PASS_THROUGH"}
         report = session.worked()
-        edits.settle()
+        changed_shapes.settle()
         session.close(keep=True)
         outcome = self.end(context, {"FINISHED"})
         bpy.ops.ed.undo_push(message=UNDO_NAME)

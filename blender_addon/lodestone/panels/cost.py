@@ -4,7 +4,8 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import last_render, progress_text
+from ..core import progress_text
+from ..core.session import last_render
 from . import EnginePanel
 
 

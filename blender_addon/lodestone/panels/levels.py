@@ -5,8 +5,9 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import decisions, ids
-from ..core import last_render, progress_text
+from ..core import progress_text
 from ..core.native import lodestone_native as native
+from ..core.session import last_render
 from ..core.store import store_levels, store_path
 
 _KINDS = {

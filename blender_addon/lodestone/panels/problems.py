@@ -4,8 +4,9 @@
 import bpy
 from bpy.types import Panel
 
-from ..core import last_check, problem_causes
+from ..core import problem_causes
 from ..core.problems import ERROR, INFO, WARNING
+from ..core.session import last_check
 from ..operators import problems as operators
 from . import EnginePanel
 

@@ -7,8 +7,9 @@ from bpy.types import Panel
 
 from .. import handlers
 from ..bridge import lenses, live_view
-from ..core import last_render, progress_text
+from ..core import progress_text
 from ..core.native import lodestone_native as native
+from ..core.session import last_render
 
 _ARROW = "\N{RIGHTWARDS ARROW}"
 _KINDS = {"mesh": "Meshes", "box": "Boxes", "ellipsoid": "Ellipsoids", "composite": "Composites"}

@@ -5,8 +5,8 @@ import bpy
 from bpy.types import Panel
 
 from ..bridge import kept_view
-from ..core import kept_model
 from ..core.native import lodestone_native as native
+from ..core.session import kept_model
 
 
 class LODESTONE_OBJECT_PT_why(Panel):

@@ -84,8 +84,9 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
                      help="for each file; default: all, shared among the jobs")  # fmt: skip
     run.add_argument("--timeout", type=option_values.positive, metavar="S",
                      help="seconds for each file")  # fmt: skip
-    run.add_argument("--max-memory", type=option_values.memory, metavar="SIZE", help="8G, 500M: for "
-                     "each file, Blender and POV-Ray together; one above it is stopped"
+    run.add_argument("--max-memory", type=option_values.memory, metavar="SIZE",
+                     help="8G, 500M: for each file, Blender and POV-Ray together; one above it is "
+                     "stopped"
                      )  # fmt: skip
     run.add_argument("--resume", action="store_true", help="skip what --log says was done, if its "
                      "inputs and settings are unchanged")  # fmt: skip

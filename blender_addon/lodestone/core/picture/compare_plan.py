@@ -77,7 +77,7 @@ class Plan:
         return self.comparison is not None if self.step == DIFFERENCE else self.has_this
 
     def take(self, made: Any, shown: Path, paths: list[str]) -> None:
-        """This step's core.picture.picture_maker.Picture, which of its choices each pixel shows, and their
+        """This step's picture_maker.Picture, which of its choices each pixel shows, and their
         paths."""
         os.replace(shown, self._shown(self.step))
         shutil.copyfile(made.path, self.picture(self.step))

@@ -4,8 +4,8 @@
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from . import problem_causes
-from .problems import Problem, Subject
+from .. import problem_causes
+from ..problems import Problem, Subject
 
 
 @dataclass(frozen=True)

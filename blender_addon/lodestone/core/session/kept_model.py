@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from .native import lodestone_native as native
+from ..native import lodestone_native as native
 
 Key = tuple[str, str, str]  # as bridge.ids.Key
 
