@@ -20,8 +20,9 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, motion, poses, quality, requirements  # noqa: E402
-from lodestone.bridge.settings import SceneSettings  # noqa: E402
+from lodestone.bridge import blend_check, motion, poses, quality_settings  # noqa: E402
+from lodestone.bridge import requirements  # noqa: E402
+from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
 from lodestone.core import file_names, progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch import blend_header, input_stamps, process_session  # noqa: E402
@@ -331,13 +332,13 @@ def _filled_up(scene, picture: PictureRequest) -> PictureRequest:
     """What neither the command line nor a profile says is as the file has it."""
     own = SceneSettings(scene)
     error, budget = picture.pixel_error, picture.budget
-    overrides = {**quality.overrides(own), **picture.overrides}
+    overrides = {**quality_settings.overrides(own), **picture.overrides}
     if picture.antialias is not None:
         overrides["antialias"] = picture.antialias.upper()
     return replace(
         picture,
-        pixel_error=quality.pixel_error(own) if error is None else error,
-        budget=quality.budget(own) if budget is None else budget,
+        pixel_error=quality_settings.pixel_error(own) if error is None else error,
+        budget=quality_settings.budget(own) if budget is None else budget,
         overrides=overrides,
     )
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Properties that hold what the designer decides about objects, collections and cameras."""
 
-from .bridge import decisions
+from .bridge import object_decisions
 
 
 def _decided(self, context):
-    decisions.tag(self.id_data)
+    object_decisions.tag(self.id_data)
 
 
 def decided(kind, **options):

@@ -17,17 +17,17 @@ import bpy
 from . import handlers, preferences, preview, render_job
 from .bridge import (
     camera,
-    ignored,
+    ignored_problems,
     lenses,
     poses,
-    quality,
+    quality_settings,
     render_result,
     requirements,
     scene,
     shutter,
 )
-from .bridge.ids import name_of
-from .bridge.settings import SceneSettings
+from .bridge.datablock_ids import name_of
+from .bridge.scene_settings import SceneSettings
 from .core import progress_text
 from .core.background_calls import Stopped, Work
 from .core.native import lodestone_native as native
@@ -109,20 +109,20 @@ class _Run:
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
         self.off_screen = settings.off_screen
-        self.ray_classes = quality.ray_classes(settings)
+        self.ray_classes = quality_settings.ray_classes(settings)
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
         self.settings = Settings(
-            pixel_error=quality.pixel_error(settings),
-            overrides=quality.overrides(settings),
-            budget=quality.budget(settings),
+            pixel_error=quality_settings.pixel_error(settings),
+            overrides=quality_settings.overrides(settings),
+            budget=quality_settings.budget(settings),
             threads=self.scene.render.threads if self.scene.render.threads_mode == "FIXED" else 0,
             program=preferences.povray_program(),
         )
         self.problems = Problems()
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))
-        self.ignored = ignored.keys(depsgraph.scene)
+        self.ignored = ignored_problems.keys(depsgraph.scene)
         self.users = {}
         self.poses = poses.Poses()
         self.plan = compare_plan.current()

@@ -8,10 +8,10 @@ import traceback
 
 import bpy
 
-from .bridge import camera, extraction_check, lenses, poses, quality, scene, shutter
-from .bridge.ids import name_of
+from .bridge import camera, extraction_check, lenses, poses, quality_settings, scene, shutter
+from .bridge.datablock_ids import name_of
 from .bridge.requirements import NO_CAMERA
-from .bridge.settings import SceneSettings
+from .bridge.scene_settings import SceneSettings
 from .core.background_calls import Stopped
 from .core.native import lodestone_native as native
 from .core.printable_text import sentence, valid
@@ -135,7 +135,7 @@ def _modifiers(depsgraph, frame_set, request, extraction):
         closing = shutter.read(depsgraph, frame_set, moving, model, seen)
     parts_of = lenses.parts_in(extraction)
     detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
-    unseen = (settings.off_screen, quality.ray_classes(settings))
+    unseen = (settings.off_screen, quality_settings.ray_classes(settings))
     return [
         lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, *unseen)
         for name, end in zip(names, closing)

@@ -15,10 +15,10 @@ import weakref
 import bpy
 
 from . import forced_lod, handlers, preview_draw
-from .bridge import ids, lenses, preview_scene, viewport_view
-from .bridge.decisions import edits_of
-from .bridge.ids import name_of
-from .bridge.settings import SceneSettings
+from .bridge import datablock_ids, lenses, preview_scene, viewport_view
+from .bridge.datablock_ids import name_of
+from .bridge.object_decisions import edits_of
+from .bridge.scene_settings import SceneSettings
 from .core.preview import preview_worker
 from .core.preview.preview_worker import Failed, Made, Picture, Wanted
 from .core.preview.viewport_state import View
@@ -213,7 +213,9 @@ def _lenses(scene):
         for lens in lenses.detail([item], lambda collection: (), Problems()):
             own = item.lodestone.lens
             listed = own.filter != "ALL" and own.collection is not None
-            found.append((lens, ids.uid_of("collection", own.collection) if listed else ""))
+            found.append(
+                (lens, datablock_ids.uid_of("collection", own.collection) if listed else "")
+            )
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from .bridge import decisions
+from .bridge import object_decisions
 from .decided_property import decided
 from .lens_properties import LODESTONE_PG_lens
 from .quality_properties import Overrides, RayClasses
@@ -273,7 +273,7 @@ def _make_environment(settings, value):
         settings.role = "ENVIRONMENT" if value else "AUTOMATIC"
     else:  # as if it had never been decided
         settings.property_unset("role")
-        decisions.tag(settings.id_data)
+        object_decisions.tag(settings.id_data)
 
 
 class _Identified:

@@ -4,20 +4,20 @@ until it is set, and one that is stored, which is below 0 while it inherits."""
 
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
-from .bridge import quality
+from .bridge import quality_settings
 from .core.picture import quality_tree, unseen_detail
 
 
 def _reader(key):
     def read(settings):
-        return getattr(quality.of_scene(settings), key)
+        return getattr(quality_settings.of_scene(settings), key)
 
     return read
 
 
 def _writer(key):
     def write(settings, value):
-        setattr(settings, quality.OWN + key, value)
+        setattr(settings, quality_settings.OWN + key, value)
 
     return write
 
@@ -57,7 +57,7 @@ class Overrides:
 for _control in quality_tree.CONTROLS:
     if _control.least is not None:
         Overrides.__annotations__[_control.key] = _drawn(_control)
-        Overrides.__annotations__[quality.OWN + _control.key] = _stored(_control)
+        Overrides.__annotations__[quality_settings.OWN + _control.key] = _stored(_control)
 
 
 class RayClasses:

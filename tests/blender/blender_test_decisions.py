@@ -13,7 +13,7 @@ import bpy
 
 import blender_scenes as scenes
 from blender_case import Case
-from lodestone.bridge import decisions, ids
+from lodestone.bridge import datablock_ids, object_decisions
 from lodestone.core.native import lodestone_native as native
 
 ANY = native.ANY_LEVEL
@@ -35,7 +35,7 @@ class Decisions(Case):
                     found[f"{path}{name}"] = decided
                 look(item, f"{path}{name}/")
 
-        look(model.find_object(ids.scene_uid("Scene")), "")
+        look(model.find_object(datablock_ids.scene_uid("Scene")), "")
         return found
 
     def test_nothing_decided_leaves_no_trace(self):
@@ -45,7 +45,7 @@ class Decisions(Case):
     def test_looking_at_the_panel_decides_nothing(self):
         cube = scenes.cube()
         self.assertEqual(cube.lodestone.importance, 1.0)
-        self.assertFalse(decisions.decided(cube))
+        self.assertFalse(object_decisions.decided(cube))
         self.assertEqual(self.placed(), {})
 
     def test_each_use_becomes_a_limit(self):
@@ -109,16 +109,18 @@ class Decisions(Case):
     def test_environment_is_a_checkbox_that_leaves_nothing_when_it_is_off_again(self):
         floor = scenes.cube("Floor")
         self.assertFalse(floor.lodestone.environment)
-        decisions.drop_empty(floor)  # looking at it decides nothing
+        object_decisions.drop_empty(floor)  # looking at it decides nothing
         self.assertNotIn("lodestone", floor)
         floor.lodestone.environment = True
-        self.assertEqual((floor.lodestone.role, decisions.decided(floor)), ("ENVIRONMENT", True))
+        self.assertEqual(
+            (floor.lodestone.role, object_decisions.decided(floor)), ("ENVIRONMENT", True)
+        )
         copied = scenes.cube("Copied")
-        decisions.copy(floor, copied)
+        object_decisions.copy(floor, copied)
         self.assertTrue(copied.lodestone.environment)
         floor.lodestone.environment = False
-        self.assertFalse(decisions.decided(floor))
-        decisions.drop_empty(floor)
+        self.assertFalse(object_decisions.decided(floor))
+        object_decisions.drop_empty(floor)
         self.assertNotIn("lodestone", floor)
 
     def test_deciding_about_a_thing_is_not_taken_for_another_shape(self):
@@ -133,7 +135,7 @@ class Decisions(Case):
             lambda: setattr(cube.lodestone, "environment", True),
             lambda: setattr(cube.lodestone, "environment", False),
             lambda: setattr(cube.lodestone, "use_pin_viewport", True),
-            lambda: decisions.copy(other, cube),
+            lambda: object_decisions.copy(other, cube),
         ):
             changed_shapes.clear()
             change()
@@ -158,7 +160,7 @@ class Decisions(Case):
             found = item.lodestone
             self.assertEqual((found.use, found.importance, found.role), ("LIMIT", 2.0, "AUTOMATIC"))
         self.assertNotIn("lodestone", bystander)
-        decisions.forget(source, True)
+        object_decisions.forget(source, True)
         bpy.ops.lodestone.copy_decisions()
         for item in targets:
             self.assertNotIn("lodestone", item)

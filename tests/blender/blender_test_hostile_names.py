@@ -307,15 +307,15 @@ class OtherNames(unittest.TestCase):
         self.assertIn("/caf\ufffd\ufffd", problem.message)
 
     def test_a_decision_on_what_is_linked_from_a_path_of_any_bytes_is_kept(self):
-        from lodestone.bridge import decisions
+        from lodestone.bridge import object_decisions
 
         item = self.linked()
-        decisions.decide_linked(self.scene, "object", item, "ENVIRONMENT")
+        object_decisions.decide_linked(self.scene, "object", item, "ENVIRONMENT")
         path = str(self.folder / "user.blend")
         bpy.ops.wm.save_as_mainfile(filepath=path)
         bpy.ops.wm.open_mainfile(filepath=path)
         (item,) = [item for item in bpy.data.objects if item.library]
-        role = decisions.linked_role(bpy.context.scene, "object", item)
+        role = object_decisions.linked_role(bpy.context.scene, "object", item)
         self.assertEqual(role, "ENVIRONMENT")
 
     def test_cameras_are_found_by_any_name_and_missed_by_none(self):

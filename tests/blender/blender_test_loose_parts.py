@@ -45,10 +45,10 @@ class LooseParts(unittest.TestCase):
 
     def rocks_in(self, extraction):
         """The summary under the first uid that the panel looks for."""
-        from lodestone.bridge import decisions
+        from lodestone.bridge import object_decisions
 
         model = extraction.model
-        found = map(model.find_object, decisions.levels_uids(self.rocks))
+        found = map(model.find_object, object_decisions.levels_uids(self.rocks))
         return model.object_summary(next(item for item in found if item is not None))
 
     def test_they_are_clusters_below_one_object_in_two_places(self):

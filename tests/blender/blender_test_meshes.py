@@ -50,13 +50,13 @@ class Meshes(unittest.TestCase):
 
     def blenders(self, item):
         """The same faces with Blender's triangles and normals."""
-        from lodestone.bridge import compat, mesh
+        from lodestone.bridge import blender_versions, mesh
 
         buffers = self.extracted(item)
         made = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
         buffers.triangles = mesh._triangles(made)
-        buffers.corner_normals = compat.buffer("f", 3 * len(made.loops))
-        compat.corner_normals(made, buffers.corner_normals)
+        buffers.corner_normals = blender_versions.buffer("f", 3 * len(made.loops))
+        blender_versions.corner_normals(made, buffers.corner_normals)
         return buffers
 
     def test_triangles_and_normals_are_blenders(self):

@@ -115,7 +115,7 @@ class Found(unittest.TestCase):
             self.assertTrue(motion.deforms(item), item.name)
 
     def test_sampled_frames_tell_what_rests_after_all(self):
-        from lodestone.bridge import ids
+        from lodestone.bridge import datablock_ids
         from lodestone.bridge.motion import Motion, frames_to_sample, sample
 
         self.assertEqual(frames_to_sample(1, 1), [1])
@@ -131,8 +131,8 @@ class Found(unittest.TestCase):
         scene.frame_set(7)
         found = sample(scene, bpy.context.view_layer, frames_to_sample(1, 20))
         self.assertEqual(scene.frame_current, 7)
-        self.assertEqual(found["still_shape"], [ids.uid_of("object", flat)])
-        self.assertEqual(found["still_place"], [ids.uid_of("object", still)])
+        self.assertEqual(found["still_shape"], [datablock_ids.uid_of("object", flat)])
+        self.assertEqual(found["still_place"], [datablock_ids.uid_of("object", still)])
         motion = Motion(found)
         self.assertFalse(motion.deforms(flat) or motion.moves(still))
         self.assertTrue(motion.deforms(waving) and motion.moves(moving))

@@ -355,7 +355,7 @@ class Libraries(Case):
             self.assertEqual(uids, others)
 
     def test_roles_of_linked_things_are_kept_in_the_local_file(self):
-        from lodestone.bridge import decisions
+        from lodestone.bridge import object_decisions
 
         with tempfile.TemporaryDirectory() as folder:
             library = str(Path(folder) / "library.blend")
@@ -371,8 +371,8 @@ class Libraries(Case):
             scenes.instance("Use", shelf)
             self.assertEqual(self.roles(), {"Book": 0, "Lamp": 1})
             objects, scene = bpy.data.objects, bpy.context.scene
-            decisions.decide_linked(scene, "object", objects["Book", library], "ENVIRONMENT")
-            decisions.decide_linked(scene, "object", objects["Lamp", library], "ORDINARY")
+            object_decisions.decide_linked(scene, "object", objects["Book", library], "ENVIRONMENT")
+            object_decisions.decide_linked(scene, "object", objects["Lamp", library], "ORDINARY")
             self.assertEqual(self.roles(), {"Book": 1, "Lamp": 2})
             user = str(Path(folder) / "user.blend")
             bpy.ops.wm.save_as_mainfile(filepath=user)
@@ -382,15 +382,15 @@ class Libraries(Case):
             library = bpy.data.libraries[0].filepath
             self.assertTrue(library.startswith("//"), library)  # saving made it relative
             book, lamp = objects["Book", library], objects["Lamp", library]
-            self.assertEqual(decisions.linked_role(scene, "object", lamp), "ORDINARY")
-            decisions.decide_linked(scene, "object", book, None)
-            decisions.decide_linked(scene, "object", lamp, None)
+            self.assertEqual(object_decisions.linked_role(scene, "object", lamp), "ORDINARY")
+            object_decisions.decide_linked(scene, "object", book, None)
+            object_decisions.decide_linked(scene, "object", lamp, None)
             self.assertEqual(self.roles(), {"Book": 0, "Lamp": 1})
             self.assertFalse(scene.is_property_set("lodestone"))
             shelf = bpy.data.collections["Shelf", library]
-            decisions.decide_linked(scene, "collection", shelf, "ENVIRONMENT")
+            object_decisions.decide_linked(scene, "collection", shelf, "ENVIRONMENT")
             self.assertEqual(self.roles(), {"Book": 1, "Lamp": 1})
-            self.assertTrue(decisions.forget_linked(scene))
+            self.assertTrue(object_decisions.forget_linked(scene))
             self.assertEqual(self.roles(), {"Book": 0, "Lamp": 1})
 
     def roles(self):

@@ -14,9 +14,9 @@ MANY = 4100  # more than are asked at a stroke
 
 
 def bridge():
-    from lodestone.bridge import instances, listed, motion, plain
+    from lodestone.bridge import instances, listed_instances, motion, plain
 
-    return instances, listed, motion, plain
+    return instances, listed_instances, motion, plain
 
 
 def one_by_one():
@@ -61,10 +61,10 @@ def glowing(name):
 
 def parts_of(extraction):
     """What every object and collection of the file became, by key; of the model, numbers."""
-    from lodestone.bridge import ids
+    from lodestone.bridge import datablock_ids
 
-    keys = [ids.key_of("object", item) for item in bpy.data.objects]
-    keys += [ids.key_of("collection", item) for item in bpy.data.collections]
+    keys = [datablock_ids.key_of("object", item) for item in bpy.data.objects]
+    keys += [datablock_ids.key_of("collection", item) for item in bpy.data.collections]
     return {key: sorted(item.index for item in extraction.parts.get(key, ())) for key in keys}
 
 

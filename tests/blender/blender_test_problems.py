@@ -343,9 +343,9 @@ class Problems(unittest.TestCase):
         return cause.key
 
     def ignored(self):
-        from lodestone.bridge import ignored
+        from lodestone.bridge import ignored_problems
 
-        return ignored.keys(self.scene)
+        return ignored_problems.keys(self.scene)
 
     def test_select_selects_what_wears_a_material(self):
         shared = odd_material("Bark")

@@ -10,7 +10,7 @@ import bmesh
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import lenses, quality, viewport_view
+from lodestone.bridge import lenses, quality_settings, viewport_view
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import quality_tree
 
@@ -31,7 +31,7 @@ class Controls(unittest.TestCase):
             found = quality_tree.quality(error)
             for key, value in self.values().items():
                 self.assertEqual(value, getattr(found, key), (key, error))
-        self.assertEqual(quality.overrides(self.settings), {})
+        self.assertEqual(quality_settings.overrides(self.settings), {})
 
     def test_one_that_is_set_stays_and_is_set_back_with_one_click(self):
         self.settings.pixel_error_render = 2.0
@@ -43,7 +43,7 @@ class Controls(unittest.TestCase):
         for key in ("area_samples", "shadows", "antialias"):
             bpy.ops.lodestone.inherit_control(key=key)
         self.assertEqual((self.settings.area_samples, self.settings.shadows), (1, 8.0))
-        self.assertEqual(quality.overrides(self.settings), {})
+        self.assertEqual(quality_settings.overrides(self.settings), {})
         with self.assertRaisesRegex(RuntimeError, "Everything inherits already"):
             bpy.ops.lodestone.inherit_control(key="shadows")
 
@@ -51,7 +51,7 @@ class Controls(unittest.TestCase):
         for control in NUMBERS:
             setattr(self.settings, control.key, control.most)
         bpy.ops.lodestone.inherit_control(key="")
-        self.assertEqual(quality.overrides(self.settings), {})
+        self.assertEqual(quality_settings.overrides(self.settings), {})
 
     def test_a_control_that_is_none_is_refused(self):
         self.settings.shadows = 1.0
@@ -61,8 +61,8 @@ class Controls(unittest.TestCase):
     def test_a_child_s_preset_s_word_follows_its_parent(self):
         self.settings.reflections = 8.0
         self.assertEqual(self.settings.trace_depth, 2)
-        self.assertEqual(quality.inherited_word(self.settings, "reflections"), "1.00 px")
-        self.assertEqual(quality.inherited_word(self.settings, "antialias"), "Final")
+        self.assertEqual(quality_settings.inherited_word(self.settings, "reflections"), "1.00 px")
+        self.assertEqual(quality_settings.inherited_word(self.settings, "antialias"), "Final")
 
     def test_presets_set_the_one_number_and_every_override_back(self):
         for key, expected in (("DRAFT", 8.0), ("PREVIEW", 2.0), ("FINAL", 1.0), ("EXACT", 0.0)):
@@ -70,7 +70,9 @@ class Controls(unittest.TestCase):
             self.settings.antialias = "OFF"
             self.settings.use_levels = False
             bpy.ops.lodestone.levels_preset(preset=key)
-            self.assertEqual(quality.of_scene(self.settings), quality_tree.quality(expected))
+            self.assertEqual(
+                quality_settings.of_scene(self.settings), quality_tree.quality(expected)
+            )
 
     def test_a_user_s_own_preset_is_added_used_and_removed(self):
         settings = self.settings
@@ -85,7 +87,7 @@ class Controls(unittest.TestCase):
         exec(compile(path.read_text(), str(path), "exec"), {})
         self.assertEqual((settings.pixel_error_render, settings.shadows), (3.0, 5.0))
         self.assertEqual(settings.budget_render, 700)
-        self.assertEqual(quality.overrides(settings), {"shadows": 5.0})
+        self.assertEqual(quality_settings.overrides(settings), {"shadows": 5.0})
         bpy.ops.lodestone.levels_preset_add(name="Test of Lodestone", remove_name=True)
         self.assertFalse(path.exists())
 
@@ -93,10 +95,10 @@ class Controls(unittest.TestCase):
         for control in NUMBERS:
             for value in (-(2**30), 2**30):
                 setattr(self.settings, control.key, value)
-                found = getattr(quality.of_scene(self.settings), control.key)
+                found = getattr(quality_settings.of_scene(self.settings), control.key)
                 self.assertTrue(control.least <= found <= control.most, (control.key, value))
         self.settings.pixel_error_render = float("nan")
-        self.assertTrue(0.0 <= quality.of_scene(self.settings).pixel_error <= 1024.0)
+        self.assertTrue(0.0 <= quality_settings.of_scene(self.settings).pixel_error <= 1024.0)
 
 
 class Files(unittest.TestCase):
@@ -189,7 +191,7 @@ class Pins(unittest.TestCase):
         self.assertEqual(set(self.in_use()), {0})
 
     def test_copied_to_the_selected(self):
-        from lodestone.bridge import ids
+        from lodestone.bridge import datablock_ids
 
         self.balls[0].lodestone.use_pin_render = True
         self.balls[0].lodestone.pin_render = 3
@@ -197,7 +199,7 @@ class Pins(unittest.TestCase):
             item.select_set(True)
         bpy.context.view_layer.objects.active = self.balls[0]
         bpy.ops.lodestone.copy_decisions()
-        found = ids.decision_of(self.balls[1])
+        found = datablock_ids.decision_of(self.balls[1])
         self.assertEqual((found.pinned, found.coarsest), (True, 3))
 
 

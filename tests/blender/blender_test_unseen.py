@@ -11,8 +11,8 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import live_view, quality
-from lodestone.bridge.settings import SceneSettings
+from lodestone.bridge import live_view, quality_settings
+from lodestone.bridge.scene_settings import SceneSettings
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import unseen_detail
 from lodestone.core.session import last_render
@@ -29,20 +29,20 @@ class Settings(unittest.TestCase):
 
     def test_every_class_is_off_at_first_and_stores_nothing(self):
         self.assertEqual([getattr(self.settings, key) for key in KEYS], [False] * len(KEYS))
-        self.assertEqual(quality.ray_classes(SceneSettings(self.scene)), 0)
+        self.assertEqual(quality_settings.ray_classes(SceneSettings(self.scene)), 0)
 
     def test_each_class_is_its_own_bit(self):
         for one in unseen_detail.CLASSES:
             setattr(self.settings, one.key, True)
-            self.assertEqual(quality.ray_classes(self.settings), one.rays)
+            self.assertEqual(quality_settings.ray_classes(self.settings), one.rays)
             setattr(self.settings, one.key, False)
         self.settings.shadow_levels = self.settings.reflection_levels = True
-        self.assertEqual(quality.ray_classes(self.settings), BOTH)
+        self.assertEqual(quality_settings.ray_classes(self.settings), BOTH)
 
     def test_without_levels_of_detail_there_are_none(self):
         self.settings.shadow_levels = True
         self.settings.use_levels = False
-        self.assertEqual(quality.ray_classes(self.settings), 0)
+        self.assertEqual(quality_settings.ray_classes(self.settings), 0)
 
     def test_a_user_s_preset_keeps_them(self):
         self.settings.shadow_levels = True

@@ -82,12 +82,12 @@ class UpdateLevels(unittest.TestCase):
 
     def levels(self, item):
         """What the panel shows of an object or a collection."""
-        from lodestone.bridge import decisions
+        from lodestone.bridge import object_decisions
         from lodestone.core.store import store_levels, store_path
 
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
         self.assertEqual(store.problem, "")
-        return next(filter(None, map(store.levels, decisions.levels_uids(item))), ())
+        return next(filter(None, map(store.levels, object_decisions.levels_uids(item))), ())
 
     def test_fills_the_store_beside_the_file_and_leaves_the_file_untouched(self):
         self.assertEqual(bpy.ops.lodestone.update_levels(), {"FINISHED"})

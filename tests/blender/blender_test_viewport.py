@@ -126,7 +126,7 @@ class Viewport(unittest.TestCase):
         self.assertEqual(things.live[0].model.totals().triangles_placed, 12)
 
     def test_pins_for_viewports_and_for_renders_are_apart(self):
-        from lodestone.bridge import ids
+        from lodestone.bridge import datablock_ids
 
         self.ball.lodestone.use_pin_viewport = True
         self.ball.lodestone.pin_viewport = 2
@@ -135,8 +135,8 @@ class Viewport(unittest.TestCase):
         self.assertEqual(set(changes), {self.slot("Ball").key})
         self.assertEqual(changes[self.slot("Ball").key].coarsest, 2)
         self.assertTrue(changes[self.slot("Ball").key].pinned)
-        self.assertEqual(ids.decision_of(self.ball), ids.UNDECIDED)
-        self.assertTrue(ids.decision_of(self.other).pinned)
+        self.assertEqual(datablock_ids.decision_of(self.ball), datablock_ids.UNDECIDED)
+        self.assertTrue(datablock_ids.decision_of(self.other).pinned)
         self.assertTrue(self.preview_scene.any_pin())
 
     def test_pins_of_inner_objects_and_of_collections_count(self):

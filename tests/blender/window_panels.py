@@ -172,7 +172,7 @@ def every_kind_of_object_draws():
 
 
 def problems_are_selected_ignored_and_taken_back():
-    from lodestone.bridge import ignored
+    from lodestone.bridge import ignored_problems
     from lodestone.operators import problems
 
     def rows():
@@ -196,7 +196,7 @@ def problems_are_selected_ignored_and_taken_back():
     with window():
         bpy.ops.ed.undo()
     yield from show(area, "RENDER")
-    assert not ignored.keys(bpy.context.scene)
+    assert not ignored_problems.keys(bpy.context.scene)
     assert len(rows()) == before
     assert len(bpy.context.selected_objects) == 12
     with window():

@@ -206,9 +206,9 @@ def a_pin_for_viewports_is_obeyed_and_renders_are_not_affected():
     yield from settled(area, shown)
     assert picture(area).triangles >= 1280
     assert picture(area).things.count == 0, "deciding about a thing is taken for another shape"
-    from lodestone.bridge import ids
+    from lodestone.bridge import datablock_ids
 
-    assert ids.decision_of(bpy.data.objects["Ball 3"]) == ids.UNDECIDED
+    assert datablock_ids.decision_of(bpy.data.objects["Ball 3"]) == datablock_ids.UNDECIDED
     shown = picture(area)
     bpy.context.window_manager.lodestone_overlay.seen_from = "VIEW"
     bpy.context.window_manager.lodestone_overlay.mode = "LEVEL"

@@ -9,7 +9,7 @@ import bpy
 
 from ..core.problems import ERROR, Problems
 from . import requirements
-from .ids import name_of
+from .datablock_ids import name_of
 
 
 def check_file(problems: Problems, scripts_ran: bool) -> None:

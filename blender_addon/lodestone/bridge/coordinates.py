@@ -9,7 +9,7 @@ from mathutils import Euler, Matrix, Vector
 
 from ..core.native import lodestone_native as native
 from . import graph
-from .ids import name_of
+from .datablock_ids import name_of
 
 Rows = tuple[float, ...]
 Projection = native.Projection

@@ -6,7 +6,7 @@ from typing import Any
 
 from mathutils import Matrix
 
-from .ids import name_of
+from .datablock_ids import name_of
 from .leaves import DRAWN, material_slots, override_of, undrawn
 from .scene import Extraction
 

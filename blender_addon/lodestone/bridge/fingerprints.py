@@ -11,8 +11,8 @@ import zlib
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from . import compat
-from .ids import name_of
+from . import blender_versions
+from .datablock_ids import name_of
 
 
 class Shape(NamedTuple):
@@ -28,7 +28,7 @@ def shape_of(item: Any) -> Shape | None:
         return None
     data = item.data
     count = len(data.vertices)
-    positions = compat.buffer("f", 3 * count)
+    positions = blender_versions.buffer("f", 3 * count)
     data.vertices.foreach_get("co", positions)
     return Shape(count, len(data.loops), len(data.polygons), zlib.crc32(positions))
 

@@ -19,7 +19,7 @@ from mathutils import Matrix, Vector
 
 from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems, Subject
-from . import compat, ids
+from . import blender_versions, datablock_ids
 
 MOST_FACES = 4096  # of a mesh that is looked at
 MOST_FLAT = 6  # sides of a body
@@ -57,7 +57,7 @@ def glow_of(shown: Any, slots: list[Any], looks: Iterable[Any], faces: bool = Tr
     radiances = [look.radiance for look in looks] or [(0.0, 0.0, 0.0)]
     if max(map(max, radiances)) < LEAST:
         return None
-    keys = [ids.key_of("material", m) if m else ("material", "", "") for m in slots]
+    keys = [datablock_ids.key_of("material", m) if m else ("material", "", "") for m in slots]
     bright = tuple(key for key, radiance in zip(keys, radiances) if max(radiance) > NAMED)
     mesh = shown.data
     if not faces or shown.type != "MESH" or shown.mode == "EDIT":
@@ -70,7 +70,7 @@ def glow_of(shown: Any, slots: list[Any], looks: Iterable[Any], faces: bool = Tr
 def _parts(mesh: Any, keys: list[Subject], radiances: list[Any]) -> Iterable[Part]:
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
-    corners, slots = compat.buffer("i", 3 * count), compat.buffer("i", count)
+    corners, slots = blender_versions.buffer("i", 3 * count), blender_versions.buffer("i", count)
     mesh.loop_triangles.foreach_get("vertices", corners)
     mesh.loop_triangles.foreach_get("material_index", slots)
     by_slot: dict[int, list[tuple[int, int, int]]] = defaultdict(list)

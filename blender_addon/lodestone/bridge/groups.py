@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 from ..core import stable_ids
 from ..core.placement_decision import Decision
-from . import ids
-from .ids import name_of
+from . import datablock_ids
+from .datablock_ids import name_of
 from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
-from .listed import Rows, gathered, rows
+from .listed_instances import Rows, gathered, rows
 from .motion import Motion
 from .parts import Parts
 from .placements import Placements
@@ -38,7 +38,7 @@ class Branch:
     objects: list[Any] = field(default_factory=list)  # originals
 
 
-def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
+def scene_branch(scene: Any, view_layer: Any, roles: datablock_ids.Roles) -> Branch:
     """Of what a view layer includes: render-hidden collections are left out, excluded ones lend
     nothing but their included children."""
     claimed: set[Any] = set()
@@ -64,7 +64,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: ids.Roles) -> Branch:
     return root
 
 
-def collection_branch(collection: Any, roles: ids.Roles) -> Branch:
+def collection_branch(collection: Any, roles: datablock_ids.Roles) -> Branch:
     """Of an evaluated collection as its instances show it: layers play no part."""
     claimed: set[Any] = {collection.original}
     taken = _Taken()
@@ -150,7 +150,9 @@ _ASIDE_NAMES = {"changing": "in motion", "apart": "excluded"}
 class Groups:
     """Adds groups to a model; equal contents become one group."""
 
-    def __init__(self, model: Any, uids: ids.Uids, roles: ids.Roles, motion: Motion) -> None:
+    def __init__(
+        self, model: Any, uids: datablock_ids.Uids, roles: datablock_ids.Roles, motion: Motion
+    ) -> None:
         self._model = model
         self._uids = uids
         self._roles = roles
@@ -183,7 +185,7 @@ class Groups:
         for what in _ASIDE_NAMES:
             lifted = getattr(aside, what)
             if lifted:
-                uid = stable_ids.stable_id(ids.scene_uid(branch.name), what)
+                uid = stable_ids.stable_id(datablock_ids.scene_uid(branch.name), what)
                 name = f"{branch.name} {_ASIDE_NAMES[what]}"
                 group = self._intern(uid, name, False, lifted, what == "changing")
                 placements.add(group, IDENTITY, name)
@@ -203,7 +205,7 @@ class Groups:
         for child in branch.children:
             group = self._group(child, *self._members(context, child, rest, aside))
             if group is not None:
-                decision = ids.decision_of(child.collection)
+                decision = datablock_ids.decision_of(child.collection)
                 into = aside.apart if decision.apart and in_scene else placements
                 into.add(group, IDENTITY, child.name, 0, decision)
         rows, done = list(map(rest.plain.pop, branch.objects, repeat(None))), 0
@@ -219,7 +221,9 @@ class Groups:
                 aside.movers.extend([original] * (len(made) if changes else 0))
                 for above in self._above:
                     if above.collection is not None:
-                        self.parts.add(ids.key_of("collection", above.collection), made.objects)
+                        self.parts.add(
+                            datablock_ids.key_of("collection", above.collection), made.objects
+                        )
             else:
                 placements.extend(made)
                 anew = anew or changes
@@ -262,7 +266,7 @@ class Groups:
             group = self.build(entry.content, self._branches[pointer])
             if group is not None:
                 place = rows(entry.object.matrix_world @ offset(collection))
-                decision = ids.decision_of(collection).inside(entry.decision)
+                decision = datablock_ids.decision_of(collection).inside(entry.decision)
                 placements.add(group, place, entry.name, entry.hidden, decision)
         if entry.emitted:
             name = f"{entry.name} instances"
@@ -277,12 +281,12 @@ class Groups:
         for emitted, group in known:
             if _same_but_for_rounding(emitted, entry.emitted):
                 return group
-        uid = stable_ids.stable_id(ids.uid_of("object", entry.object), "instances")
+        uid = stable_ids.stable_id(datablock_ids.uid_of("object", entry.object), "instances")
         children = Placements()
         for leaf, place, hidden, decision in entry.emitted:
             children.add(leaf.object, place, leaf.data, hidden, decision)
         own = self._roles.of(entry.object)
-        role = ids.role(own == "ENVIRONMENT", own == "ORDINARY")
+        role = datablock_ids.role(own == "ENVIRONMENT", own == "ORDINARY")
         anew = self._motion.emits_anew(entry.object)
         group = self._intern(uid, f"{entry.name} instances", role, children, anew)
         if len(children) > MOST_CHILDREN and not anew:
@@ -294,16 +298,16 @@ class Groups:
         if not placements:
             return None
         if branch.collection is None:
-            uid = ids.scene_uid(branch.name)
+            uid = datablock_ids.scene_uid(branch.name)
         else:
-            uid = ids.uid_of("collection", branch.collection)
+            uid = datablock_ids.uid_of("collection", branch.collection)
         ordinary = branch.collection is not None and self._roles.is_ordinary(branch.collection)
-        role = ids.role(branch.environment, ordinary)
+        role = datablock_ids.role(branch.environment, ordinary)
         group = self._intern(uid, branch.name, role, placements, changes)
         if not changes:
             self.collections[group] = None
         if branch.collection is not None:
-            self.parts.add(ids.key_of("collection", branch.collection), [group])
+            self.parts.add(datablock_ids.key_of("collection", branch.collection), [group])
         return group
 
     def _decide(self, group: Any, position: int, decision: Decision) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 
 from ..core.problems import ERROR, WARNING
-from .ids import name_of
+from .datablock_ids import name_of
 
 FILE, PACKED, PIXELS, MISSING = "file", "packed", "pixels", "missing"
 Note = Callable[[str, str, str], None]  # severity, code, words

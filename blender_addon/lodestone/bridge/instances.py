@@ -16,11 +16,11 @@ from mathutils import Matrix
 
 from ..core.placement_decision import UNDECIDED, Decision
 from ..core.problems import ERROR, INFO, WARNING, Problems
-from . import ids, strands
+from . import datablock_ids, strands
+from .datablock_ids import name_of
 from .glow import Glows
-from .ids import name_of
 from .leaves import DRAWN, GREASE_PENCIL, Leaf, Look, undrawn
-from .listed import Listed, Rows, rows
+from .listed_instances import Listed, Rows, rows
 from .motion import Motion
 from .plain import Plain, find
 from .users import Users
@@ -44,7 +44,7 @@ class Entry:
     decision = UNDECIDED
     pending = False  # shown, but no mesh: converted when nothing else shows it
 
-    def __init__(self, item: Any, key: ids.Key, place: Rows) -> None:
+    def __init__(self, item: Any, key: datablock_ids.Key, place: Rows) -> None:
         """An evaluated object; its transform to the context's frame."""
         self.object = item
         self.key = key
@@ -76,7 +76,7 @@ class Instances:
         self,
         leaves: Users,
         visibility: Visibility,
-        roles: ids.Roles,
+        roles: datablock_ids.Roles,
         motion: Motion,
         problems: Problems,
         tick: Callable[[], None],
@@ -96,7 +96,7 @@ class Instances:
         self._collections: dict[int, tuple[list[Any], set[Any]]] = {}
         self._hidden: dict[Any, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
         self._looks: dict[Any, Look] = {}  # by original, but for what the context adds
-        self._keys: dict[Any, ids.Key] = {}  # by original
+        self._keys: dict[Any, datablock_ids.Key] = {}  # by original
         self._decisions: dict[Any, Decision] = {}  # of emitted objects, by original
 
     def walk(self, listed: Listed, environment: set[Any]) -> None:
@@ -128,7 +128,7 @@ class Instances:
         names = list(map(plain.names.__getitem__, rows))
         marked = shown.original in self.scene.environment
         look = Look(marked, deforms=self._motion.deforms(shown))
-        leaf = self._leaves.leaf(ids.key_of_local(names[0]), shown, shown, look)
+        leaf = self._leaves.leaf(datablock_ids.key_of_local(names[0]), shown, shown, look)
         if leaf is None:
             return True
         if leaf.deforms or leaf.glow is not None or not leaf.settled:
@@ -266,7 +266,7 @@ class Instances:
         look = self._looks.get(original)
         if look is None:
             marked = self._roles.is_environment(owner)
-            deforms, loose = self._motion.deforms(owner), ids.loose_parts(owner)
+            deforms, loose = self._motion.deforms(owner), datablock_ids.loose_parts(owner)
             look = self._looks[original] = Look(
                 marked, self._roles.is_ordinary(owner), deforms=deforms, loose=loose
             )
@@ -287,14 +287,14 @@ class Instances:
     def _decision(self, owner: Any) -> Decision:
         original = owner.original
         if original not in self._decisions:
-            self._decisions[original] = ids.decision_of(owner)
+            self._decisions[original] = datablock_ids.decision_of(owner)
         return self._decisions[original]
 
-    def _key(self, item: Any) -> ids.Key:
+    def _key(self, item: Any) -> datablock_ids.Key:
         original = item.original
         key = self._keys.get(original)
         if key is None:
-            key = self._keys[original] = ids.key_of("object", item)
+            key = self._keys[original] = datablock_ids.key_of("object", item)
         return key
 
     # ---- Paths ----
@@ -328,7 +328,7 @@ class Instances:
             in_scene = context.collection is None
             entry = Entry(item, self._key(item), rows(item.matrix_world))
             entry.hidden = self._visibility.hidden(item, in_scene)
-            entry.decision = ids.decision_of(item)
+            entry.decision = datablock_ids.decision_of(item)
             entry.holdout = context.holdout or self._visibility.holdout(item, in_scene)
             if entry.holdout and not context.holdout:
                 self._visibility.name_holdout(entry.name)
@@ -386,7 +386,7 @@ def _is_self(entry: Entry, owner: Any) -> bool:
     return entry.object.original == owner.original
 
 
-def _mark(collection: Any, inherited: bool, marked: set[Any], roles: ids.Roles) -> None:
+def _mark(collection: Any, inherited: bool, marked: set[Any], roles: datablock_ids.Roles) -> None:
     environment = inherited or roles.is_environment(collection)
     if environment:
         marked.update(map(_ORIGINAL, collection.objects))

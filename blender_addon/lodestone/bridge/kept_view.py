@@ -7,8 +7,8 @@ from typing import Any
 from ..core.picture import why_sentences
 from ..core.problems import Problems
 from ..core.session import kept_model
-from . import camera, ids, lenses, live_view, preview_live, render_result
-from .settings import SceneSettings
+from . import camera, datablock_ids, lenses, live_view, preview_live, render_result
+from .scene_settings import SceneSettings
 
 
 def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
@@ -45,7 +45,7 @@ def explained(scene: Any, depsgraph: Any, item: Any) -> "why_sentences.Explanati
             return None
         cut = kept.cut(now(kept, scene, depsgraph))
         world = preview_live.expected_world(item.evaluated_get(depsgraph))
-        drawn, position = kept.find([ids.key_of("object", item.original)], world)
+        drawn, position = kept.find([datablock_ids.key_of("object", item.original)], world)
         return why_sentences.explain(cut, drawn, position)
     finally:
         kept.lock.release()

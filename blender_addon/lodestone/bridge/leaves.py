@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 from ..core import stable_ids
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, Problems
-from . import ids, mesh, mesh_uvs, strands
+from . import datablock_ids, mesh, mesh_uvs, strands
+from .datablock_ids import name_of
 from .glow import Glow, glow_of
-from .ids import name_of
 from .materials import Materials
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
@@ -56,12 +56,17 @@ class Look(NamedTuple):
     ordinary: bool = False
     holdout: bool = False  # all its materials are black
     deforms: bool = False  # its shape is another one in every frame
-    loose: str = ids.AUTOMATIC  # see ids.loose_parts()
+    loose: str = datablock_ids.AUTOMATIC  # see ids.loose_parts()
 
 
 class Leaves:
     def __init__(
-        self, model: Any, scene: Any, uids: ids.Uids, problems: Problems, override: Any = None
+        self,
+        model: Any,
+        scene: Any,
+        uids: datablock_ids.Uids,
+        problems: Problems,
+        override: Any = None,
     ) -> None:
         """`override`: the material that all wear (see override_of())."""
         self._model = model
@@ -165,7 +170,12 @@ class Leaves:
         add = self._model.add_strands if shown.type == "CURVES" else self._model.add_faces
         try:
             item = add(
-                uid, name, buffers, indices, ids.role(look.environment, look.ordinary), look.deforms
+                uid,
+                name,
+                buffers,
+                indices,
+                datablock_ids.role(look.environment, look.ordinary),
+                look.deforms,
             )
         except native.LodestoneError as error:
             if error.status != native.Status.INVALID_ARGUMENT:
@@ -186,8 +196,10 @@ class Leaves:
         buffers = strands.hair(shown, len(slots), textured)
         if buffers is None:
             return None
-        uid = self._uid(stable_ids.stable_id(ids.uid_of("object", owner), HAIR), color, look)
-        name, role = f"{name_of(owner)} {HAIR}", ids.role(look.environment, look.ordinary)
+        uid = self._uid(
+            stable_ids.stable_id(datablock_ids.uid_of("object", owner), HAIR), color, look
+        )
+        name, role = f"{name_of(owner)} {HAIR}", datablock_ids.role(look.environment, look.ordinary)
         item = self._model.add_strands(uid, name, buffers, indices, role, look.deforms)
         name = f"{name_of(shown)} {HAIR}"
         return Leaf(item, uid, name, _names(slots), len(buffers.counts), look.deforms)
@@ -197,8 +209,12 @@ class Leaves:
     ) -> Leaf:
         # A point shows its first material only
         indices = self._indices(slots[:1], color, look)
-        uid = self._uid(stable_ids.stable_id(ids.uid_of("object", owner), POINT), color, look)
-        name, role = f"{name_of(owner)} {POINT}", ids.role(look.environment, look.ordinary)
+        uid = self._uid(
+            stable_ids.stable_id(datablock_ids.uid_of("object", owner), POINT), color, look
+        )
+        name, role = f"{name_of(owner)} {POINT}", datablock_ids.role(
+            look.environment, look.ordinary
+        )
         item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
         return Leaf(item, uid, f"{name_of(shown.data)} {POINT}", _names(slots), 1)
 
@@ -227,23 +243,25 @@ class Leaves:
             base = stable_ids.stable_id(base, "holdout")
         if look.deforms:
             base = stable_ids.stable_id(base, "deforms")
-        if look.loose != ids.AUTOMATIC:
+        if look.loose != datablock_ids.AUTOMATIC:
             base = stable_ids.stable_id(base, "loose", look.loose)
         return self._uids.claim(base)
 
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:
         """Its uid and name: a shared mesh's own, else those of the object that shows it."""
         if shown.type != "MESH" or owner.type != "MESH":
-            return ids.uid_of("object", owner), name_of(owner)
+            return datablock_ids.uid_of("object", owner), name_of(owner)
         if shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes
-            base = stable_ids.stable_id(ids.uid_of("object", owner), "nodes", name_of(shown.data))
+            base = stable_ids.stable_id(
+                datablock_ids.uid_of("object", owner), "nodes", name_of(shown.data)
+            )
             return base, f"{name_of(owner)}: {name_of(shown.data)}"
         if owner.is_modified(self._scene, "RENDER"):
-            return ids.uid_of("object", owner), name_of(owner)
-        base = ids.uid_of("mesh", shown.data)
+            return datablock_ids.uid_of("object", owner), name_of(owner)
+        base = datablock_ids.uid_of("mesh", shown.data)
         if slots != list(shown.data.materials):
-            own = [ids.named_id_of(m) for m in shown.data.materials]
-            linked = [ids.named_id_of(m) for m in slots]
+            own = [datablock_ids.named_id_of(m) for m in shown.data.materials]
+            linked = [datablock_ids.named_id_of(m) for m in slots]
             if own != linked:  # materials linked to the object
                 base = stable_ids.stable_id(base, *linked)
         return base, name_of(shown.data)

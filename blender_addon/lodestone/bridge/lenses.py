@@ -8,10 +8,10 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
+from . import datablock_ids
 from . import camera as cameras
-from . import ids
-from .ids import name_of
-from .listed import rows
+from .datablock_ids import name_of
+from .listed_instances import rows
 
 DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
 MOST = 1024  # what the backend takes
@@ -23,7 +23,7 @@ PartsOf = Callable[[Any], Iterable[Any]]
 
 
 def is_lens(item: Any) -> bool:
-    if item.type != "EMPTY" or not ids.has_settings(item):
+    if item.type != "EMPTY" or not datablock_ids.has_settings(item):
         return False
     return item.lodestone.lens.enabled
 
@@ -79,7 +79,7 @@ def detail(
 
 def screen(camera: Any) -> tuple[native.ScreenLens, ...]:
     """Of a camera object (as in detail()); as many as the backend takes."""
-    settings = ids.settings_of(camera.data)
+    settings = datablock_ids.settings_of(camera.data)
     if settings is None:
         return ()
     used = [lens for lens in settings.screen_lenses if lens.enabled]
@@ -107,7 +107,7 @@ def modifiers(
     dark. `closing`: the camera as the shutter closes, None: it rests. `off_screen`: what the
     picture does not show, by native.OffScreen's names; `ray_classes`: of native.Rays."""
     screen_lenses = screen(camera)
-    settings = ids.settings_of(camera.data)
+    settings = datablock_ids.settings_of(camera.data)
     depth = 1.0 if settings is None else settings.depth_exaggeration
     if not (
         lenses or screen_lenses or depth != 1.0 or coarser or off_screen != FULL or ray_classes
@@ -130,7 +130,7 @@ def parts_in(extraction: Any) -> PartsOf:
     """Of a scene that was read: anything with its `parts`."""
 
     def parts_of(collection: Any) -> Iterable[Any]:
-        return extraction.parts.get(ids.key_of("collection", collection), ())
+        return extraction.parts.get(datablock_ids.key_of("collection", collection), ())
 
     return parts_of
 
@@ -139,7 +139,7 @@ def parts_stored(model: Any) -> PartsOf:
     """Of a model read from a store."""
 
     def parts_of(collection: Any) -> Iterable[Any]:
-        found = model.find_object(ids.uid_of("collection", collection))
+        found = model.find_object(datablock_ids.uid_of("collection", collection))
         return () if found is None else (found,)
 
     return parts_of

@@ -14,10 +14,10 @@ from ..core.picture.picture_maker import Settings
 from ..core.preview import preview_tree
 from ..core.problems import Problems
 from ..core.store import store_levels, store_path
-from . import lenses, preview_scene, quality, viewport_view
+from . import lenses, preview_scene, quality_settings, viewport_view
 from . import camera as cameras
 from .scene_check import rendered_objects
-from .settings import SceneSettings
+from .scene_settings import SceneSettings
 
 _chooser = view_statistics.Chooser()
 
@@ -99,16 +99,16 @@ def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None
     detail = lenses.detail(rendered_lenses(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark
     return Settings(
-        pixel_error=quality.pixel_error(own),
-        overrides=quality.overrides(own),
-        budget=quality.budget(own),
+        pixel_error=quality_settings.pixel_error(own),
+        overrides=quality_settings.overrides(own),
+        budget=quality_settings.budget(own),
         modifiers=lenses.modifiers(
             detail,
             scene.camera,
             coarser,
             closing if coarser else None,
             off_screen=own.off_screen,
-            ray_classes=quality.ray_classes(own),
+            ray_classes=quality_settings.ray_classes(own),
         ),
     )
 

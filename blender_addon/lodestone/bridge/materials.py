@@ -12,9 +12,9 @@ from ..core.expression import color_expression as e
 from ..core.expression.color_expression import Expression, Op
 from ..core.native import lodestone_native as native
 from ..core.problems import WARNING, Problems
-from . import graph, ids, looks
+from . import datablock_ids, graph, looks
 from .coordinates import Coordinates
-from .ids import name_of
+from .datablock_ids import name_of
 from .looks import DEFAULT, Look, Value, VertexColors, gray
 from .node_expressions import NodeExpressions, Setting, mean_of
 from .pictures import NoPictures, Pictures
@@ -118,7 +118,9 @@ class _Translator:
     def note(self, severity: str, code: str, text: str) -> None:
         name = name_of(self.material)
         text = f'Material "{name}": {text}'
-        self.problems.add(name, severity, code, text, library=ids.library_of(self.material))
+        self.problems.add(
+            name, severity, code, text, library=datablock_ids.library_of(self.material)
+        )
 
     def look(self) -> Look:
         mixed = surfaces(self._shader())

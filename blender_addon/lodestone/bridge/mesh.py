@@ -7,8 +7,8 @@ from typing import Any
 
 import bmesh
 
-from . import compat, mesh_colors, mesh_uvs
 from ..core.native import lodestone_native as native
+from . import blender_versions, mesh_colors, mesh_uvs
 from .materials import Wanted
 
 
@@ -40,7 +40,7 @@ def _holds_its_faces(shown: Any) -> bool:
         shown.type == "MESH"
         and not shown.modifiers
         and not data.is_editmode
-        and not compat.splits_normals(data)
+        and not blender_versions.splits_normals(data)
     )
 
 
@@ -49,7 +49,7 @@ def _face_starts(mesh: Any) -> array | None:
     faces = len(mesh.polygons)
     if len(mesh.loops) == 3 * faces:
         return None
-    starts = compat.buffer("I", faces)
+    starts = blender_versions.buffer("I", faces)
     mesh.polygons.foreach_get("loop_start", starts)
     return starts
 
@@ -67,20 +67,20 @@ def _buffers(mesh: Any, starts: array | None, shown: Any, wanted: Sequence[Wante
     if faces == 0 or corners < 3:
         return None
     buffers = native.FaceBuffers(
-        compat.buffer("f", 3 * len(mesh.vertices)), compat.buffer("I", corners)
+        blender_versions.buffer("f", 3 * len(mesh.vertices)), blender_versions.buffer("I", corners)
     )
     mesh.vertices.foreach_get("co", buffers.positions)
     mesh.loops.foreach_get("vertex_index", buffers.corner_vertices)
     buffers.face_starts = starts
     if _has_large_faces(mesh, starts):
         buffers.triangles = _triangles(mesh)
-    buffers.face_smooth = compat.smooth_faces(mesh)
-    if compat.splits_normals(mesh) and (buffers.face_smooth or mesh.has_custom_normals):
-        buffers.corner_normals = compat.buffer("f", 3 * corners)
-        compat.corner_normals(mesh, buffers.corner_normals)
+    buffers.face_smooth = blender_versions.smooth_faces(mesh)
+    if blender_versions.splits_normals(mesh) and (buffers.face_smooth or mesh.has_custom_normals):
+        buffers.corner_normals = blender_versions.buffer("f", 3 * corners)
+        blender_versions.corner_normals(mesh, buffers.corner_normals)
     if len(wanted) > 1:
-        slots = compat.buffer("i", faces)
-        if compat.face_slots(mesh, slots):
+        slots = blender_versions.buffer("i", faces)
+        if blender_versions.face_slots(mesh, slots):
             buffers.face_slots = slots
     if any(item.coordinates is not None for item in wanted):
         buffers.corner_uvs = mesh_uvs.corner_uvs(
@@ -97,7 +97,7 @@ def _buffers(mesh: Any, starts: array | None, shown: Any, wanted: Sequence[Wante
 def _triangles(mesh: Any) -> array:
     """The corners of Blender's triangles."""
     mesh.calc_loop_triangles()
-    triangles = compat.buffer("I", 3 * len(mesh.loop_triangles))
+    triangles = blender_versions.buffer("I", 3 * len(mesh.loop_triangles))
     mesh.loop_triangles.foreach_get("loops", triangles)
     return triangles
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import Any
 
-from . import compat
+from . import blender_versions
 from .looks import VertexColors
 from .mesh_uvs import corners_of_slots
 
@@ -15,7 +15,7 @@ def vertex_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array | N
     """[vertex][4], linear, where one attribute of the vertices is all that is wanted, as it is most
     often; None: ask for corner_colors()."""
     kinds = _kinds(wanted)
-    attribute = compat.color_attribute(mesh, kinds[0].name)
+    attribute = blender_versions.color_attribute(mesh, kinds[0].name)
     if len(kinds) > 1 or attribute is None or attribute.domain != "POINT":
         return None
     return _masked(_read(attribute), kinds[0])
@@ -41,9 +41,9 @@ def _kinds(wanted: Sequence[VertexColors | None]) -> list[VertexColors]:
 
 def _colors(mesh: Any, wanted: VertexColors) -> array:
     """Of the corners."""
-    attribute = compat.color_attribute(mesh, wanted.name)
+    attribute = blender_versions.color_attribute(mesh, wanted.name)
     if attribute is None:
-        colors = compat.buffer("f", 4 * len(mesh.loops))
+        colors = blender_versions.buffer("f", 4 * len(mesh.loops))
         colors[3::4] = array("f", [1.0]) * len(mesh.loops)
     else:
         colors = _read(attribute)
@@ -53,7 +53,7 @@ def _colors(mesh: Any, wanted: VertexColors) -> array:
 
 
 def _read(attribute: Any) -> array:
-    colors = compat.buffer("f", 4 * len(attribute.data))
+    colors = blender_versions.buffer("f", 4 * len(attribute.data))
     attribute.data.foreach_get("color", colors)
     return colors
 
@@ -70,7 +70,7 @@ def _masked(colors: array, wanted: VertexColors) -> array:
 
 
 def _to_corners(mesh: Any, colors: array) -> array:
-    vertices = compat.buffer("I", len(mesh.loops))
+    vertices = blender_versions.buffer("I", len(mesh.loops))
     mesh.loops.foreach_get("vertex_index", vertices)
     values = iter(colors)
     points = list(zip(values, values, values, values))

@@ -8,21 +8,21 @@ from typing import Any
 
 from mathutils import Matrix
 
-from . import compat
 from ..core.native import lodestone_native as native
+from . import blender_versions
 from .coordinates import Coordinates
-from .ids import called
+from .datablock_ids import called
 
 
 def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates | None]) -> array:
     """[corner][2]; `wanted` by slot. A uv layer the mesh lacks is 0 everywhere, as in Blender."""
     kinds = list(dict.fromkeys(item for item in wanted if item is not None))
-    uvs = compat.buffer("f", 2 * len(mesh.loops))
+    uvs = blender_versions.buffer("f", 2 * len(mesh.loops))
     for number, item in enumerate(item for item in kinds if item.kind == "UV"):
         layer = _layer(mesh, item.name)
-        found = compat.buffer("f", len(uvs)) if number else uvs
+        found = blender_versions.buffer("f", len(uvs)) if number else uvs
         if layer is not None:
-            compat.corner_uvs(layer, found)
+            blender_versions.corner_uvs(layer, found)
         if number:
             for start, end in corners_of_slots(mesh, wanted, item):
                 uvs[2 * start : 2 * end] = found[2 * start : 2 * end]
@@ -49,8 +49,8 @@ def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates
 def corners_of_slots(mesh: Any, wanted: Sequence[Any], kind: Any) -> Iterator[tuple[int, int]]:
     """Runs of the corners of all faces whose slot wants this kind."""
     count = len(mesh.polygons)
-    slots, starts, totals = (compat.buffer(code, count) for code in "iII")
-    compat.face_slots(mesh, slots)
+    slots, starts, totals = (blender_versions.buffer(code, count) for code in "iII")
+    blender_versions.face_slots(mesh, slots)
     mesh.polygons.foreach_get("loop_start", starts)
     mesh.polygons.foreach_get("loop_total", totals)
     last = len(wanted) - 1
@@ -67,7 +67,7 @@ def _layer(mesh: Any, name: str) -> Any | None:
 
 def _undeformed(mesh: Any) -> array:
     """Where Blender takes generated coordinates from: positions before deforming modifiers."""
-    points = compat.buffer("f", 3 * len(mesh.vertices))
+    points = blender_versions.buffer("f", 3 * len(mesh.vertices))
     mesh.vertices.foreach_get("undeformed_co", points)
     return points
 

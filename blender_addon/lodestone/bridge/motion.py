@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from . import ids
+from . import datablock_ids
 
 # Modifiers that make another mesh of the same inputs as time goes by
 _IN_TIME = {
@@ -66,7 +66,7 @@ class Motion:
         return any(self._modifier(item, m) for m in item.modifiers if m.show_render)
 
     def _found_still(self, item: Any, kind: str) -> bool:
-        return ids.uid_of("object", item) in self._known.get(f"still_{kind}", ())
+        return datablock_ids.uid_of("object", item) in self._known.get(f"still_{kind}", ())
 
     # ---- Places ----
 
@@ -228,7 +228,7 @@ def sample(
                 if not (shape or place):
                     continue
                 tick()
-                uid = ids.uid_of("object", item)
+                uid = datablock_ids.uid_of("object", item)
                 evaluated = item.evaluated_get(depsgraph)
                 if place:
                     places.setdefault(uid, set()).add(_place(evaluated))

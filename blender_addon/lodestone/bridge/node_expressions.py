@@ -16,7 +16,7 @@ from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING
 from . import graph, node_tables
 from .coordinates import Coordinates, Unknown, of_image_node
-from .ids import name_of
+from .datablock_ids import name_of
 from .image_sources import MISSING, Source, missing, source_of
 
 Note = Callable[[str, str, str], None]  # severity, code, words

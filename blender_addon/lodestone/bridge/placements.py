@@ -5,7 +5,7 @@ from array import array
 from typing import Any
 
 from ..core.placement_decision import UNDECIDED, Decision
-from .listed import Rows
+from .listed_instances import Rows
 
 
 class Placements:

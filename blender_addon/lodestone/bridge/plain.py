@@ -15,9 +15,9 @@ from typing import Any
 
 import bpy
 
-from . import ids
+from . import datablock_ids
 from .leaves import MATERIAL
-from .listed import Listed, Rows, gathered
+from .listed_instances import Listed, Rows, gathered
 from .motion import Motion
 
 _BATCH = 4096  # objects between two ticks
@@ -108,7 +108,7 @@ def _plain(
 ) -> list[bool]:
     """What nearly all plain objects have in common is asked in columns, `wanted` of each; the rest
     one by one."""
-    own = ids.have_settings(objects)
+    own = datablock_ids.have_settings(objects)
     free = tuple(wanted.values())
     plain = list(
         map(
@@ -138,7 +138,7 @@ def _names(objects: list[Any]) -> list[str]:
     try:
         return list(map(_NAME, objects))
     except UnicodeDecodeError:
-        return list(map(ids.name_of, objects))
+        return list(map(datablock_ids.name_of, objects))
 
 
 def _made_of(

@@ -10,11 +10,11 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
-from . import frames, ids, scene
-from .ids import name_of
+from . import datablock_ids, frames, scene
+from .datablock_ids import name_of
 from .leaves import DRAWN, Leaf, Leaves, Look, override_of
 from .motion import Motion, frames_to_sample
-from .settings import SceneSettings
+from .scene_settings import SceneSettings
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -80,10 +80,13 @@ def read(
 def _fill(
     model: Any, depsgraph: Any, still: dict[str, list[str]] | None, tick: Callable[[], None]
 ) -> None:
-    problems, uids = Problems(), ids.Uids()  # of the frames that are drawn they are told anyway
+    problems, uids = (
+        Problems(),
+        datablock_ids.Uids(),
+    )  # of the frames that are drawn they are told anyway
     leaves = _DeformingLeaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
     scene.walked(depsgraph, leaves, problems, tick, Motion(still))
-    root = model.add_group(uids.claim(ids.scene_uid(name_of(depsgraph.scene))), "Poses")
+    root = model.add_group(uids.claim(datablock_ids.scene_uid(name_of(depsgraph.scene))), "Poses")
     for leaf in leaves:
         model.add_placement(root, leaf.object, _IDENTITY, leaf.data)
     model.set_root(root)

@@ -11,9 +11,9 @@ from mathutils import Matrix
 from ..core.native import lodestone_native as native
 from ..core.preview.preview_worker import LiveThing
 from ..core.problems import Problems
-from . import ids, mesh
+from . import datablock_ids, mesh
 from .leaves import material_slots
-from .listed import rows
+from .listed_instances import rows
 from .materials import Materials, Wanted
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -68,7 +68,7 @@ class Reader:
     def _read_instances(self, name: str) -> None:
         for instance in self._depsgraph.object_instances:
             by = instance.parent if instance.is_instance else instance.object
-            if by is None or ids.name_of(by) != name:
+            if by is None or datablock_ids.name_of(by) != name:
                 continue
             shown = instance.object
             if shown.hide_render or not shows_itself(shown):

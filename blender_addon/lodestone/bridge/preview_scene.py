@@ -11,9 +11,9 @@ import bpy
 from ..core.placement_decision import UNDECIDED, Decision
 from ..core.preview.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
 from ..core.preview.preview_worker import MOST_TRIANGLES, LiveThing, Things
-from . import ids, preview_live
+from . import datablock_ids, preview_live
+from .datablock_ids import name_of
 from .fingerprints import Fingerprints
-from .ids import name_of
 from .motion import Motion
 
 READ_S = 0.03  # of a redraw, for reading what is drawn as it is
@@ -25,8 +25,8 @@ def names_of(scene: Any) -> Names:
     """Of a scene's things, to find them in the store."""
     return Names(
         frozenset(name_of(item) for item in bpy.data.objects),
-        {ids.uid_of("collection", item): name_of(item) for item in bpy.data.collections},
-        ids.scene_uid(name_of(scene)),
+        {datablock_ids.uid_of("collection", item): name_of(item) for item in bpy.data.collections},
+        datablock_ids.scene_uid(name_of(scene)),
     )
 
 
@@ -34,13 +34,13 @@ def decisions(tree: Tree) -> Changes:
     """What is decided for viewports about what a model places, wherever it stands now."""
     changes: Changes = {}
     for item in bpy.data.objects:
-        if not ids.has_settings(item):
+        if not datablock_ids.has_settings(item):
             continue
-        decision, name = ids.decision_of(item, viewport=True), name_of(item)
+        decision, name = datablock_ids.decision_of(item, viewport=True), name_of(item)
         if decision != UNDECIDED:
             for slot in (*tree.objects.get(name, ()), *tree.inner.get(name, ())):
                 changes[slot.key] = _with(Change(), decision)
-    by_uid = {ids.uid_of("collection", item): item for item in bpy.data.collections}
+    by_uid = {datablock_ids.uid_of("collection", item): item for item in bpy.data.collections}
     for uid, slots in tree.collections.items():
         _decide_collection(changes, slots, by_uid.get(uid))
     return changes
@@ -49,7 +49,7 @@ def decisions(tree: Tree) -> Changes:
 def any_pin() -> bool:
     """Whether viewports and renders may differ by what is decided."""
     return any(
-        ids.has_settings(item)
+        datablock_ids.has_settings(item)
         and (item.lodestone.use_pin_render or item.lodestone.use_pin_viewport)
         for item in itertools.chain(bpy.data.objects, bpy.data.collections)
     )
@@ -121,7 +121,7 @@ class Scene:
             self._change(changes, slots, self._decision(item, name), gone, world)
         for name, slots in tree.inner.items():
             self._change(changes, slots, self._decision(None, name), False, None)
-        by_uid = {ids.uid_of("collection", item): item for item in bpy.data.collections}
+        by_uid = {datablock_ids.uid_of("collection", item): item for item in bpy.data.collections}
         for uid, slots in tree.collections.items():
             _decide_collection(changes, slots, by_uid.get(uid))
         for slot in tree.lost:
@@ -199,7 +199,7 @@ class Scene:
         datablock = item.original if item is not None else self._inner.get(name)
         if datablock is None:
             return UNDECIDED
-        return ids.decision_of(datablock, viewport=True)
+        return datablock_ids.decision_of(datablock, viewport=True)
 
     def _change(
         self,
@@ -264,7 +264,7 @@ def _instances_any(item: Any, names: set[str], known: dict[int, bool]) -> bool:
 
 def _decide_collection(changes: Changes, slots: list[Slot], item: Any | None) -> None:
     """Besides what is decided about what instances it."""
-    decision = UNDECIDED if item is None else ids.decision_of(item, viewport=True)
+    decision = UNDECIDED if item is None else datablock_ids.decision_of(item, viewport=True)
     for slot in slots:
         before = changes.get(slot.key)
         if before is not None:

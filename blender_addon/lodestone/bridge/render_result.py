@@ -5,8 +5,8 @@ import struct
 from array import array
 from typing import Any
 
-from . import compat
 from ..core.native import lodestone_native as native
+from . import blender_versions
 
 _ENDLESS = 1e10  # metres, as Cycles has it for the sky
 
@@ -66,9 +66,9 @@ def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str], depth:
     try:
         if depth:
             passed = result.layers[0].passes.find_by_name("Depth", "")
-            compat.set_pass(passed, image.width, image.height, far)
+            blender_versions.set_pass(passed, image.width, image.height, far)
         combined = result.layers[0].passes.find_by_name("Combined", "")
-        compat.set_pass(combined, image.width, image.height, image.pixels)
+        blender_versions.set_pass(combined, image.width, image.height, image.pixels)
     finally:
         engine.end_result(result)
     whole = engine.get_result()  # merging the part above would have dropped its stamp

@@ -9,7 +9,7 @@ from typing import Any
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from ..core.store import store_path
-from .ids import name_of
+from .datablock_ids import name_of
 from .leaves import DRAWN, GREASE_PENCIL
 
 NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'

@@ -18,12 +18,12 @@ import bpy
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
-from . import camera, groups, ids, lights, world
-from .ids import name_of
+from . import camera, datablock_ids, groups, lights, world
+from .datablock_ids import name_of
 from .image_means import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
-from .listed import Listed
+from .listed_instances import Listed
 from .motion import Motion, Still
 from .parts import Parts
 from .shutter import Moving
@@ -51,7 +51,7 @@ class Extraction:
         """The objects that show each material."""
         return self.shown_by.found()
 
-    def scope(self, keys: Iterable[ids.Key] | None) -> list[Any]:
+    def scope(self, keys: Iterable[datablock_ids.Key] | None) -> list[Any]:
         """The model's objects that these datablocks became; [] (everything) for None."""
         if keys is None:
             return []
@@ -80,17 +80,21 @@ def _extract(
     structured: bool,
 ) -> Extraction:
     scene = depsgraph.scene_eval
-    settings = ids.settings_of(depsgraph.scene)  # of the original: writing them tags nothing
+    settings = datablock_ids.settings_of(
+        depsgraph.scene
+    )  # of the original: writing them tags nothing
     anew = settings is not None and settings.deforming == "FRAME"
     motion = Still() if anew else Motion(still)
-    model, problems, uids = native.Model(), Problems(), ids.Uids()
+    model, problems, uids = native.Model(), Problems(), datablock_ids.Uids()
     try:
         leaves = Leaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
         walk = walked(depsgraph, leaves, problems, tick, motion)
         tree = groups.Groups(model, uids, walk.roles, motion)
         root = tree.build(walk.found.scene, walk.branch)
         if root is None:
-            root = model.add_group(uids.claim(ids.scene_uid(name_of(scene))), name_of(scene))
+            root = model.add_group(
+                uids.claim(datablock_ids.scene_uid(name_of(scene))), name_of(scene)
+            )
         model.set_root(root)
         if structured:
             automatic = settings is None or settings.structure == "AUTOMATIC"
@@ -121,7 +125,7 @@ def _split_loose_parts(model: Any, leaves: Leaves, automatic: bool) -> None:
     """Meshes of many parts become groups of these, but stay one object each."""
     ways = {"OBJECTS": native.LooseOptions(always=1)}
     if automatic:
-        ways[ids.AUTOMATIC] = native.LooseOptions()
+        ways[datablock_ids.AUTOMATIC] = native.LooseOptions()
     for way, options in ways.items():
         items = [leaf.object for leaf in leaves if leaf.loose == way]
         if items:
@@ -152,7 +156,7 @@ class Walk:
     found: Instances
     branch: groups.Branch
     shown: Shown
-    roles: ids.Roles
+    roles: datablock_ids.Roles
 
 
 def walked(
@@ -165,7 +169,7 @@ def walked(
 ) -> Walk:
     """`leaves` are Leaves, or what takes their place where nothing is to be extracted; `listed` is
     what takes the place of all that the depsgraph lists."""
-    roles = ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
+    roles = datablock_ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
     branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
     visibility = Visibility(depsgraph.view_layer_eval, problems)

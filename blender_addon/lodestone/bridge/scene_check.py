@@ -19,7 +19,7 @@ from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
 from .image_means import ImageHeads
 from .leaves import material_slots, override_of
-from .listed import Listed, Rows, by_itself, rows
+from .listed_instances import Listed, Rows, by_itself, rows
 from .materials import Materials
 
 _ORIGINAL = attrgetter("original")

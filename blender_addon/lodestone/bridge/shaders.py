@@ -7,7 +7,7 @@ from typing import Any
 from ..core.expression import color_expression as e
 from ..core.expression.color_expression import Expression
 from ..core.problems import INFO, WARNING
-from . import compat, graph
+from . import blender_versions, graph
 from .node_expressions import NodeExpressions, Note, mean_of
 from .surfaces import FLAT, NOTHING, Clear, Mixed, Relief, Shader, Surface, mixed
 
@@ -87,11 +87,11 @@ class Shaders:
 
     def _principled(self, node: Any, groups: tuple) -> Surface:
         def number(default: float, *names: str) -> Expression:
-            socket = compat.principled_input(node, *names)
+            socket = blender_versions.principled_input(node, *names)
             return e.number(default) if socket is None else self._values.number(socket, groups)
 
         def color(default: Expression, *names: str) -> Expression:
-            socket = compat.principled_input(node, *names)
+            socket = blender_versions.principled_input(node, *names)
             return default if socket is None else self._values.color(socket, groups)
 
         base = color(e.number(0.8), "Base Color")
@@ -131,13 +131,13 @@ class Shaders:
 
     def _note_ignored(self, node: Any, groups: tuple) -> None:
         for names, severity, code, words in _IGNORED:
-            socket = compat.principled_input(node, *names)
+            socket = blender_versions.principled_input(node, *names)
             if socket is None or not hasattr(socket, "default_value"):
                 continue
             if socket.is_linked or (socket.type == "VALUE" and socket.default_value != 0.0):
                 if not _zero(self._values.number(socket, groups)):
                     self._note(severity, code, f"{words} is left out")
-        coat_normal = compat.principled_input(node, "Clearcoat Normal", "Coat Normal")
+        coat_normal = blender_versions.principled_input(node, "Clearcoat Normal", "Coat Normal")
         if coat_normal is not None and coat_normal.is_linked:
             self._note(INFO, "clearcoat_normal", "the clear coat has the surface's own normals")
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from mathutils import Matrix
 
 from . import frames
-from .listed import rows
+from .listed_instances import rows
 
 
 class Moving(NamedTuple):

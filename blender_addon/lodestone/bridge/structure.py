@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from . import ids
+from . import datablock_ids
 
 
 @dataclass
@@ -27,11 +27,11 @@ def group_of(extraction: Any, collection: Any) -> Any | None:
     """The model's group of a collection; of several the one with most children. None when it shows
     nothing, or a thing that changes in an animation alone."""
     if collection == bpy.context.scene.collection:
-        uid = ids.scene_uid(bpy.context.scene.name)
+        uid = datablock_ids.scene_uid(bpy.context.scene.name)
         return extraction.model.find_object(uid)
     model, best, most = extraction.model, None, -1
-    uid = ids.uid_of("collection", collection)
-    for item in extraction.parts.get(ids.key_of("collection", collection), ()):
+    uid = datablock_ids.uid_of("collection", collection)
+    for item in extraction.parts.get(datablock_ids.key_of("collection", collection), ()):
         summary = model.object_summary(item)
         if summary.group and summary.child_count > most:
             if summary.uid == uid or best is None:
@@ -45,7 +45,7 @@ def found_groups(extraction: Any, group: Any, collection: Any, known: int) -> Fo
     waiting: dict[tuple[str, Any], Any] = {}
     for kind, items in (("object", collection.objects), ("collection", collection.children)):
         for item in items:
-            for part in parts.get(ids.key_of(kind, item), ()):
+            for part in parts.get(datablock_ids.key_of(kind, item), ()):
                 waiting.setdefault((item.name, part.key), item)
     done: set[int] = set()
 

@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Any
 
 from ..core.problems import Problem, Subject
-from . import compat, ids
+from . import blender_versions, datablock_ids
 from .leaves import material_slots
 
 
@@ -27,7 +27,7 @@ class Shown:
 
     def meet(self, leaf: Any, worn: list[Any]) -> dict[Subject, None]:
         """A new leaf wears these materials."""
-        subjects = [ids.key_of("material", material) for material in worn if material]
+        subjects = [datablock_ids.key_of("material", material) for material in worn if material]
         self._materials[leaf] = subjects
         self._seen.update(subjects)
         return self._users.setdefault(leaf, {})
@@ -41,7 +41,7 @@ class Shown:
         found: defaultdict[Subject, list[tuple[Subject, ...]]] = defaultdict(list)
         for leaf, users in self._users.items():
             names = chain.from_iterable(self._more.pop(leaf, ()))
-            users |= dict.fromkeys(map(ids.key_of_local, names))
+            users |= dict.fromkeys(map(datablock_ids.key_of_local, names))
             own = tuple(users)
             for material in self._materials[leaf]:
                 found[material].append(own)
@@ -106,6 +106,6 @@ def _used_slots(mesh: Any) -> set[int] | None:
     count = len(mesh.polygons)
     if count == 0:
         return None
-    values = compat.buffer("i", count)
-    compat.face_slots(mesh, values)
+    values = blender_versions.buffer("i", count)
+    blender_versions.face_slots(mesh, values)
     return set(values)

@@ -14,7 +14,7 @@ from mathutils import Vector
 from ..core import exr_bytes, srgb
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
-from .ids import name_of
+from .datablock_ids import name_of
 from .image_means import ImageHeads, ImageMeans
 from .node_values import NodeValues
 from .pixels import read_pixels

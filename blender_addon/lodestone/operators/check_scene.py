@@ -4,7 +4,7 @@
 import bpy
 
 from .. import handlers, preferences
-from ..bridge import ids, ignored, requirements, scene_check
+from ..bridge import datablock_ids, ignored_problems, requirements, scene_check
 from ..core import problem_causes
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
@@ -23,7 +23,7 @@ def check_scene(context):
     requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
     depsgraph = context.evaluated_depsgraph_get()
     found = scene_check.check(scene, context.view_layer, depsgraph, problems)
-    last_check.put(ids.name_of(scene), found)
+    last_check.put(datablock_ids.name_of(scene), found)
     return found
 
 
@@ -50,7 +50,9 @@ class LODESTONE_OT_check_scene(Polled, bpy.types.Operator):
         except UnicodeDecodeError as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
-        self.report({"INFO"}, problem_causes.headline(found.split(ignored.keys(context.scene))))
+        self.report(
+            {"INFO"}, problem_causes.headline(found.split(ignored_problems.keys(context.scene)))
+        )
         for area in context.screen.areas if context.screen else ():
             if area.type == "PROPERTIES":
                 area.tag_redraw()

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty
 
-from ..bridge import decisions
+from ..bridge import object_decisions
 from ..core.session import last_render
 from ..core.store import store_levels, store_path
 from .polled import Polled
@@ -15,12 +15,12 @@ def clear_levels(with_decisions):
     datablocks were cleared and whether there was a store. Raises OSError."""
     removed = store_levels.remove(store_path.store_folder(bpy.data.filepath))
     local = [item for item in (*bpy.data.collections, *bpy.data.objects) if not item.library]
-    cleared = sum(decisions.forget(item, with_decisions) for item in local)
+    cleared = sum(object_decisions.forget(item, with_decisions) for item in local)
     for scene in bpy.data.scenes:
         if not scene.library:
             if with_decisions:
-                cleared += decisions.forget_linked(scene)
-            decisions.drop_empty(scene)
+                cleared += object_decisions.forget_linked(scene)
+            object_decisions.drop_empty(scene)
     last_render.clear()
     return cleared, removed
 

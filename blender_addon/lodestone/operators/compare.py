@@ -13,8 +13,8 @@ from pathlib import Path
 import bpy
 
 from .. import handlers
-from ..bridge import quality
-from ..bridge.settings import SceneSettings
+from ..bridge import quality_settings
+from ..bridge.scene_settings import SceneSettings
 from ..core import progress_text
 from ..core.picture import compare_plan
 from ..panels import ENGINE
@@ -35,7 +35,9 @@ class Comparing:
     def __init__(self, scene):
         self.scene = scene.name
         self._folder = Path(tempfile.mkdtemp(prefix="lodestone-compare-"))
-        self.plan = compare_plan.Plan(self._folder, quality.pixel_error(SceneSettings(scene)))
+        self.plan = compare_plan.Plan(
+            self._folder, quality_settings.pixel_error(SceneSettings(scene))
+        )
         self._step = contextlib.ExitStack()
         slots = _slots()
         self._slot = slots.active_index if slots is not None else 0
@@ -114,7 +116,7 @@ def refusal(context):
     settings = SceneSettings(scene)
     if not settings.use_levels:
         return "Levels of Detail are off: there is nothing to compare"
-    if quality.is_exact(settings):
+    if quality_settings.is_exact(settings):
         return "Pixel Error 0 renders the originals: there is nothing to compare"
     if scene.render.use_sequencer and scene.sequence_editor and scene.sequence_editor.sequences:
         return "The sequencer makes this scene's picture: turn it off in Output > Post Processing"

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bridge import decisions
+from ..bridge import object_decisions
 from .polled import Polled
 
 
@@ -25,7 +25,7 @@ class LODESTONE_OT_copy_decisions(Polled, bpy.types.Operator):
             if item.library is not None:
                 linked += 1
             elif item != context.object:
-                decisions.copy(context.object, item)
+                object_decisions.copy(context.object, item)
         if linked:
             self.report({"WARNING"}, f"{linked} linked objects keep what their library decides")
         return {"FINISHED"}

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import StringProperty
 
-from ..bridge import quality
+from ..bridge import quality_settings
 from ..core.picture import quality_tree
 from .polled import Polled
 
@@ -19,7 +19,7 @@ class LODESTONE_OT_inherit_control(Polled, bpy.types.Operator):
 
     @classmethod
     def refused(cls, context):
-        if not quality.overrides(context.scene.lodestone):
+        if not quality_settings.overrides(context.scene.lodestone):
             return "Everything inherits already"
         return ""
 
@@ -29,7 +29,7 @@ class LODESTONE_OT_inherit_control(Polled, bpy.types.Operator):
             self.report({"ERROR"}, f'There is no control called "{self.key}"')
             return {"CANCELLED"}
         for key in keys:
-            quality.inherit(context.scene.lodestone, key)
+            quality_settings.inherit(context.scene.lodestone, key)
         return {"FINISHED"}
 
 

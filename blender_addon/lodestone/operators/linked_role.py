@@ -5,7 +5,7 @@ name."""
 import bpy
 from bpy.props import EnumProperty
 
-from ..bridge import decisions
+from ..bridge import object_decisions
 from ..properties import ROLES
 
 
@@ -32,7 +32,7 @@ class LODESTONE_OT_linked_role(bpy.types.Operator):
     def execute(self, context):
         kind, item = _linked(context)
         role = None if self.role == "LIBRARY" else self.role
-        decisions.decide_linked(context.scene, kind, item, role)
+        object_decisions.decide_linked(context.scene, kind, item, role)
         return {"FINISHED"}
 
 

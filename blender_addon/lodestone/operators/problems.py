@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import StringProperty
 
-from ..bridge import ids, ignored
+from ..bridge import datablock_ids, ignored_problems
 from ..core import problem_causes
 from ..core.session import last_check
 from .polled import InObjectMode, Polled
@@ -13,7 +13,7 @@ from .polled import InObjectMode, Polled
 def split(context):
     """The last check of the scene by cause; None before the first."""
     check = last_check.get(context.scene.name)
-    return check.split(ignored.keys(context.scene)) if check else None
+    return check.split(ignored_problems.keys(context.scene)) if check else None
 
 
 def find(context, key):
@@ -146,7 +146,7 @@ def text_of(context, key=""):
 class _Ignoring(Polled):
     @classmethod
     def refused(cls, context):
-        if ids.library_of(context.scene):
+        if datablock_ids.library_of(context.scene):
             return "The scene is linked: its decisions are made in its own file"
         return ""
 
@@ -164,7 +164,7 @@ class LODESTONE_OT_ignore_problem(_OfCause, _Ignoring, bpy.types.Operator):
         if cause is None or cause.about_setup:
             self.report({"WARNING"}, "This problem is gone: check the scene again")
             return {"CANCELLED"}
-        ignored.add(context.scene, cause.problems)
+        ignored_problems.add(context.scene, cause.problems)
         return {"FINISHED"}
 
 
@@ -176,11 +176,11 @@ class LODESTONE_OT_restore_problems(_Ignoring, bpy.types.Operator):
 
     @classmethod
     def refused(cls, context):
-        none = "" if ignored.keys(context.scene) else "No problem is ignored"
+        none = "" if ignored_problems.keys(context.scene) else "No problem is ignored"
         return super().refused(context) or none
 
     def execute(self, context):
-        ignored.clear(context.scene)
+        ignored_problems.clear(context.scene)
         return {"FINISHED"}
 
 

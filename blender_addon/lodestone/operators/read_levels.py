@@ -7,8 +7,8 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 import bpy
 
 from .. import extract_engine, handlers
-from ..bridge import lenses, quality
-from ..bridge.settings import SceneSettings
+from ..bridge import lenses, quality_settings
+from ..bridge.scene_settings import SceneSettings
 from ..core.native import lodestone_native as native
 from ..core.picture.picture_maker import Settings
 from ..core.printable_text import sentence
@@ -45,7 +45,7 @@ def read_levels(scene):
     try:
         extraction = extract_engine.extract_now(scene, asked)
         try:
-            pixel_error = quality.pixel_error(SceneSettings(scene))
+            pixel_error = quality_settings.pixel_error(SceneSettings(scene))
             kept = make_kept(extraction, asked, store, pixel_error, scene.frame_current)
         except BaseException:
             extraction.model.close()
@@ -63,7 +63,7 @@ class Reading(sessions.Session):
         self._store = store_path.store_folder(bpy.data.filepath)
         self._scene = scene.name
         self._frame = scene.frame_current
-        self._pixel_error = quality.pixel_error(SceneSettings(scene))
+        self._pixel_error = quality_settings.pixel_error(SceneSettings(scene))
         super().__init__(request(self._store))
 
     def was_read(self):

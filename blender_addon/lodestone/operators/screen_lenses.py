@@ -7,7 +7,7 @@ from bpy.types import Operator
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
-from ..bridge import ids
+from ..bridge import datablock_ids
 from .polled import Polled
 
 MOST = 64  # a list that nobody reads; each is looked at for everything that is drawn
@@ -23,7 +23,7 @@ def camera_of(context):
 
 
 def active_lens(camera):
-    settings = None if camera is None else ids.settings_of(camera)
+    settings = None if camera is None else datablock_ids.settings_of(camera)
     if settings is None:  # looking must store nothing
         return None
     number, lenses = settings.active_screen_lens, settings.screen_lenses
@@ -31,7 +31,7 @@ def active_lens(camera):
 
 
 def lens_count(camera):
-    settings = ids.settings_of(camera)
+    settings = datablock_ids.settings_of(camera)
     return 0 if settings is None else len(settings.screen_lenses)
 
 

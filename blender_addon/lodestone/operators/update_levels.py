@@ -8,7 +8,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from .. import extract_engine
-from ..bridge import decisions
+from ..bridge import object_decisions
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
@@ -42,8 +42,8 @@ def update_levels(context, scope):
     or SELECTED. Returns the build report; raises what failed, then nothing in the file has
     changed."""
     store = store_path.store_folder(bpy.data.filepath)
-    keys = decisions.scope_keys(context, scope)
-    changed = decisions.issue_uids(decisions.in_scope(context, scope))
+    keys = object_decisions.scope_keys(context, scope)
+    changed = object_decisions.issue_uids(object_decisions.in_scope(context, scope))
     request = extract_engine.Request(still=motion_file.read(store), with_poses=True)
     try:
         extraction = extract_engine.extract_now(context.scene, request)
@@ -54,7 +54,7 @@ def update_levels(context, scope):
             changed_shapes.settle()
             return report
     except BaseException:
-        decisions.take_back(changed)
+        object_decisions.take_back(changed)
         raise
     finally:
         request.poses.close()
@@ -70,8 +70,8 @@ class _Session(sessions.Session):
         self.estimate = None
         self.options = None
         self.building = False
-        self._keys = decisions.scope_keys(context, scope)
-        self._changed = decisions.issue_uids(decisions.in_scope(context, scope))
+        self._keys = object_decisions.scope_keys(context, scope)
+        self._changed = object_decisions.issue_uids(object_decisions.in_scope(context, scope))
 
     def was_read(self):
         self.options = build_options(self.extraction, self._keys, self.request.poses)
@@ -88,7 +88,7 @@ class _Session(sessions.Session):
         """The uids stay when `keep`."""
         super().close(keep)
         if not keep:
-            decisions.take_back(self._changed)
+            object_decisions.take_back(self._changed)
 
 
 class _InWindow(sessions.InWindow):

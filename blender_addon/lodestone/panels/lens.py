@@ -5,7 +5,7 @@ camera."""
 import bpy
 from bpy.types import Panel, UIList
 
-from ..bridge import ids, lenses
+from ..bridge import datablock_ids, lenses
 from ..operators import screen_lenses
 
 
@@ -107,7 +107,7 @@ class LODESTONE_CAMERA_PT_levels(CameraButtonsPanel, Panel):
 
     def draw(self, context):
         layout = self.layout
-        settings, dof = ids.settings_of(context.camera), context.camera.dof
+        settings, dof = datablock_ids.settings_of(context.camera), context.camera.dof
         if settings is None:  # looking must store nothing
             layout.operator("lodestone.depth_exaggerate", icon="FULLSCREEN_ENTER")
             return

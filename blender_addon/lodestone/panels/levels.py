@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..bridge import decisions, ids
+from ..bridge import datablock_ids, object_decisions
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.session import last_render
@@ -49,7 +49,7 @@ def draw_levels(layout, context, item):
     if item.library is not None:
         layout.label(text=f"Linked from {item.library.name}", icon="LINKED")
         kind = "collection" if isinstance(item, bpy.types.Collection) else "object"
-        decided = decisions.linked_role(context.scene, kind, item)
+        decided = object_decisions.linked_role(context.scene, kind, item)
         text = f"Role Here: {decided.title() if decided else 'As in Library'}"
         layout.operator_menu_enum("lodestone.linked_role", "role", text=text)
     else:
@@ -58,7 +58,7 @@ def draw_levels(layout, context, item):
     if store.problem:
         layout.label(text=f"Levels cannot be read: {store.problem}", icon="ERROR")
         return
-    uids = decisions.levels_uids(item, ids.Roles(context.scene))
+    uids = object_decisions.levels_uids(item, datablock_ids.Roles(context.scene))
     uid = next((uid for uid in uids if store.levels(uid)), None)
     if uid is None:
         layout.label(text="No levels yet: Update Levels builds them")

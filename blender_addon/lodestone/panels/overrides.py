@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..bridge import quality
+from ..bridge import quality_settings
 from ..core.picture import quality_tree
 from . import EnginePanel
 
@@ -16,7 +16,7 @@ class LODESTONE_RENDER_PT_overrides(EnginePanel, Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header_preset(self, context):
-        if quality.overrides(context.scene.lodestone):
+        if quality_settings.overrides(context.scene.lodestone):
             row = self.layout.row()
             row.operator("lodestone.inherit_control", text="", icon="LOOP_BACK", emboss=False)
 
@@ -25,7 +25,7 @@ class LODESTONE_RENDER_PT_overrides(EnginePanel, Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.lodestone
-        own = quality.overrides(settings)
+        own = quality_settings.overrides(settings)
         column = layout.column(align=True)
         for control in quality_tree.CONTROLS:
             draw_control(column, settings, control, control.key in own)
@@ -55,7 +55,7 @@ def _draw_inherited_word(field, settings, key, label):
     name = split.row()
     name.alignment = "RIGHT"
     name.label(text=label)
-    split.prop_menu_enum(settings, key, text=quality.inherited_word(settings, key))
+    split.prop_menu_enum(settings, key, text=quality_settings.inherited_word(settings, key))
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_overrides,))

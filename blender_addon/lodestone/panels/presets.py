@@ -8,7 +8,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.types import Operator, Panel
 
-from ..bridge import quality
+from ..bridge import quality_settings
 from ..core.picture import quality_tree, unseen_detail
 
 # Name: Pixel Error, from which everything else follows
@@ -35,7 +35,7 @@ _KEPT = (
     "off_screen",
     *(ray_class.key for ray_class in unseen_detail.CLASSES),
     "antialias",
-    *(quality.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
+    *(quality_settings.OWN + c.key for c in quality_tree.CONTROLS if c.least is not None),
 )
 
 
@@ -60,7 +60,7 @@ class LODESTONE_OT_levels_preset(Operator):
         settings.use_levels = True
         _, settings.pixel_error_render = PRESETS[self.preset]
         for control in quality_tree.CONTROLS:
-            quality.inherit(settings, control.key)
+            quality_settings.inherit(settings, control.key)
         return {"FINISHED"}
 
 

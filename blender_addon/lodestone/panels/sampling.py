@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..bridge import quality
+from ..bridge import quality_settings
 from ..core.picture import quality_tree
 from . import EnginePanel
 from .overrides import draw_control
@@ -20,7 +20,7 @@ class LODESTONE_RENDER_PT_sampling(EnginePanel, Panel):
         layout.use_property_decorate = False
         settings = context.scene.lodestone
         control = quality_tree.CONTROL["antialias"]
-        draw_control(layout, settings, control, settings.antialias != quality.AUTOMATIC)
+        draw_control(layout, settings, control, settings.antialias != quality_settings.AUTOMATIC)
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_RENDER_PT_sampling,))

@@ -5,7 +5,7 @@ and what that saves."""
 import bpy
 from bpy.types import Panel
 
-from ..bridge import live_view, quality
+from ..bridge import live_view, quality_settings
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.picture import unseen_detail
@@ -22,7 +22,7 @@ class LODESTONE_RENDER_PT_unseen(EnginePanel, Panel):
         layout = self.layout
         layout.use_property_split = True
         settings = context.scene.lodestone
-        exact = quality.is_exact(settings)
+        exact = quality_settings.is_exact(settings)
         column = layout.column()
         column.active = not exact
         column.prop(settings, "off_screen")
@@ -32,7 +32,7 @@ class LODESTONE_RENDER_PT_unseen(EnginePanel, Panel):
         if exact:
             why = "Pixel Error is 0" if settings.use_levels else "Levels are off"
             layout.label(text=f"{why}: everything is drawn as it is", icon="INFO")
-        elif quality.ray_classes(settings):
+        elif quality_settings.ray_classes(settings):
             _draw_found(layout, context)
 
 

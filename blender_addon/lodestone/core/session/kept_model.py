@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ..native import lodestone_native as native
 
-Key = tuple[str, str, str]  # as bridge.ids.Key
+Key = tuple[str, str, str]  # as bridge.datablock_ids.Key
 
 
 class Asked(NamedTuple):

@@ -8,8 +8,8 @@ import bpy
 
 from ..core import stable_ids
 from ..core.session import changed_shapes
-from . import ids, quality
-from .ids import name_of
+from . import datablock_ids, quality_settings
+from .datablock_ids import name_of
 
 _INHERITED = {"rna_type", "name"}
 _COMPUTED = {"environment"}  # of `role`: such ones always count as set
@@ -35,12 +35,12 @@ def reachable(collections: Iterable[Any], objects: Iterable[Any]) -> list[Thing]
     return sorted(found.values(), key=lambda thing: (thing[0], name_of(thing[1], "name_full")))
 
 
-def scope_keys(context: Any, scope: str) -> list[ids.Key] | None:
+def scope_keys(context: Any, scope: str) -> list[datablock_ids.Key] | None:
     """The datablocks whose levels are to be built with all they hold; None for everything."""
     if scope == "SELECTED":
-        return [ids.key_of("object", item) for item in context.selected_objects]
+        return [datablock_ids.key_of("object", item) for item in context.selected_objects]
     if scope == "COLLECTION" and context.collection != context.scene.collection:
-        return [ids.key_of("collection", context.collection)]
+        return [datablock_ids.key_of("collection", context.collection)]
     return None
 
 
@@ -63,11 +63,11 @@ def issue_uids(things: Iterable[Thing]) -> list[tuple[Any, str]]:
     local = [(kind, item) for kind, item in things if item.library is None]
     pointers = {item.as_pointer() for _, item in local}
     others = [
-        ids.stored_uid(item)
+        datablock_ids.stored_uid(item)
         for item in (*bpy.data.collections, *bpy.data.objects)
         if item.as_pointer() not in pointers
     ]
-    before = [ids.stored_uid(item) for _, item in local]
+    before = [datablock_ids.stored_uid(item) for _, item in local]
     described = [
         (kind, "", name_of(item), stored, decided(item))
         for (kind, item), stored in zip(local, before)
@@ -97,20 +97,20 @@ def _store(item: Any, uid: str) -> None:
 def _set_names(settings: Any) -> list[str]:
     """Which of our properties the file holds a value of."""
     own = {p.identifier for p in settings.bl_rna.properties} - _INHERITED - _COMPUTED
-    computed = {name for name in own if quality.OWN + name in own}  # as well
+    computed = {name for name in own if quality_settings.OWN + name in own}  # as well
     found = [name for name in sorted(own - computed) if settings.is_property_set(name)]
     return [name for name in found if name != "lens" or _set_names(settings.lens)]
 
 
 def decided(item: Any) -> bool:
     """Whether it holds anything that the designer decided."""
-    settings = ids.settings_of(item)
+    settings = datablock_ids.settings_of(item)
     return settings is not None and any(name != "uid" for name in _set_names(settings))
 
 
 def forget(item: Any, decisions: bool) -> bool:
     """Removes the uid, with `decisions` all that was decided. True when something was there."""
-    settings = ids.settings_of(item)
+    settings = datablock_ids.settings_of(item)
     if settings is None:
         return False
     found = [name for name in _set_names(settings) if decisions or name == "uid"]
@@ -137,7 +137,7 @@ def edits_of(item: Any) -> tuple[str, str]:
 
 def copy(source: Any, target: Any) -> None:
     """What is decided about an object or collection; what is not is taken back."""
-    settings, before = ids.settings_of(source), ids.settings_of(target)
+    settings, before = datablock_ids.settings_of(source), datablock_ids.settings_of(target)
     decided_here = _set_names(settings) if settings is not None else []
     for name in _set_names(before) if before is not None else []:
         if name != "uid":
@@ -159,7 +159,7 @@ def _copy_group(source: Any, target: Any) -> None:
 def drop_empty(item: Any) -> None:
     """Leaves a datablock without any decision as if we had never been there: a panel that shows
     `.lodestone` is enough for Blender to store an empty group."""
-    settings = ids.settings_of(item)
+    settings = datablock_ids.settings_of(item)
     if settings is not None and not _set_names(settings):
         try:
             del item["lodestone"]
@@ -169,9 +169,11 @@ def drop_empty(item: Any) -> None:
 
 def linked_role(scene: Any, kind: str, item: Any) -> str | None:
     """The role decided in this file on a linked thing; None: it has the one of its library."""
-    settings = ids.settings_of(scene)
+    settings = datablock_ids.settings_of(scene)
     for one in settings.linked if settings is not None else ():
-        if ids.same_linked((one.kind, one.library, one.name), ids.key_of(kind, item)):
+        if datablock_ids.same_linked(
+            (one.kind, one.library, one.name), datablock_ids.key_of(kind, item)
+        ):
             return one.role
     return None
 
@@ -179,8 +181,8 @@ def linked_role(scene: Any, kind: str, item: Any) -> str | None:
 def decide_linked(scene: Any, kind: str, item: Any, role: str | None) -> None:
     """Decides it, or with None takes the decision back."""
     entries = scene.lodestone.linked
-    key = ids.key_of(kind, item)
-    same = (ids.same_linked((e.kind, e.library, e.name), key) for e in entries)
+    key = datablock_ids.key_of(kind, item)
+    same = (datablock_ids.same_linked((e.kind, e.library, e.name), key) for e in entries)
     found = next((number for number, hit in enumerate(same) if hit), None)
     if role is None:
         if found is not None:
@@ -196,34 +198,34 @@ def decide_linked(scene: Any, kind: str, item: Any, role: str | None) -> None:
 
 def forget_linked(scene: Any) -> bool:
     """Takes back all decisions on linked things. True when there were some."""
-    settings = ids.settings_of(scene)
+    settings = datablock_ids.settings_of(scene)
     if settings is None or not len(settings.linked):
         return False
     settings.property_unset("linked")
     return True
 
 
-def levels_uids(item: Any, roles: ids.Roles | None = None) -> list[str]:
+def levels_uids(item: Any, roles: datablock_ids.Roles | None = None) -> list[str]:
     """The uids under which an object's or collection's levels may be in the store, likeliest
     first: an unmodified mesh is shared and has its own. `roles`: of the scene that shows it."""
     if isinstance(item, bpy.types.Collection):
-        return [ids.uid_of("collection", item)]
-    own = ids.uid_of("object", item)
+        return [datablock_ids.uid_of("collection", item)]
+    own = datablock_ids.uid_of("object", item)
     uids = [own]
     if item.type == "MESH" and item.data is not None:
-        shared = ids.uid_of("mesh", item.data)
+        shared = datablock_ids.uid_of("mesh", item.data)
         slots = [slot.material for slot in item.material_slots]
-        linked = stable_ids.stable_id(shared, *(ids.named_id_of(m) for m in slots))
+        linked = stable_ids.stable_id(shared, *(datablock_ids.named_id_of(m) for m in slots))
         uids = [shared, linked, own]
-    role_of = roles.of if roles else ids.role_of
+    role_of = roles.of if roles else datablock_ids.role_of
     if "ENVIRONMENT" in map(role_of, (item, *item.users_collection)):
         uids = [stable_ids.stable_id(uid, "environment") for uid in uids] + uids
     elif role_of(item) == "ORDINARY":
         uids = [stable_ids.stable_id(uid, "ordinary") for uid in uids] + uids
-    loose = ids.loose_parts(item)
-    if loose != ids.AUTOMATIC:
+    loose = datablock_ids.loose_parts(item)
+    if loose != datablock_ids.AUTOMATIC:
         uids = [stable_ids.stable_id(uid, "loose", loose) for uid in uids] + uids
     if item.instance_collection is not None:
-        uids.append(ids.uid_of("collection", item.instance_collection))
+        uids.append(datablock_ids.uid_of("collection", item.instance_collection))
     uids += [stable_ids.stable_id(own, "instances"), stable_ids.stable_id(own, "hair")]
     return uids

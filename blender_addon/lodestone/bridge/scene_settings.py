@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from . import ids
+from . import datablock_ids
 
 
 class SceneSettings:
@@ -11,7 +11,7 @@ class SceneSettings:
     that this version does not know, from a file of another one, is the default, too."""
 
     def __init__(self, scene: Any) -> None:
-        self._stored = ids.settings_of(scene)
+        self._stored = datablock_ids.settings_of(scene)
         self._known = scene.bl_rna.properties["lodestone"].fixed_type.properties
 
     def __getattr__(self, name: str) -> Any:

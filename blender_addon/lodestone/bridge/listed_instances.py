@@ -9,7 +9,7 @@ from operator import not_
 from types import SimpleNamespace
 from typing import Any
 
-from . import compat
+from . import blender_versions
 
 Rows = array  # "f", 12: row-major 3x4
 
@@ -22,9 +22,9 @@ class Listed:
         self._objects = list(depsgraph.objects)  # until all is iterated
         instances = depsgraph.object_instances
         count = len(instances)
-        columns = compat.buffer("f", 16 * count)
+        columns = blender_versions.buffer("f", 16 * count)
         instances.foreach_get("matrix_world", columns)
-        self.places: Rows = compat.buffer("f", 12 * count)  # of all
+        self.places: Rows = blender_versions.buffer("f", 12 * count)  # of all
         for i in range(12):
             self.places[i::12] = columns[4 * (i % 4) + i // 4 :: 16]
         self._finite = math.isfinite(sum(self.places))

@@ -4,7 +4,7 @@
 from array import array
 from typing import Any
 
-from .ids import called
+from .datablock_ids import called
 
 _ZERO = {code: array(code, [0]) for code in "bfiI"}
 

@@ -5,11 +5,11 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..core.problems import Problem
-from . import decisions, ids
+from . import datablock_ids, object_decisions
 
 
 def keys(scene: Any) -> frozenset[str]:
-    settings = ids.settings_of(scene)
+    settings = datablock_ids.settings_of(scene)
     return frozenset(item.key for item in settings.ignored) if settings is not None else frozenset()
 
 
@@ -22,7 +22,7 @@ def add(scene: Any, problems: Iterable[Problem]) -> None:
 
 
 def clear(scene: Any) -> None:
-    settings = ids.settings_of(scene)
+    settings = datablock_ids.settings_of(scene)
     if settings is not None:
         settings.property_unset("ignored")
-        decisions.drop_empty(scene)
+        object_decisions.drop_empty(scene)
