@@ -20,8 +20,8 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, motion, poses, quality_settings  # noqa: E402
-from lodestone.bridge import requirements  # noqa: E402
+from lodestone.bridge import blend_check, poses, quality_settings, requirements  # noqa: E402
+from lodestone.bridge.motion import motion_sampling  # noqa: E402
 from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
 from lodestone.core import file_names, progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
@@ -149,8 +149,8 @@ class FileRun:
 
     def _sample(self, scene, first: int, last: int) -> None:
         """Finds out which animated objects rest after all."""
-        frames = motion.frames_to_sample(first, last)
-        still = motion.sample(scene, bpy.context.view_layer, frames, self._tick)
+        frames = motion_sampling.frames_to_sample(first, last)
+        still = motion_sampling.sample(scene, bpy.context.view_layer, frames, self._tick)
         try:
             motion_file.write(store_path.store_folder(self.job.file, self.job.store), still)
         except OSError:

@@ -24,9 +24,9 @@ from .bridge import (
     render_result,
     requirements,
     scene,
-    shutter,
 )
 from .bridge.datablock_ids import name_of
+from .bridge.motion import shutter_motion
 from .bridge.scene_settings import SceneSettings
 from .core import progress_text
 from .core.background_calls import Stopped, Work
@@ -190,7 +190,7 @@ class _Run:
             return camera.extract(self._required(), frame, Problems())
 
         set_frame = self.engine.frame_set
-        closing = shutter.read(self.depsgraph, set_frame, extraction.moving, model, seen)
+        closing = shutter_motion.read(self.depsgraph, set_frame, extraction.moving, model, seen)
         self.scene = self.depsgraph.scene_eval
         return closing
 

@@ -8,8 +8,9 @@ import traceback
 
 import bpy
 
-from .bridge import camera, extraction_check, lenses, poses, quality_settings, scene, shutter
+from .bridge import camera, extraction_check, lenses, poses, quality_settings, scene
 from .bridge.datablock_ids import name_of
+from .bridge.motion import shutter_motion
 from .bridge.requirements import NO_CAMERA
 from .bridge.scene_settings import SceneSettings
 from .core.background_calls import Stopped
@@ -132,7 +133,7 @@ def _modifiers(depsgraph, frame_set, request, extraction):
             return [_frame(depsgraph, name, size, Problems())[0] for name, size in asked]
 
         model, moving = extraction.model, extraction.moving
-        closing = shutter.read(depsgraph, frame_set, moving, model, seen)
+        closing = shutter_motion.read(depsgraph, frame_set, moving, model, seen)
     parts_of = lenses.parts_in(extraction)
     detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
     unseen = (settings.off_screen, quality_settings.ray_classes(settings))

@@ -64,7 +64,7 @@ class Found(unittest.TestCase):
         scenes.fresh()
 
     def motion(self):
-        from lodestone.bridge.motion import Motion
+        from lodestone.bridge.motion.motion_sampling import Motion
 
         bpy.context.view_layer.update()
         return Motion()
@@ -116,7 +116,7 @@ class Found(unittest.TestCase):
 
     def test_sampled_frames_tell_what_rests_after_all(self):
         from lodestone.bridge import datablock_ids
-        from lodestone.bridge.motion import Motion, frames_to_sample, sample
+        from lodestone.bridge.motion.motion_sampling import Motion, frames_to_sample, sample
 
         self.assertEqual(frames_to_sample(1, 1), [1])
         self.assertEqual(frames_to_sample(1, 2), [1, 2])

@@ -14,9 +14,10 @@ MANY = 4100  # more than are asked at a stroke
 
 
 def bridge():
-    from lodestone.bridge import instances, listed_instances, motion, plain
+    from lodestone.bridge import instances, listed_instances, plain
+    from lodestone.bridge.motion import motion_sampling
 
-    return instances, listed_instances, motion, plain
+    return instances, listed_instances, motion_sampling, plain
 
 
 def one_by_one():

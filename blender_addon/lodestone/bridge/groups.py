@@ -14,11 +14,11 @@ from .datablock_ids import name_of
 from .instances import Context, Emitted, Entry, offset
 from .leaves import HAIR
 from .listed_instances import Rows, gathered, rows
-from .motion import Motion
+from .motion.motion_sampling import Motion
+from .motion.shutter_motion import Moving
 from .parts import Parts
 from .placements import Placements
 from .plain import Plain
-from .shutter import Moving
 
 IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit

@@ -21,7 +21,7 @@ from .datablock_ids import name_of
 from .glow import Glows
 from .leaves import DRAWN, GREASE_PENCIL, Leaf, Look, undrawn
 from .listed_instances import Listed, Rows, rows
-from .motion import Motion
+from .motion.motion_sampling import Motion
 from .plain import Plain, find
 from .users import Users
 from .visibility import RayClass, Visibility

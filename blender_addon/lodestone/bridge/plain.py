@@ -18,7 +18,7 @@ import bpy
 from . import datablock_ids
 from .leaves import MATERIAL
 from .listed_instances import Listed, Rows, gathered
-from .motion import Motion
+from .motion.motion_sampling import Motion
 
 _BATCH = 4096  # objects between two ticks
 _OWN = {"library": None, "animation_data": None, "is_instancer": False}  # of what is plain

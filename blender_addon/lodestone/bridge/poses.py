@@ -10,10 +10,11 @@ from typing import Any
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems
-from . import datablock_ids, frames, scene
+from . import datablock_ids, scene
 from .datablock_ids import name_of
 from .leaves import DRAWN, Leaf, Leaves, Look, override_of
-from .motion import Motion, frames_to_sample
+from .motion import frame_stepping
+from .motion.motion_sampling import Motion, frames_to_sample
 from .scene_settings import SceneSettings
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -51,7 +52,7 @@ def wanted(depsgraph: Any, still: dict[str, list[str]] | None) -> bool:
 
 def read(
     depsgraph: Any,
-    frame_set: frames.FrameSet,
+    frame_set: frame_stepping.FrameSet,
     still: dict[str, list[str]] | None,
     tick: Callable[[], None],
 ) -> Poses:
@@ -66,14 +67,14 @@ def read(
         return poses
     try:
         for frame in sampled:
-            frames.go(depsgraph, frame_set, frame, 0.0)
+            frame_stepping.go(depsgraph, frame_set, frame, 0.0)
             poses.models.append(native.Model())
             _fill(poses.models[-1], depsgraph, still, tick)
     except BaseException:
         poses.close()
         raise
     finally:
-        frames.go(depsgraph, frame_set, *before)
+        frame_stepping.go(depsgraph, frame_set, *before)
     return poses
 
 

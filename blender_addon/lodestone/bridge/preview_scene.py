@@ -14,7 +14,7 @@ from ..core.preview.preview_worker import MOST_TRIANGLES, LiveThing, Things
 from . import datablock_ids, preview_live
 from .datablock_ids import name_of
 from .fingerprints import Fingerprints
-from .motion import Motion
+from .motion.motion_sampling import Motion
 
 READ_S = 0.03  # of a redraw, for reading what is drawn as it is
 _states = itertools.count(1)

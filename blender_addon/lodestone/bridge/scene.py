@@ -24,9 +24,9 @@ from .image_means import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
 from .listed_instances import Listed
-from .motion import Motion, Still
+from .motion.motion_sampling import Motion, Still
+from .motion.shutter_motion import Moving
 from .parts import Parts
-from .shutter import Moving
 from .users import Shown, Users
 from .visibility import Visibility
 

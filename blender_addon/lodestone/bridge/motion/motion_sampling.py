@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from . import datablock_ids
+from .. import datablock_ids
 
 # Modifiers that make another mesh of the same inputs as time goes by
 _IN_TIME = {

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from mathutils import Matrix
 
-from . import frames
-from .listed_instances import rows
+from ..listed_instances import rows
+from . import frame_stepping
 
 
 class Moving(NamedTuple):
@@ -22,7 +22,7 @@ class Moving(NamedTuple):
 
 def read(
     depsgraph: Any,
-    frame_set: frames.FrameSet,
+    frame_set: frame_stepping.FrameSet,
     moving: Iterable[Moving],
     model: Any,
     camera: Callable[[], Any],
@@ -35,12 +35,12 @@ def read(
     moving = list(moving)
     before = [one.item.evaluated_get(depsgraph).matrix_world.copy() for one in moving]
     end = frame + subframe + shutter
-    frames.go(depsgraph, frame_set, int(end // 1), end % 1.0)
+    frame_stepping.go(depsgraph, frame_set, int(end // 1), end % 1.0)
     try:
         after = [one.item.evaluated_get(depsgraph).matrix_world.copy() for one in moving]
         found = camera()
     finally:
-        frames.go(depsgraph, frame_set, frame, subframe)
+        frame_stepping.go(depsgraph, frame_set, frame, subframe)
     for one, start, stop in zip(moving, before, after):
         if start != stop:
             model.move_placement(one.group, one.position, _moved(one.place, start, stop))
