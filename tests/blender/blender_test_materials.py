@@ -22,7 +22,7 @@ class MaterialCase(unittest.TestCase):
 
     def translate(self, material=None, color=None, severities=("info", "warning", "error")):
         """(look, codes of its problems of these severities); fields go to self.added."""
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.native import lodestone_native as native
         from lodestone.core.problems import Problems
 
@@ -76,7 +76,7 @@ class Materials(MaterialCase):
     # ---- Constants ----
 
     def test_an_empty_slot_is_blenders_default(self):
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.problems import Problems
 
         problems = Problems()
@@ -483,7 +483,7 @@ class Materials(MaterialCase):
     # ---- Many ----
 
     def test_a_thousand_materials_take_less_than_a_second(self):
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.problems import Problems
 
         node = self.picture(self.base)

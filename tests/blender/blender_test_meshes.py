@@ -35,7 +35,7 @@ class Meshes(unittest.TestCase):
 
     def extracted(self, item, in_place=0):
         from lodestone.bridge import mesh
-        from lodestone.bridge.materials import Wanted
+        from lodestone.bridge.nodes.materials import Wanted
 
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
         return mesh.extract(shown, [Wanted()], in_place)

@@ -86,7 +86,7 @@ class NodeValues(unittest.TestCase):
 
     def translated(self):
         """What our material shows, and the materials something was said about."""
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.native import lodestone_native as native
         from lodestone.core.problems import Problems
 

@@ -142,7 +142,7 @@ class Images(TextureCase):
             self.close(self.base_color(), (1.0, 0.0, 1.0))
 
     def test_a_sequence_shows_the_file_of_its_frame(self):
-        from lodestone.bridge.image_sources import source_of
+        from lodestone.bridge.nodes.image_sources import source_of
 
         for number, color in ((1, (255, 0, 0)), (2, (0, 255, 0)), (12, (0, 0, 255))):
             (self.folder / f"clip v2 {number:04d}.png").write_bytes(png(*color))
@@ -191,7 +191,7 @@ class Images(TextureCase):
         self.assertEqual(self.codes, {"udim"})
 
     def test_checking_reads_no_image_and_names_the_missing_ones(self):
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.problems import Problems
 
         node = self.load("red.png", b"no image at all")
@@ -217,7 +217,7 @@ class Coordinates(TextureCase):
         """(x, y, z) to the picture's coordinates of every corner of an object, and codes."""
         look, codes = self.translate()
         from lodestone.bridge import mesh
-        from lodestone.bridge.materials import Wanted
+        from lodestone.bridge.nodes.materials import Wanted
 
         depsgraph = bpy.context.evaluated_depsgraph_get()
         shown = (item or self.plane).evaluated_get(depsgraph)
@@ -334,8 +334,8 @@ class Coordinates(TextureCase):
 
     def test_slots_have_each_their_own_coordinates(self):
         from lodestone.bridge import mesh
-        from lodestone.bridge.coordinates import Coordinates
-        from lodestone.bridge.materials import Wanted
+        from lodestone.bridge.nodes.materials import Wanted
+        from lodestone.bridge.nodes.texture_coordinates import Coordinates
 
         data = scenes.mesh(
             "Two",
@@ -381,7 +381,7 @@ class VertexColors(TextureCase):
 
     def colors(self, item):
         from lodestone.bridge import mesh
-        from lodestone.bridge.materials import Wanted
+        from lodestone.bridge.nodes.materials import Wanted
 
         look, self.codes = self.translate()
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -429,7 +429,7 @@ class VertexColors(TextureCase):
         painted = self.node("ShaderNodeBsdfDiffuse", (0, mix.inputs[2]))
         self.tree.links.new(self.principled.outputs[0], mix.inputs[1])
         self.node("ShaderNodeVertexColor", ("Color", painted.inputs[0])).layer_name = "Paint"
-        from lodestone.bridge.materials import Materials
+        from lodestone.bridge.nodes.materials import Materials
         from lodestone.core.problems import Problems
 
         materials = Materials(None, Problems())

@@ -11,7 +11,7 @@ from ..core.problems import ERROR, Problems
 from . import datablock_ids, mesh, mesh_uvs, strands
 from .datablock_ids import name_of
 from .glow import Glow, glow_of
-from .materials import Materials
+from .nodes.materials import Materials
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
 UNDRAWN = {"VOLUME": "volumes"}

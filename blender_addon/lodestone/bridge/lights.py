@@ -9,9 +9,9 @@ from mathutils import Matrix, Vector
 
 from ..core.native import lodestone_native as native
 from ..core.problems import INFO, WARNING, Problems
-from .graph import feed
-from .image_means import ImageMeans
-from .node_values import NodeValues
+from .nodes.image_means import ImageMeans
+from .nodes.node_graph import feed
+from .nodes.node_values import NodeValues
 
 _KINDS = {
     "SUN": native.LightKind.SUN,

@@ -9,7 +9,7 @@ import bmesh
 
 from ..core.native import lodestone_native as native
 from . import blender_versions, mesh_colors, mesh_uvs
-from .materials import Wanted
+from .nodes.materials import Wanted
 
 
 def extract(instance_object: Any, wanted: Sequence[Wanted], in_place: int = 0) -> Any:

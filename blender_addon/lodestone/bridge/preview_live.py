@@ -14,7 +14,7 @@ from ..core.problems import Problems
 from . import datablock_ids, mesh
 from .leaves import material_slots
 from .listed_instances import rows
-from .materials import Materials, Wanted
+from .nodes.materials import Materials, Wanted
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _PLAIN = Wanted()

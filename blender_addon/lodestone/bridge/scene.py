@@ -20,12 +20,12 @@ from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
 from . import camera, datablock_ids, groups, lights, world
 from .datablock_ids import name_of
-from .image_means import ImageMeans
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
 from .listed_instances import Listed
 from .motion.motion_sampling import Motion, Still
 from .motion.shutter_motion import Moving
+from .nodes.image_means import ImageMeans
 from .parts import Parts
 from .users import Shown, Users
 from .visibility import Visibility

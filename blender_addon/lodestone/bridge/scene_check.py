@@ -17,10 +17,10 @@ from ..core.problems import Problems
 from ..core.session.last_check import Check
 from . import camera, lenses, requirements, scene, strands
 from .glow import Glow, glow_of
-from .image_means import ImageHeads
 from .leaves import material_slots, override_of
 from .listed_instances import Listed, Rows, by_itself, rows
-from .materials import Materials
+from .nodes.image_means import ImageHeads
+from .nodes.materials import Materials
 
 _ORIGINAL = attrgetter("original")
 

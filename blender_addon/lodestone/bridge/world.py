@@ -15,9 +15,9 @@ from ..core import exr_bytes, srgb
 from ..core.native import lodestone_native as native
 from ..core.problems import ERROR, INFO, WARNING, Problems
 from .datablock_ids import name_of
-from .image_means import ImageHeads, ImageMeans
-from .node_values import NodeValues
-from .pixels import read_pixels
+from .nodes.image_means import ImageHeads, ImageMeans
+from .nodes.image_pixels import read_pixels
+from .nodes.node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
 from .sky_texture import mean_of_sky
 

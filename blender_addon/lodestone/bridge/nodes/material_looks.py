@@ -4,11 +4,11 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..core.expression.color_expression import Color
-from ..core.native import lodestone_native as native
-from .coordinates import IDENTITY_2D, Coordinates
+from ...core.expression.color_expression import Color
+from ...core.native import lodestone_native as native
 from .image_sources import Source
 from .node_expressions import Sample
+from .texture_coordinates import IDENTITY_2D, Coordinates
 
 Channel = native.Channel
 

@@ -10,14 +10,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from ..core.expression import color_expression as e
-from ..core.expression.affine_texel import Affine, affine, peeled
-from ..core.expression.color_expression import Color, Expression, Op
-from ..core.native import lodestone_native as native
-from ..core.problems import INFO, WARNING
-from .coordinates import IDENTITY_2D, Coordinates, between
-from .looks import Baked, TextureUse, Value, VertexColors
+from ...core.expression import color_expression as e
+from ...core.expression.affine_texel import Affine, affine, peeled
+from ...core.expression.color_expression import Color, Expression, Op
+from ...core.native import lodestone_native as native
+from ...core.problems import INFO, WARNING
+from .material_looks import Baked, TextureUse, Value, VertexColors
 from .node_expressions import Note, Sample, VertexColor
+from .texture_coordinates import IDENTITY_2D, Coordinates, between
 
 _REPEAT = native.Extension.REPEAT
 _MOST_REPEATS = 4  # of a picture within the baked one: more would lose its detail

@@ -4,12 +4,13 @@
 from dataclasses import replace
 from typing import Any
 
-from ..core.expression import color_expression as e
-from ..core.expression.color_expression import Expression
-from ..core.problems import INFO, WARNING
-from . import blender_versions, graph
+from ...core.expression import color_expression as e
+from ...core.expression.color_expression import Expression
+from ...core.problems import INFO, WARNING
+from .. import blender_versions
+from . import node_graph
 from .node_expressions import NodeExpressions, Note, mean_of
-from .surfaces import FLAT, NOTHING, Clear, Mixed, Relief, Shader, Surface, mixed
+from .shader_surfaces import FLAT, NOTHING, Clear, Mixed, Relief, Shader, Surface, mixed
 
 _MAX_DEPTH = 48
 # The roughness at which the principled diffuse lobe is nearest to Lambert's law: rougher ones send
@@ -31,7 +32,7 @@ class Shaders:
         if depth > _MAX_DEPTH:
             self._note(WARNING, "node_depth", "nests its nodes too deeply; the rest is left out")
             return self._viewport
-        found = graph.feed(socket, groups)
+        found = node_graph.feed(socket, groups)
         if found.node is None:
             return NOTHING
         key = (found.socket.as_pointer(), tuple(group.as_pointer() for group in found.groups))
@@ -39,7 +40,7 @@ class Shaders:
             self._found[key] = self._output(found, depth)
         return self._found[key]
 
-    def _output(self, found: graph.Feed, depth: int) -> Shader:
+    def _output(self, found: node_graph.Feed, depth: int) -> Shader:
         node, kind = found.node, found.node.type
         if kind == "MIX_SHADER":
             return self._mix(node, found.groups, depth + 1)
@@ -192,7 +193,7 @@ class Shaders:
     def _relief(self, socket: Any, groups: tuple, depth: int = 0) -> Relief:
         if socket is None or not socket.is_linked or depth > _MAX_DEPTH:
             return FLAT
-        found = graph.feed(socket, groups)
+        found = node_graph.feed(socket, groups)
         node = found.node
         if node is None or node.type in {"NEW_GEOMETRY", "TEX_COORD"}:
             return FLAT

@@ -4,8 +4,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from ..core.expression import color_expression as e
-from ..core.expression.color_expression import Color
+from ...core.expression import color_expression as e
+from ...core.expression.color_expression import Color
 from .image_means import ImageMeans
 from .image_sources import MISSING, Source
 from .node_expressions import NodeExpressions, mean_of

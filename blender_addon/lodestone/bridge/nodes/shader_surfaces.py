@@ -5,9 +5,9 @@ expressions."""
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..core.expression import color_expression as e
-from ..core.expression.color_expression import Expression
-from ..core.problems import WARNING
+from ...core.expression import color_expression as e
+from ...core.expression.color_expression import Expression
+from ...core.problems import WARNING
 from .node_expressions import Note, mean_of
 
 MOST_MIXED = 4  # surfaces in one material

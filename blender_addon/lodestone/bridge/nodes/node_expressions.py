@@ -9,15 +9,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..core.expression import node_math
-from ..core.expression import color_expression as e
-from ..core.expression.color_expression import Color, Expression, Op
-from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, INFO, WARNING
-from . import graph, node_tables
-from .coordinates import Coordinates, Unknown, of_image_node
-from .datablock_ids import name_of
+from ...core.expression import node_math
+from ...core.expression import color_expression as e
+from ...core.expression.color_expression import Color, Expression, Op
+from ...core.native import lodestone_native as native
+from ...core.problems import ERROR, INFO, WARNING
+from ..datablock_ids import name_of
+from . import node_graph, node_tables
 from .image_sources import MISSING, Source, missing, source_of
+from .texture_coordinates import Coordinates, Unknown, of_image_node
 
 Note = Callable[[str, str, str], None]  # severity, code, words
 _MAX_DEPTH = 48
@@ -83,7 +83,7 @@ class NodeExpressions:
 
     def _fed(self, socket: Any, groups: tuple, depth: int) -> tuple[Expression, str]:
         """What feeds a socket, and the type of what it comes from."""
-        found = graph.feed(socket, groups)
+        found = node_graph.feed(socket, groups)
         if found.node is None:
             return own_value(found.socket), found.socket.type
         key = (found.socket.as_pointer(), tuple(g.as_pointer() for g in found.groups))
@@ -97,7 +97,7 @@ class NodeExpressions:
             return e.constant(own_value(socket).value, False), socket.type
         return value, found.socket.type
 
-    def _output(self, found: graph.Feed, depth: int) -> Expression | None:
+    def _output(self, found: node_graph.Feed, depth: int) -> Expression | None:
         if depth > _MAX_DEPTH:
             self._note(WARNING, "node_depth", "nests its nodes too deeply; the rest is left out")
             return None
@@ -357,7 +357,7 @@ class NodeExpressions:
         color = e.apply(Op.COMBINE, *parts)
         return e.apply(Op.FROM_HSV, color) if mode == "HSV" else color
 
-    def _mean_of_inputs(self, found: graph.Feed, depth: int) -> Expression | None:
+    def _mean_of_inputs(self, found: node_graph.Feed, depth: int) -> Expression | None:
         """A node we do not know: the mean of the colors that go in."""
         node = found.node
         sockets = [s for s in node.inputs if s.type == "RGBA" and s.enabled]

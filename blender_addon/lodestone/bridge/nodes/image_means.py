@@ -7,8 +7,8 @@ from typing import Any
 
 import bpy
 
-from ..core import srgb
-from .pixels import read_pixels, with_four_channels
+from ...core import srgb
+from .image_pixels import read_pixels, with_four_channels
 
 SAMPLES = 1 << 14  # pixels looked at in a large image
 _STRIDE = 7919  # prime: samples do not line up in columns

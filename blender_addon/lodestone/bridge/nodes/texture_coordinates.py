@@ -7,9 +7,9 @@ from typing import Any
 
 from mathutils import Euler, Matrix, Vector
 
-from ..core.native import lodestone_native as native
-from . import graph
-from .datablock_ids import name_of
+from ...core.native import lodestone_native as native
+from ..datablock_ids import name_of
+from . import node_graph
 
 Rows = tuple[float, ...]
 Projection = native.Projection
@@ -77,7 +77,7 @@ def _planar(row: Any) -> Rows:
 def _follow(socket: Any, groups: tuple, matrix: Matrix) -> tuple[Coordinates, Matrix]:
     """The coordinates behind a vector socket, and `matrix` times all mappings between."""
     for _ in range(_MOST_NODES):
-        found = graph.feed(socket, groups)
+        found = node_graph.feed(socket, groups)
         node, groups = found.node, found.groups
         if node is None:
             if found.socket.node.type == "TEX_IMAGE":
@@ -125,7 +125,7 @@ def _not_of_instancer(node: Any) -> None:
 
 def _value(socket: Any, groups: tuple) -> Vector:
     """A vector input that nothing but constants feeds."""
-    found = graph.feed(socket, groups)
+    found = node_graph.feed(socket, groups)
     if found.node is None:
         value = found.socket.default_value
     elif found.node.type in {"VALUE", "RGB"}:
@@ -183,7 +183,7 @@ def _vector_math(node: Any, groups: tuple) -> tuple[Matrix, Any]:
         return Matrix.Diagonal((*scale, 1.0)), first
     if kind not in {"ADD", "SUBTRACT", "MULTIPLY", "DIVIDE"}:
         raise Unknown(f"{node.bl_label} ({kind.lower()})")
-    moving = graph.feed(first, groups).node is not None
+    moving = node_graph.feed(first, groups).node is not None
     if not moving and kind in {"SUBTRACT", "DIVIDE"}:
         raise Unknown(f"{node.bl_label} ({kind.lower()})")
     variable, fixed = (first, second) if moving else (second, first)

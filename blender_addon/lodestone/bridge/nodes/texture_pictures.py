@@ -6,10 +6,10 @@ Files that the backend reads itself never pass through Blender's memory.
 
 from typing import Any
 
-from ..core.expression.color_expression import Color
-from ..core.native import lodestone_native as native
+from ...core.expression.color_expression import Color
+from ...core.native import lodestone_native as native
+from .image_pixels import read_pixels, with_four_channels
 from .image_sources import FILE, MISSING, PACKED, Source
-from .pixels import read_pixels, with_four_channels
 
 Texel = tuple[float, float, float, float]
 

@@ -8,19 +8,20 @@ nothing turns gray silently. What counts is what Cycles draws: EEVEE's blend mod
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..core.expression import color_expression as e
-from ..core.expression.color_expression import Expression, Op
-from ..core.native import lodestone_native as native
-from ..core.problems import WARNING, Problems
-from . import datablock_ids, graph, looks
-from .coordinates import Coordinates
-from .datablock_ids import name_of
-from .looks import DEFAULT, Look, Value, VertexColors, gray
+from ...core.expression import color_expression as e
+from ...core.expression.color_expression import Expression, Op
+from ...core.native import lodestone_native as native
+from ...core.problems import WARNING, Problems
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from . import material_looks, node_graph
+from .expression_textures import Textures, main_coordinates
+from .material_looks import DEFAULT, Look, Value, VertexColors, gray
 from .node_expressions import NodeExpressions, Setting, mean_of
-from .pictures import NoPictures, Pictures
-from .shaders import Shaders
-from .surfaces import Clear, Shader, Surface, each_surface, surfaces
-from .textures import Textures, main_coordinates
+from .shader_nodes import Shaders
+from .shader_surfaces import Clear, Shader, Surface, each_surface, surfaces
+from .texture_coordinates import Coordinates
+from .texture_pictures import NoPictures, Pictures
 
 AlphaMode = native.AlphaMode
 Color = tuple[float, ...]
@@ -61,7 +62,7 @@ class Materials:
             if self._model is None:
                 self._indices[key] = len(self._indices)
             else:
-                self._indices[key] = looks.add(self._model, self._pictures, name, look)
+                self._indices[key] = material_looks.add(self._model, self._pictures, name, look)
         return self._indices[key]
 
     def look(self, material: Any | None, color: Color | None = None) -> Look:
@@ -163,14 +164,14 @@ class _Translator:
         if output is None:
             self.note(WARNING, "no_surface", "has no output node; drawn in its viewport color")
             return viewport
-        if graph.link_to(output.inputs["Surface"]) is None:
-            if graph.link_to(output.inputs["Volume"]) is not None:
+        if node_graph.link_to(output.inputs["Surface"]) is None:
+            if node_graph.link_to(output.inputs["Volume"]) is not None:
                 self.note(WARNING, "volume", "its volume is left out")
                 return Clear()
             text = "has no surface shader; drawn in its viewport color"
             self.note(WARNING, "no_surface", text)
             return viewport
-        if graph.link_to(output.inputs["Volume"]) is not None:
+        if node_graph.link_to(output.inputs["Volume"]) is not None:
             self.note(WARNING, "volume", "its volume is left out")
         shaders = Shaders(self.values, self.note, viewport)
         return self._displaced(shaders, shaders.shader(output.inputs["Surface"]), output)
@@ -186,7 +187,7 @@ class _Translator:
 
     def _displaced(self, shaders: Shaders, shader: Shader, output: Any) -> Shader:
         """Displacement as bumps: Cycles' own default."""
-        found = graph.feed(output.inputs["Displacement"])
+        found = node_graph.feed(output.inputs["Displacement"])
         if found.node is None:
             return shader
         if found.node.type != "DISPLACEMENT":
@@ -266,7 +267,7 @@ def _in_order(surface: Surface) -> list[Expression]:
 
 
 def _has_texture(look: Look) -> bool:
-    if any(getattr(look, key).texture is not None for key in looks.TEXTURED):
+    if any(getattr(look, key).texture is not None for key in material_looks.TEXTURED):
         return True
     if look.normal is not None or look.bump is not None:
         return True

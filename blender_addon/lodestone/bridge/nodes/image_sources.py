@@ -10,8 +10,8 @@ from typing import Any
 
 import bpy
 
-from ..core.problems import ERROR, WARNING
-from .datablock_ids import name_of
+from ...core.problems import ERROR, WARNING
+from ..datablock_ids import name_of
 
 FILE, PACKED, PIXELS, MISSING = "file", "packed", "pixels", "missing"
 Note = Callable[[str, str, str], None]  # severity, code, words
