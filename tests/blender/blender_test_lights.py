@@ -11,7 +11,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 import blender_scenes as scenes
-from lodestone.bridge import lights
+from lodestone.bridge.world import scene_lights
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems
 
@@ -130,7 +130,7 @@ class Lights(unittest.TestCase):
                     given, shone.node_tree.nodes["Emission"].inputs["Strength"]
                 )
             problems = Problems()
-            lights.add(native.Model(), shone, Matrix(), "Lamp", problems)
+            scene_lights.add(native.Model(), shone, Matrix(), "Lamp", problems)
             found[kind] = [problem.code for problem in problems]
         named = ["light_nodes"]
         expected = {"ShaderNodeTexNoise": named, "ShaderNodeLightFalloff": named, None: []}
@@ -189,7 +189,7 @@ class Lights(unittest.TestCase):
         bpy.context.view_layer.update()
         added, problems = [], Problems()
         taker = SimpleNamespace(add_light=added.append)
-        lights.add(taker, area.data, area.matrix_world, "Area", problems)
+        scene_lights.add(taker, area.data, area.matrix_world, "Area", problems)
         self.assertEqual([problem.code for problem in problems], ["light_sheared"])
         direction = Vector(added[0].direction)
         self.assertAlmostEqual(direction.dot(Vector(added[0].edge_u)), 0.0, places=6)

@@ -28,13 +28,13 @@ class World(unittest.TestCase):
 
     def extracted(self):
         """(world, codes of its problems)"""
-        from lodestone.bridge import world
+        from lodestone.bridge.world import world_background
         from lodestone.core.native import lodestone_native as native
         from lodestone.core.problems import Problems
 
         problems = Problems()
         with native.Model() as model:
-            found = world.extract(model, self.scene.world, problems)
+            found = world_background.extract(model, self.scene.world, problems)
             model.set_world(found.color, False, found.environment, found.turn, found.strength)
         return found, [problem.code for problem in problems]
 
@@ -141,7 +141,7 @@ class World(unittest.TestCase):
         self.assertIn("world_camera_rays", self.extracted()[1])
 
     def test_a_sky_has_its_sun_as_a_light(self):
-        from lodestone.bridge import world
+        from lodestone.bridge.world import world_background
         from lodestone.core.problems import Problems
 
         sky = self.tree.nodes.new("ShaderNodeTexSky")
@@ -151,13 +151,13 @@ class World(unittest.TestCase):
         suns = []
         taker = SimpleNamespace(add_light=suns.append, add_picture=lambda *_, **__: 0)
         problems = Problems()
-        world.extract(taker, self.world, problems)
+        world_background.extract(taker, self.world, problems)
         (sun,) = suns
         self.close(sun.color, (13.999, 11.116, 7.899))
         self.close(sun.direction, (-0.41519, -0.76001, -0.5))
         self.assertIn("world_sky", [problem.code for problem in problems])
         sky.sun_disc = False
-        world.extract(taker, self.world, problems)
+        world_background.extract(taker, self.world, problems)
         self.assertEqual(len(suns), 1)
 
     def test_unknown_nodes_are_one_named_color(self):

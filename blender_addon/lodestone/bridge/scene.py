@@ -18,7 +18,7 @@ import bpy
 
 from ..core.native import lodestone_native as native
 from ..core.problems import Problems, Subject
-from . import camera, datablock_ids, groups, lights, world
+from . import camera, datablock_ids, groups
 from .datablock_ids import name_of
 from .instances import Instances, report_outside
 from .leaves import Leaf, Leaves, override_of
@@ -29,6 +29,7 @@ from .nodes.image_means import ImageMeans
 from .parts import Parts
 from .users import Shown, Users
 from .visibility import Visibility
+from .world import scene_lights, world_background
 
 _TYPE = attrgetter("type")
 
@@ -183,11 +184,11 @@ def surroundings(
 ) -> None:
     """Adds the lights that were found, what glows among them, and the world."""
     for light, matrix, name in found.lights:
-        lights.add(model, light, matrix, name, problems)
+        scene_lights.add(model, light, matrix, name, problems)
     eye = None if scene.camera is None else scene.camera.matrix_world.translation
     for light in found.glows.lights(eye, problems):
         model.add_light(light)
-    around = world.extract(model, scene.world, problems, images or ImageMeans())
+    around = world_background.extract(model, scene.world, problems, images or ImageMeans())
     model.set_world(
         around.color,
         scene.render.film_transparent,

@@ -11,13 +11,13 @@ from typing import Any
 import bpy
 from mathutils import Vector
 
-from ..core import exr_bytes, srgb
-from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, INFO, WARNING, Problems
-from .datablock_ids import name_of
-from .nodes.image_means import ImageHeads, ImageMeans
-from .nodes.image_pixels import read_pixels
-from .nodes.node_values import NodeValues
+from ...core import exr_bytes, srgb
+from ...core.native import lodestone_native as native
+from ...core.problems import ERROR, INFO, WARNING, Problems
+from ..datablock_ids import name_of
+from ..nodes.image_means import ImageHeads, ImageMeans
+from ..nodes.image_pixels import read_pixels
+from ..nodes.node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
 from .sky_texture import mean_of_sky
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from mathutils import Matrix, Vector
 
-from ..core.native import lodestone_native as native
-from ..core.problems import INFO, WARNING, Problems
-from .nodes.image_means import ImageMeans
-from .nodes.node_graph import feed
-from .nodes.node_values import NodeValues
+from ...core.native import lodestone_native as native
+from ...core.problems import INFO, WARNING, Problems
+from ..nodes.image_means import ImageMeans
+from ..nodes.node_graph import feed
+from ..nodes.node_values import NodeValues
 
 _KINDS = {
     "SUN": native.LightKind.SUN,

@@ -7,7 +7,7 @@ from typing import Any
 
 from mathutils import Euler, Matrix, Vector
 
-from .datablock_ids import name_of
+from ..datablock_ids import name_of
 from .sky_texture import SkySun, mean_of_sky, sun_of_sky
 
 Value = Any  # a float for numbers, a tuple of three for colors and vectors
