@@ -20,8 +20,9 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, poses, quality_settings, requirements  # noqa: E402
+from lodestone.bridge import blend_check, quality_settings, requirements  # noqa: E402
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
+from lodestone.bridge.scene import deforming_poses  # noqa: E402
 from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
 from lodestone.core import file_names, progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
@@ -54,7 +55,7 @@ class FileRun:
         self.clock = progress_text.StageClock(0)
         self._said = 0.0
         self._still = None
-        self._poses: poses.Poses | None = None
+        self._poses: deforming_poses.Poses | None = None
         self._folders = contextlib.ExitStack()
         self._shared: SceneFolder | None = None
         self._told = 0  # problems

@@ -15,18 +15,10 @@ from dataclasses import replace
 import bpy
 
 from . import handlers, preferences, preview, render_job
-from .bridge import (
-    camera,
-    ignored_problems,
-    lenses,
-    poses,
-    quality_settings,
-    render_result,
-    requirements,
-    scene,
-)
+from .bridge import ignored_problems, quality_settings, render_result, requirements
 from .bridge.datablock_ids import name_of
 from .bridge.motion import shutter_motion
+from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
 from .bridge.scene_settings import SceneSettings
 from .core import progress_text
 from .core.background_calls import Stopped, Work
@@ -124,7 +116,7 @@ class _Run:
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))
         self.ignored = ignored_problems.keys(depsgraph.scene)
         self.users = {}
-        self.poses = poses.Poses()
+        self.poses = deforming_poses.Poses()
         self.plan = compare_plan.current()
         if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
             self.settings = self.settings.of_originals()
@@ -145,10 +137,12 @@ class _Run:
         if levels:
             self._read_poses(still)
         camera_object = self._required()  # as it is in this frame again
-        frame = camera.Frame.of(self.scene.render)
+        frame = scene_camera.Frame.of(self.scene.render)
         # Compare tells things by their paths, which groups are a part of
         structured = levels or self.plan is not None
-        extraction = scene.extract(self.depsgraph, self._tick, still, structured=structured)
+        extraction = scene_extraction.extract(
+            self.depsgraph, self._tick, still, structured=structured
+        )
         self.problems.extend(extraction.problems)
         self.users = extraction.users
         with contextlib.ExitStack() as stack:
@@ -163,8 +157,8 @@ class _Run:
             if levels and self.coarser:
                 closing = self._read_shutter(extraction, model, frame)
                 camera_object = self._required()
-            view = camera.extract(camera_object, frame, self.problems)
-            camera.report_render(self.scene, self.problems)
+            view = scene_camera.extract(camera_object, frame, self.problems)
+            scene_camera.report_render(self.scene, self.problems)
             size = (frame.width, frame.height)
             left, bottom, *part = render_result.border(self.scene.render, *size)
             border = (left, size[1] - bottom - part[1], *part)
@@ -187,7 +181,7 @@ class _Run:
         """The camera as the shutter closes; tells the model where else things are then."""
 
         def seen():
-            return camera.extract(self._required(), frame, Problems())
+            return scene_camera.extract(self._required(), frame, Problems())
 
         set_frame = self.engine.frame_set
         closing = shutter_motion.read(self.depsgraph, set_frame, extraction.moving, model, seen)
@@ -196,8 +190,8 @@ class _Run:
 
     def _modifiers(self, extraction, camera_object, closing):
         objects = self.depsgraph.objects
-        detail = lenses.detail(objects, lenses.parts_in(extraction), self.problems)
-        return lenses.modifiers(
+        detail = quality_lenses.detail(objects, quality_lenses.parts_in(extraction), self.problems)
+        return quality_lenses.modifiers(
             detail, camera_object, self.coarser, closing, self.off_screen, self.ray_classes
         )
 
@@ -205,7 +199,9 @@ class _Run:
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""
         key = (name_of(self.scene), name_of(self.depsgraph.view_layer_eval))
         if key not in _poses:
-            _poses[key] = poses.read(self.depsgraph, self.engine.frame_set, still, self._tick)
+            _poses[key] = deforming_poses.read(
+                self.depsgraph, self.engine.frame_set, still, self._tick
+            )
             self.scene = self.depsgraph.scene_eval
         self.poses = _poses[key]
 

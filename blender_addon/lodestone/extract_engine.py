@@ -8,10 +8,11 @@ import traceback
 
 import bpy
 
-from .bridge import camera, extraction_check, lenses, poses, quality_settings, scene
+from .bridge import extraction_check, quality_settings
 from .bridge.datablock_ids import name_of
 from .bridge.motion import shutter_motion
 from .bridge.requirements import NO_CAMERA
+from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
 from .bridge.scene_settings import SceneSettings
 from .core.background_calls import Stopped
 from .core.native import lodestone_native as native
@@ -40,7 +41,7 @@ class Request:
         self.still = still
         self.with_poses = with_poses
         self.structured = structured
-        self.poses = poses.Poses()
+        self.poses = deforming_poses.Poses()
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
         self.frames = []
@@ -67,8 +68,10 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
         try:
             tick()  # it may have been stopped while Blender made the scene ready
             if request.with_poses:
-                request.poses = poses.read(depsgraph, self.frame_set, request.still, tick)
-            extraction = scene.extract(depsgraph, tick, request.still, request.structured)
+                request.poses = deforming_poses.read(depsgraph, self.frame_set, request.still, tick)
+            extraction = scene_extraction.extract(
+                depsgraph, tick, request.still, request.structured
+            )
             try:
                 for name, size in request.cameras:
                     if not name and request.without_camera:
@@ -100,11 +103,11 @@ def _frame(depsgraph, name, size, problems):
     """(camera, (width, height)) of one picture."""
     evaluated = depsgraph.scene_eval
     found = _camera(depsgraph, name)
-    frame = camera.Frame.of(evaluated.render)
+    frame = scene_camera.Frame.of(evaluated.render)
     if size is not None:
-        frame = camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
-    camera.report_render(evaluated, problems)
-    return camera.extract(found, frame, problems), (frame.width, frame.height)
+        frame = scene_camera.Frame(size[0], size[1], frame.aspect_x, frame.aspect_y)
+    scene_camera.report_render(evaluated, problems)
+    return scene_camera.extract(found, frame, problems), (frame.width, frame.height)
 
 
 def _camera(depsgraph, name):
@@ -134,11 +137,11 @@ def _modifiers(depsgraph, frame_set, request, extraction):
 
         model, moving = extraction.model, extraction.moving
         closing = shutter_motion.read(depsgraph, frame_set, moving, model, seen)
-    parts_of = lenses.parts_in(extraction)
-    detail = lenses.detail(depsgraph.objects, parts_of, extraction.problems)
+    parts_of = quality_lenses.parts_in(extraction)
+    detail = quality_lenses.detail(depsgraph.objects, parts_of, extraction.problems)
     unseen = (settings.off_screen, quality_settings.ray_classes(settings))
     return [
-        lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, *unseen)
+        quality_lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, *unseen)
         for name, end in zip(names, closing)
     ]
 

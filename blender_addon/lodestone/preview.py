@@ -15,9 +15,10 @@ import weakref
 import bpy
 
 from . import forced_lod, handlers, preview_draw
-from .bridge import datablock_ids, lenses, preview_scene, viewport_view
+from .bridge import datablock_ids, preview_scene, viewport_view
 from .bridge.datablock_ids import name_of
 from .bridge.object_decisions import edits_of
+from .bridge.scene import quality_lenses
 from .bridge.scene_settings import SceneSettings
 from .core.preview import preview_worker
 from .core.preview.preview_worker import Failed, Made, Picture, Wanted
@@ -207,10 +208,12 @@ def _ask(source, state, context, depsgraph):
 
 def _lenses(scene):
     """Those of the scene, each with the uid of the collection that it lists."""
-    shown = [item for item in scene.objects if item.type == "EMPTY" and lenses.is_lens(item)]
+    shown = [
+        item for item in scene.objects if item.type == "EMPTY" and quality_lenses.is_lens(item)
+    ]
     found = []
     for item in shown:
-        for lens in lenses.detail([item], lambda collection: (), Problems()):
+        for lens in quality_lenses.detail([item], lambda collection: (), Problems()):
             own = item.lodestone.lens
             listed = own.filter != "ALL" and own.collection is not None
             found.append(

@@ -65,7 +65,7 @@ def lodestone(folder: Path, addons: Path) -> dict:
 
     addon.register()
     from lodestone import extract_engine
-    from lodestone.bridge import scene as extraction
+    from lodestone.bridge.scene import scene_extraction as extraction
     from lodestone.core.native import lodestone_native as native
     from lodestone.core.picture.picture_maker import Settings, cut_and_export
 

@@ -50,7 +50,7 @@ class Camera(unittest.TestCase):
         return request.frames[0]
 
     def test_every_corner_is_where_blender_has_it(self):
-        from lodestone.bridge.camera import Frame, view_plane
+        from lodestone.bridge.scene.scene_camera import Frame, view_plane
 
         for name, changes in CASES.items():
             with self.subTest(name):

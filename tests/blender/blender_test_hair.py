@@ -71,14 +71,16 @@ class Hair(Case):
         self.assertEqual(hair.materials, ("Skin", "Fur"))
 
     def test_hair_of_a_textured_material_has_the_uvs_of_its_roots(self):
-        from lodestone.bridge import strands
+        from lodestone.bridge.scene import hair_strands
 
         item = self.furry(child_type="SIMPLE", rendered_child_count=3, child_nbr=1)
         layer = item.data.uv_layers.new(name="Root")
         for corner in layer.data:
             corner.uv = (0.25, 0.75)
         made = []
-        strands_hair, strands.hair = strands.hair, lambda *a: made.append(strands_hair(*a))
+        strands_hair, hair_strands.hair = hair_strands.hair, lambda *a: made.append(
+            strands_hair(*a)
+        )
         try:
             material = scenes.material("Fur")
             nodes = material.node_tree
@@ -91,7 +93,7 @@ class Hair(Case):
             item.data.materials[0] = scenes.material("Plain")
             scenes.extract(compare=False)[0].model.close()
         finally:
-            strands.hair = strands_hair
+            hair_strands.hair = strands_hair
         self.assertEqual(len(made[0].counts), 60)
         self.assertEqual([round(v, 4) for v in made[0].uvs], [0.25, 0.75] * 60)
         self.assertIsNone(made[1].uvs)

@@ -13,7 +13,8 @@ import bmesh
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import lenses, live_view
+from lodestone.bridge import live_view
+from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems
 from lodestone.operators import screen_lenses
@@ -39,7 +40,7 @@ def add_lens(location=(0, 0, 0), **values):
 
 def read(parts_of=lambda collection: ()):
     problems = Problems()
-    found = lenses.detail(bpy.context.scene.objects, parts_of, problems)
+    found = quality_lenses.detail(bpy.context.scene.objects, parts_of, problems)
     return found, [problem.code for problem in problems]
 
 
@@ -54,7 +55,7 @@ class Adding(unittest.TestCase):
         made = bpy.context.object
         self.assertEqual((made.type, made.empty_display_type), ("EMPTY", "SPHERE"))
         self.assertEqual(tuple(made.location), (1, 2, 3))
-        self.assertTrue(made.select_get() and lenses.is_lens(made))
+        self.assertTrue(made.select_get() and quality_lenses.is_lens(made))
         self.assertEqual([item.name for item in bpy.context.selected_objects], [made.name])
         bpy.ops.ed.undo_push(message="Detail Lens")
         bpy.ops.ed.undo()
@@ -106,7 +107,7 @@ class Adding(unittest.TestCase):
             made.lodestone.lens.enabled = True
             self.scene.collection.objects.link(made)
         found, codes = read()
-        self.assertEqual((len(found), codes), (lenses.MOST, ["lenses_too_many"]))
+        self.assertEqual((len(found), codes), (quality_lenses.MOST, ["lenses_too_many"]))
 
     def test_copied_to_the_selected(self):
         source = add_lens(strength=9.0)
@@ -115,7 +116,7 @@ class Adding(unittest.TestCase):
         bpy.context.view_layer.objects.active = source
         source.select_set(True)
         bpy.ops.lodestone.copy_decisions()
-        self.assertTrue(lenses.is_lens(target))
+        self.assertTrue(quality_lenses.is_lens(target))
         self.assertEqual(target.lodestone.lens.strength, 9.0)
 
 
@@ -138,14 +139,14 @@ class Animations(unittest.TestCase):
             disc.keyframe_insert("x", frame=frame)
         scene.frame_set(1)
         scene.frame_start, scene.frame_end = 1, 2
-        seen, real = [], lenses.modifiers
+        seen, real = [], quality_lenses.modifiers
 
         def modifiers(*arguments):
             made = real(*arguments)
             seen.append((made.lenses[0].strength, made.screen_lenses[0].center[0]))
             return made
 
-        with mock.patch.object(lenses, "modifiers", modifiers):
+        with mock.patch.object(quality_lenses, "modifiers", modifiers):
             bpy.ops.render.render(animation=True)
         self.assertEqual(seen, [(2.0, 0.25), (8.0, 0.75)])
 
@@ -167,14 +168,14 @@ class OnTheScreen(unittest.TestCase):
             bpy.ops.lodestone.screen_lens_remove()
 
     def test_shares_of_the_image_count_from_the_top(self):
-        self.assertEqual(lenses.screen(self.scene.camera), ())
+        self.assertEqual(quality_lenses.screen(self.scene.camera), ())
         bpy.ops.lodestone.screen_lens_add()
         lens = self.scene.camera.data.lodestone.screen_lenses[0]
         lens.x, lens.y, lens.radius = 0.25, 0.75, 0.5
-        (found,) = lenses.screen(self.scene.camera)
+        (found,) = quality_lenses.screen(self.scene.camera)
         self.assertEqual((found.center, found.radius, found.in_pixels), ((0.25, 0.25), 0.5, False))
         lens.enabled = False
-        self.assertEqual(lenses.screen(self.scene.camera), ())
+        self.assertEqual(quality_lenses.screen(self.scene.camera), ())
 
     def test_looking_stores_nothing(self):
         camera = self.scene.camera.data
@@ -234,7 +235,7 @@ class Drawn(unittest.TestCase):
 
         bpy.context.view_layer.update()
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
-        settings = live_view.settings_of(self.scene, lenses.parts_stored(store.model))
+        settings = live_view.settings_of(self.scene, quality_lenses.parts_stored(store.model))
         frame = lenses_frame(self.scene)
         found = {}
         with settings.cut(store.model, frame[0], frame[1]) as cut:
@@ -299,13 +300,13 @@ class Drawn(unittest.TestCase):
     def test_depth_exaggeration_is_coarser_beyond_the_focus_and_finer_before_it(self):
         camera = self.scene.camera
         plain = self.chosen()
-        self.assertIsNone(lenses.modifiers((), camera, False))
+        self.assertIsNone(quality_lenses.modifiers((), camera, False))
         settings, dof = camera.data.lodestone, camera.data.dof
         before = dof.focus_distance
         try:
             settings.depth_exaggeration = 3.0
             dof.focus_distance = 40.0  # the balls are 400 m away: 100 times as coarse, 64 at most
-            made = lenses.modifiers((), camera, False)
+            made = quality_lenses.modifiers((), camera, False)
             self.assertEqual((made.depth, made.depth_focus), (3.0, 40.0))
             far = self.chosen()
             dof.focus_distance = 4000.0
@@ -335,7 +336,7 @@ class Drawn(unittest.TestCase):
         dof.focus_object = target
         bpy.context.view_layer.update()
         try:
-            made = lenses.modifiers((), camera, False)
+            made = quality_lenses.modifiers((), camera, False)
             self.assertAlmostEqual(made.depth_focus, 250.0, 3)
         finally:
             dof.focus_object = None
@@ -434,10 +435,10 @@ class Drawn(unittest.TestCase):
 
 
 def lenses_frame(scene):
-    from lodestone.bridge import camera
+    from lodestone.bridge.scene import scene_camera
 
-    frame = camera.Frame.of(scene.render)
-    return camera.extract(scene.camera, frame, Problems()), (frame.width, frame.height)
+    frame = scene_camera.Frame.of(scene.render)
+    return scene_camera.extract(scene.camera, frame, Problems()), (frame.width, frame.height)
 
 
 if __name__ == "__main__":

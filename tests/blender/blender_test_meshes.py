@@ -34,11 +34,11 @@ class Meshes(unittest.TestCase):
         self.scene = scenes.fresh()
 
     def extracted(self, item, in_place=0):
-        from lodestone.bridge import mesh
         from lodestone.bridge.nodes.materials import Wanted
+        from lodestone.bridge.scene import mesh_buffers
 
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        return mesh.extract(shown, [Wanted()], in_place)
+        return mesh_buffers.extract(shown, [Wanted()], in_place)
 
     def source_hash(self, buffers):
         from lodestone.core.native import lodestone_native as native
@@ -50,11 +50,12 @@ class Meshes(unittest.TestCase):
 
     def blenders(self, item):
         """The same faces with Blender's triangles and normals."""
-        from lodestone.bridge import blender_versions, mesh
+        from lodestone.bridge import blender_versions
+        from lodestone.bridge.scene import mesh_buffers
 
         buffers = self.extracted(item)
         made = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
-        buffers.triangles = mesh._triangles(made)
+        buffers.triangles = mesh_buffers._triangles(made)
         buffers.corner_normals = blender_versions.buffer("f", 3 * len(made.loops))
         blender_versions.corner_normals(made, buffers.corner_normals)
         return buffers
@@ -122,11 +123,11 @@ class Meshes(unittest.TestCase):
             self.assertEqual(len(hashes), 1, f"auto smooth {auto_smooth}")
 
     def test_faces_that_use_what_is_not_there_are_named_and_the_rest_is_drawn(self):
-        from lodestone.bridge import mesh
+        from lodestone.bridge.scene import mesh_buffers
 
         scenes.cube("Good")
         scenes.cube("Broken", (3, 0, 0))
-        extract = mesh.extract
+        extract = mesh_buffers.extract
 
         def broken(shown, *rest):
             buffers = extract(shown, *rest)
@@ -134,7 +135,7 @@ class Meshes(unittest.TestCase):
                 buffers.corner_vertices[5] = 4_000_000_000
             return buffers
 
-        with mock.patch.object(mesh, "extract", broken):
+        with mock.patch.object(mesh_buffers, "extract", broken):
             extraction, _ = scenes.extract(compare=False)
         with extraction.model as model:
             self.assertEqual(model.totals().occurrences, 1)

@@ -14,10 +14,11 @@ MANY = 4100  # more than are asked at a stroke
 
 
 def bridge():
-    from lodestone.bridge import instances, listed_instances, plain
+    from lodestone.bridge import listed_instances
     from lodestone.bridge.motion import motion_sampling
+    from lodestone.bridge.scene import plain_objects, shown_instances
 
-    return instances, listed_instances, motion_sampling, plain
+    return shown_instances, listed_instances, motion_sampling, plain_objects
 
 
 def one_by_one():

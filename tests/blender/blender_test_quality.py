@@ -10,7 +10,8 @@ import bmesh
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import lenses, quality_settings, viewport_view
+from lodestone.bridge import quality_settings, viewport_view
+from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import quality_tree
 
@@ -208,7 +209,7 @@ class Viewports(unittest.TestCase):
         scene = scenes.fresh()
         camera = scene.camera
         camera.location, camera.rotation_euler = (3, 2, 1), (1.0, 0.2, 0.7)
-        from lodestone.bridge import camera as cameras
+        from lodestone.bridge.scene import scene_camera as cameras
         from lodestone.core.problems import Problems
 
         for kind in ("PERSP", "ORTHO"):
@@ -241,7 +242,7 @@ class WithoutAWindow(unittest.TestCase):
         self.assertEqual(lens_overlay._handles, [])
         bpy.ops.lodestone.detail_lens_add(location=(0, 0, 0))
         bpy.context.view_layer.update()
-        self.assertTrue(lenses.is_lens(bpy.context.object))
+        self.assertTrue(quality_lenses.is_lens(bpy.context.object))
         self.assertEqual(native.Lens("x", (1.0,) * 12).falloff, 1.0)
 
 

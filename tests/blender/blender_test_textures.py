@@ -216,12 +216,12 @@ class Coordinates(TextureCase):
     def uvs(self, item=None):
         """(x, y, z) to the picture's coordinates of every corner of an object, and codes."""
         look, codes = self.translate()
-        from lodestone.bridge import mesh
         from lodestone.bridge.nodes.materials import Wanted
+        from lodestone.bridge.scene import mesh_buffers
 
         depsgraph = bpy.context.evaluated_depsgraph_get()
         shown = (item or self.plane).evaluated_get(depsgraph)
-        buffers = mesh.extract(shown, [Wanted(look.coordinates, look.vertex_colors)])
+        buffers = mesh_buffers.extract(shown, [Wanted(look.coordinates, look.vertex_colors)])
         rows = look.base_color.texture.to_picture if look.base_color.texture else None
         found = {}
         for corner, vertex in enumerate(buffers.corner_vertices):
@@ -333,9 +333,9 @@ class Coordinates(TextureCase):
         self.assertEqual(codes, {"texture_mean"})
 
     def test_slots_have_each_their_own_coordinates(self):
-        from lodestone.bridge import mesh
         from lodestone.bridge.nodes.materials import Wanted
         from lodestone.bridge.nodes.texture_coordinates import Coordinates
+        from lodestone.bridge.scene import mesh_buffers
 
         data = scenes.mesh(
             "Two",
@@ -349,12 +349,12 @@ class Coordinates(TextureCase):
                 loop.uv = value
         item = scenes.link(bpy.data.objects.new("Two", data))
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        buffers = mesh.extract(shown, [Wanted(Coordinates(name=n)) for n in "AB"])
+        buffers = mesh_buffers.extract(shown, [Wanted(Coordinates(name=n)) for n in "AB"])
         self.close(buffers.corner_uvs, [0.25] * 8 + [0.5] * 8)
         wanted = [Wanted(Coordinates(name="B")), Wanted(Coordinates("OBJECT"))]
-        buffers = mesh.extract(shown, wanted)
+        buffers = mesh_buffers.extract(shown, wanted)
         self.close(buffers.corner_uvs, [0.5] * 8 + [1, 0, 2, 0, 2, 1, 1, 1])
-        buffers = mesh.extract(shown, [Wanted(), Wanted()])
+        buffers = mesh_buffers.extract(shown, [Wanted(), Wanted()])
         self.assertIsNone(buffers.corner_uvs)
 
     def test_coordinates_that_cannot_be_followed_give_the_mean_and_are_named(self):
@@ -380,12 +380,12 @@ class VertexColors(TextureCase):
         return scenes.link(bpy.data.objects.new("Leaf", data))
 
     def colors(self, item):
-        from lodestone.bridge import mesh
         from lodestone.bridge.nodes.materials import Wanted
+        from lodestone.bridge.scene import mesh_buffers
 
         look, self.codes = self.translate()
         shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        found = mesh.extract(shown, [Wanted(look.coordinates, look.vertex_colors)])
+        found = mesh_buffers.extract(shown, [Wanted(look.coordinates, look.vertex_colors)])
         if found.vertex_colors is None:
             return found.corner_colors
         places = (range(4 * vertex, 4 * vertex + 4) for vertex in found.corner_vertices)

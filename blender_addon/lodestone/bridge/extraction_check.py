@@ -7,8 +7,8 @@ from typing import Any
 from mathutils import Matrix
 
 from .datablock_ids import name_of
-from .leaves import DRAWN, material_slots, override_of, undrawn
-from .scene import Extraction
+from .scene.leaf_objects import DRAWN, material_slots, override_of, undrawn
+from .scene.scene_extraction import Extraction
 
 TOLERANCE = 1e-5  # of the largest number in a transform
 

@@ -7,7 +7,8 @@ from typing import Any
 from ..core.picture import why_sentences
 from ..core.problems import Problems
 from ..core.session import kept_model
-from . import camera, datablock_ids, lenses, live_view, preview_live, render_result
+from . import datablock_ids, live_view, preview_live, render_result
+from .scene import quality_lenses, scene_camera
 from .scene_settings import SceneSettings
 
 
@@ -18,10 +19,10 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
         return kept_model.Asked(kept.view)
     read_with = kept.view.modifiers
     settings = live_view.settings_of(
-        scene, lenses.parts_in(kept), None if read_with is None else read_with.closing
+        scene, quality_lenses.parts_in(kept), None if read_with is None else read_with.closing
     )
-    frame = camera.Frame.of(scene.render)
-    seen = camera.extract(scene.camera.evaluated_get(depsgraph), frame, Problems())
+    frame = scene_camera.Frame.of(scene.render)
+    seen = scene_camera.extract(scene.camera.evaluated_get(depsgraph), frame, Problems())
     left, bottom, *part = render_result.border(scene.render, frame.width, frame.height)
     settings = replace(settings, border=(left, frame.height - bottom - part[1], *part))
     return kept_model.Asked(settings.view(seen, (frame.width, frame.height)), settings.budget)

@@ -14,8 +14,9 @@ from ..core.picture.picture_maker import Settings
 from ..core.preview import preview_tree
 from ..core.problems import Problems
 from ..core.store import store_levels, store_path
-from . import lenses, preview_scene, quality_settings, viewport_view
-from . import camera as cameras
+from . import preview_scene, quality_settings, viewport_view
+from .scene import quality_lenses
+from .scene import scene_camera as cameras
 from .scene_check import rendered_objects
 from .scene_settings import SceneSettings
 
@@ -35,7 +36,7 @@ def statistics(context: Any) -> view_statistics.Statistics | str:
         return "Set a scene camera"
     frame = cameras.Frame.of(scene.render)
     seen = cameras.extract(item, frame, Problems())
-    settings = settings_of(scene, lenses.parts_stored(store.model))
+    settings = settings_of(scene, quality_lenses.parts_stored(store.model))
     size = (frame.width, frame.height)
     key = (seen, size, _hashable(settings))
     return _chooser.statistics(store.model, key, seen, size, settings)
@@ -54,8 +55,8 @@ def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
     if preview_scene.any_pin():
         _pinned.follow(store, scene)
         model, decided, chooser = _pinned.model, _pinned.decided(), _pinned.chooser
-    parts_of = lenses.parts_stored(model)
-    detail = lenses.detail(rendered_lenses(scene), parts_of, Problems())
+    parts_of = quality_lenses.parts_stored(model)
+    detail = quality_lenses.detail(rendered_lenses(scene), parts_of, Problems())
     settings = Settings(
         pixel_error=own.pixel_error_viewport if own.use_levels else 0.0,
         modifiers=native.Modifiers(lenses=detail) if detail else None,
@@ -92,17 +93,19 @@ class _Pinned:
 _pinned = _Pinned()
 
 
-def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None) -> Settings:
+def settings_of(
+    scene: Any, parts_of: quality_lenses.PartsOf, closing: Any | None = None
+) -> Settings:
     """As F12 has them, but for motion, which takes another frame to see: `closing` is the camera
     as the shutter closes, where it is known."""
     own = SceneSettings(scene)
-    detail = lenses.detail(rendered_lenses(scene), parts_of, Problems())
+    detail = quality_lenses.detail(rendered_lenses(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark
     return Settings(
         pixel_error=quality_settings.pixel_error(own),
         overrides=quality_settings.overrides(own),
         budget=quality_settings.budget(own),
-        modifiers=lenses.modifiers(
+        modifiers=quality_lenses.modifiers(
             detail,
             scene.camera,
             coarser,
@@ -114,7 +117,7 @@ def settings_of(scene: Any, parts_of: lenses.PartsOf, closing: Any | None = None
 
 
 def lens_objects(scene: Any) -> list[Any]:
-    return [item for item in scene.objects if item.type == "EMPTY" and lenses.is_lens(item)]
+    return [item for item in scene.objects if item.type == "EMPTY" and quality_lenses.is_lens(item)]
 
 
 def rendered_lenses(scene: Any) -> list[Any]:

@@ -11,10 +11,11 @@ from mathutils import Matrix
 from ..core.native import lodestone_native as native
 from ..core.preview.preview_worker import LiveThing
 from ..core.problems import Problems
-from . import datablock_ids, mesh
-from .leaves import material_slots
+from . import datablock_ids
 from .listed_instances import rows
 from .nodes.materials import Materials, Wanted
+from .scene import mesh_buffers
+from .scene.leaf_objects import material_slots
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _PLAIN = Wanted()
@@ -94,7 +95,7 @@ class Reader:
         """None: it has no faces, or cannot be read."""
         slots = material_slots(shown)
         try:
-            buffers = mesh.extract(shown, [_PLAIN] * max(1, len(slots)))
+            buffers = mesh_buffers.extract(shown, [_PLAIN] * max(1, len(slots)))
             if buffers is None:
                 return None
             indices = [self._material(material) for material in slots]

@@ -15,12 +15,13 @@ from typing import Any
 
 from ..core.problems import Problems
 from ..core.session.last_check import Check
-from . import camera, lenses, requirements, scene, strands
-from .glow import Glow, glow_of
-from .leaves import material_slots, override_of
+from . import requirements
 from .listed_instances import Listed, Rows, by_itself, rows
 from .nodes.image_means import ImageHeads
 from .nodes.materials import Materials
+from .scene import hair_strands, quality_lenses, scene_camera, scene_extraction
+from .scene.glowing_faces import Glow, glow_of
+from .scene.leaf_objects import material_slots, override_of
 
 _ORIGINAL = attrgetter("original")
 
@@ -39,16 +40,16 @@ def check(
     evaluated = depsgraph.scene_eval
     override = override_of(depsgraph)
     glances = Glances(Materials(None, problems, frame=original.frame_current), override)
-    walk = scene.walked(depsgraph, glances, problems, tick, None, shown)
-    scene.surroundings(recorder, evaluated, walk.found, problems, heads)
+    walk = scene_extraction.walked(depsgraph, glances, problems, tick, None, shown)
+    scene_extraction.surroundings(recorder, evaluated, walk.found, problems, heads)
     if walk.found.shown == 0:
         requirements.something(original, problems)
     eye = requirements.camera(evaluated, problems)
     if eye is not None:
-        camera.extract(eye, camera.Frame.of(evaluated.render), problems)
-    camera.report_render(evaluated, problems)
+        scene_camera.extract(eye, scene_camera.Frame.of(evaluated.render), problems)
+    scene_camera.report_render(evaluated, problems)
     problems.keep(walk.shown.concerns)
-    lenses.detail(evaluated.objects, lambda collection: (), problems)
+    quality_lenses.detail(evaluated.objects, lambda collection: (), problems)
     return Check(tuple(problems), walk.shown.found())
 
 
@@ -96,7 +97,8 @@ class Glances:
     def hair(self, shown: Any, owner: Any, *how: Any) -> Any | None:
         """As Leaves.hair(). The viewport may show fewer hairs, but none where there are some."""
         drawn = any(
-            strands.drawn_particles(m.particle_system) for m in strands.hair_modifiers(shown)
+            hair_strands.drawn_particles(m.particle_system)
+            for m in hair_strands.hair_modifiers(shown)
         )
         return self._of_materials(shown) if drawn else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a 3D view sees, as a camera of explicit frame vectors, like bridge/camera.py's."""
+"""What a 3D view sees, as a camera of explicit frame vectors, like bridge/scene/scene_camera.py's."""
 
 from typing import Any
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import bpy
 
 from .. import extract_engine
-from ..bridge import structure
+from ..bridge.scene import found_structure
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
@@ -64,7 +64,7 @@ class Preview:
 
 def group_in(extraction, collection):
     """The model's group of a collection. Raises NothingToGroup."""
-    group = structure.group_of(extraction, collection)
+    group = found_structure.group_of(extraction, collection)
     if group is None or extraction.model.object_summary(group).child_count <= FEWEST:
         raise NothingToGroup(f'"{collection.name}" shows at most {FEWEST} things to group')
     return group
@@ -82,7 +82,7 @@ def structure_model(model, group):
 
 def groups_in(extraction, group, collection, known):
     """What was found, by Blender's names. Raises NothingToGroup."""
-    found = structure.found_groups(extraction, group, collection, known)
+    found = found_structure.found_groups(extraction, group, collection, known)
     if not found.count():
         raise NothingToGroup(f'Nothing in "{collection.name}" belongs together')
     return found
@@ -98,7 +98,9 @@ def auto_structure(context, collection):
         group = group_in(extraction, collection)
         known, before, after = structure_model(model, group)
         found = groups_in(extraction, group, collection, known)
-    return structure.make_collections(collection, found), Preview(found.count(), before, after)
+    return found_structure.make_collections(collection, found), Preview(
+        found.count(), before, after
+    )
 
 
 def refusal(collection):
@@ -249,7 +251,7 @@ class LODESTONE_OT_make_groups(bpy.types.Operator):
             if refusal(collection):
                 self.report({"ERROR"}, "The collection has changed meanwhile")
                 return {"CANCELLED"}
-            made = structure.make_collections(collection, session.found)
+            made = found_structure.make_collections(collection, session.found)
         except Gone as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}

@@ -6,7 +6,7 @@ from bpy.props import EnumProperty, FloatProperty
 from bpy.types import Menu, Operator
 from bpy_extras.object_utils import AddObjectHelper
 
-from ..bridge.lenses import DISPLAY, is_lens
+from ..bridge.scene.quality_lenses import DISPLAY, is_lens
 from .polled import InObjectMode, Polled
 
 SHAPES = (

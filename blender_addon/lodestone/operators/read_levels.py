@@ -7,7 +7,8 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 import bpy
 
 from .. import extract_engine, handlers
-from ..bridge import lenses, quality_settings
+from ..bridge import quality_settings
+from ..bridge.scene import quality_lenses
 from ..bridge.scene_settings import SceneSettings
 from ..core.native import lodestone_native as native
 from ..core.picture.picture_maker import Settings
@@ -149,7 +150,7 @@ def _counts(update, lit):
         return False
     if item.type == "LIGHT":
         return lit
-    return item.instance_type != "NONE" or not lenses.is_lens(item.original)
+    return item.instance_type != "NONE" or not quality_lenses.is_lens(item.original)
 
 
 @bpy.app.handlers.persistent

@@ -5,7 +5,8 @@ camera."""
 import bpy
 from bpy.types import Panel, UIList
 
-from ..bridge import datablock_ids, lenses
+from ..bridge import datablock_ids
+from ..bridge.scene import quality_lenses
 from ..operators import screen_lenses
 
 
@@ -20,14 +21,14 @@ class LODESTONE_EMPTY_PT_lens(Panel):
         return context.object is not None and context.object.type == "EMPTY"
 
     def draw_header(self, context):
-        if lenses.is_lens(context.object):
+        if quality_lenses.is_lens(context.object):
             self.layout.prop(context.object.lodestone.lens, "enabled", text="")
 
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
         item = context.object
-        if not lenses.is_lens(item):
+        if not quality_lenses.is_lens(item):
             layout.operator("lodestone.detail_lens_enable", icon="ZOOM_SELECTED")
             return
         layout.enabled = item.library is None
@@ -37,7 +38,7 @@ class LODESTONE_EMPTY_PT_lens(Panel):
         column.prop(lens, "falloff")
         column.prop(item, "empty_display_type", text="Shape")
         column.prop(item, "empty_display_size", text="Radius")
-        if item.empty_display_type not in lenses.DISPLAY:
+        if item.empty_display_type not in quality_lenses.DISPLAY:
             layout.label(text="Neither sphere nor cube: counts as a sphere", icon="INFO")
         column.prop(lens, "filter")
         if lens.filter != "ALL":

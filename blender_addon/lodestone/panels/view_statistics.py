@@ -6,7 +6,8 @@ import bpy
 from bpy.types import Panel
 
 from .. import handlers
-from ..bridge import lenses, live_view
+from ..bridge import live_view
+from ..bridge.scene import quality_lenses
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.session import last_render
@@ -135,7 +136,9 @@ def _follow(scene, depsgraph):
         if isinstance(item, bpy.types.Camera):
             return _redraw()
         if isinstance(item, bpy.types.Object):
-            if item.type == "CAMERA" or (item.type == "EMPTY" and lenses.is_lens(item.original)):
+            if item.type == "CAMERA" or (
+                item.type == "EMPTY" and quality_lenses.is_lens(item.original)
+            ):
                 return _redraw()
 
 

@@ -15,10 +15,10 @@ from typing import Any
 
 import bpy
 
-from . import datablock_ids
-from .leaves import MATERIAL
-from .listed_instances import Listed, Rows, gathered
-from .motion.motion_sampling import Motion
+from .. import datablock_ids
+from ..listed_instances import Listed, Rows, gathered
+from ..motion.motion_sampling import Motion
+from .leaf_objects import MATERIAL
 
 _BATCH = 4096  # objects between two ticks
 _OWN = {"library": None, "animation_data": None, "is_instancer": False}  # of what is plain

@@ -16,20 +16,21 @@ from typing import Any
 
 import bpy
 
-from ..core.native import lodestone_native as native
-from ..core.problems import Problems, Subject
-from . import camera, datablock_ids, groups
-from .datablock_ids import name_of
-from .instances import Instances, report_outside
-from .leaves import Leaf, Leaves, override_of
-from .listed_instances import Listed
-from .motion.motion_sampling import Motion, Still
-from .motion.shutter_motion import Moving
-from .nodes.image_means import ImageMeans
-from .parts import Parts
-from .users import Shown, Users
-from .visibility import Visibility
-from .world import scene_lights, world_background
+from ...core.native import lodestone_native as native
+from ...core.problems import Problems, Subject
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..listed_instances import Listed
+from ..motion.motion_sampling import Motion, Still
+from ..motion.shutter_motion import Moving
+from ..nodes.image_means import ImageMeans
+from ..world import scene_lights, world_background
+from . import collection_groups, scene_camera
+from .leaf_objects import Leaf, Leaves, override_of
+from .material_users import Shown, Users
+from .model_parts import Parts
+from .ray_visibility import Visibility
+from .shown_instances import Instances, report_outside
 
 _TYPE = attrgetter("type")
 
@@ -90,7 +91,7 @@ def _extract(
     try:
         leaves = Leaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
         walk = walked(depsgraph, leaves, problems, tick, motion)
-        tree = groups.Groups(model, uids, walk.roles, motion)
+        tree = collection_groups.Groups(model, uids, walk.roles, motion)
         root = tree.build(walk.found.scene, walk.branch)
         if root is None:
             root = model.add_group(
@@ -155,7 +156,7 @@ class Walk:
     """What a depsgraph shows: by where it comes from, by collection, and who shows what."""
 
     found: Instances
-    branch: groups.Branch
+    branch: collection_groups.Branch
     shown: Shown
     roles: datablock_ids.Roles
 
@@ -171,11 +172,11 @@ def walked(
     """`leaves` are Leaves, or what takes their place where nothing is to be extracted; `listed` is
     what takes the place of all that the depsgraph lists."""
     roles = datablock_ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
-    branch = groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
+    branch = collection_groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
     visibility = Visibility(depsgraph.view_layer_eval, problems)
     found = Instances(users, visibility, roles, motion or Still(), problems, tick)
-    found.walk(listed or Listed(depsgraph), groups.environment_objects(branch))
+    found.walk(listed or Listed(depsgraph), collection_groups.environment_objects(branch))
     return Walk(found, branch, users.shown, roles)
 
 
@@ -212,10 +213,10 @@ def _add_cameras(model: Any, depsgraph: Any) -> None:
     """All of the scene, its own one first, for programs that render the store. What is not exact
     about one is told when it is used."""
     scene = depsgraph.scene  # the original: an evaluated scene's objects are originals as well
-    frame = camera.Frame.of(depsgraph.scene_eval.render)
+    frame = scene_camera.Frame.of(depsgraph.scene_eval.render)
     for item in _cameras(scene):
         item = item.evaluated_get(depsgraph)
         matrix = item.matrix_world
         if all(math.isfinite(value) for row in matrix for value in row):
             with contextlib.suppress(native.LodestoneError):  # such as one of no size
-                model.add_camera(camera.extract(item, frame, Problems()))
+                model.add_camera(scene_camera.extract(item, frame, Problems()))

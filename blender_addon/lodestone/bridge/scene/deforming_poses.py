@@ -8,14 +8,15 @@ process, however often.
 from collections.abc import Callable
 from typing import Any
 
-from ..core.native import lodestone_native as native
-from ..core.problems import Problems
-from . import datablock_ids, scene
-from .datablock_ids import name_of
-from .leaves import DRAWN, Leaf, Leaves, Look, override_of
-from .motion import frame_stepping
-from .motion.motion_sampling import Motion, frames_to_sample
-from .scene_settings import SceneSettings
+from ...core.native import lodestone_native as native
+from ...core.problems import Problems
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..motion import frame_stepping
+from ..motion.motion_sampling import Motion, frames_to_sample
+from ..scene_settings import SceneSettings
+from . import scene_extraction
+from .leaf_objects import DRAWN, Leaf, Leaves, Look, override_of
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -86,7 +87,7 @@ def _fill(
         datablock_ids.Uids(),
     )  # of the frames that are drawn they are told anyway
     leaves = _DeformingLeaves(model, depsgraph.scene, uids, problems, override_of(depsgraph))
-    scene.walked(depsgraph, leaves, problems, tick, Motion(still))
+    scene_extraction.walked(depsgraph, leaves, problems, tick, Motion(still))
     root = model.add_group(uids.claim(datablock_ids.scene_uid(name_of(depsgraph.scene))), "Poses")
     for leaf in leaves:
         model.add_placement(root, leaf.object, _IDENTITY, leaf.data)

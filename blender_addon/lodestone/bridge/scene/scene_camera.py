@@ -6,9 +6,9 @@ from typing import Any
 
 from mathutils import Vector
 
-from ..core.native import lodestone_native as native
-from ..core.problems import INFO, WARNING, Problems
-from .datablock_ids import name_of
+from ...core.native import lodestone_native as native
+from ...core.problems import INFO, WARNING, Problems
+from ..datablock_ids import name_of
 
 _CLIP_START = 0.101  # metres; new cameras have .1, so who has more wants something cut away
 _PICTURE = {"Image", "Alpha"}  # of what the compositor can read of a view layer

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from . import datablock_ids
+from .. import datablock_ids
 
 
 @dataclass

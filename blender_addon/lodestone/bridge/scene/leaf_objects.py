@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..core import stable_ids
-from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, Problems
-from . import datablock_ids, mesh, mesh_uvs, strands
-from .datablock_ids import name_of
-from .glow import Glow, glow_of
-from .nodes.materials import Materials
+from ...core import stable_ids
+from ...core.native import lodestone_native as native
+from ...core.problems import ERROR, Problems
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..nodes.materials import Materials
+from . import hair_strands, mesh_buffers, mesh_uvs
+from .glowing_faces import Glow, glow_of
 
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
 UNDRAWN = {"VOLUME": "volumes"}
@@ -152,12 +153,12 @@ class Leaves:
         indices = self._indices(slots, color, look)
         try:
             if shown.type == "CURVES":
-                buffers = strands.curves(shown.data)
+                buffers = hair_strands.curves(shown.data)
                 size = 0 if buffers is None else len(buffers.counts)
             else:
                 wanted = [self._materials.wanted(material, color) for material in slots]
                 wanted = mesh_uvs.placed(wanted, self._place)
-                buffers = mesh.extract(shown, wanted, self._in_place)
+                buffers = mesh_buffers.extract(shown, wanted, self._in_place)
                 if shown.type == "MESH":
                     self._in_place = max(0, self._in_place - len(shown.data.loops))
                 size = 0 if buffers is None else buffers.triangle_count
@@ -193,7 +194,7 @@ class Leaves:
     ) -> Leaf | None:
         indices = self._indices(slots, color, look)
         textured = any(self._materials.textured(material) for material in slots)
-        buffers = strands.hair(shown, len(slots), textured)
+        buffers = hair_strands.hair(shown, len(slots), textured)
         if buffers is None:
             return None
         uid = self._uid(
@@ -215,7 +216,7 @@ class Leaves:
         name, role = f"{name_of(owner)} {POINT}", datablock_ids.role(
             look.environment, look.ordinary
         )
-        item = self._model.add_mesh(uid, name, mesh.ball(), indices, role)
+        item = self._model.add_mesh(uid, name, mesh_buffers.ball(), indices, role)
         return Leaf(item, uid, f"{name_of(shown.data)} {POINT}", _names(slots), 1)
 
     # ---- Materials ----

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ..core.native import lodestone_native as native
-from ..core.problems import WARNING, Problems
-from . import datablock_ids
-from . import camera as cameras
-from .datablock_ids import name_of
-from .listed_instances import rows
+from ...core.native import lodestone_native as native
+from ...core.problems import WARNING, Problems
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..listed_instances import rows
+from . import scene_camera as cameras
 
 DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
 MOST = 1024  # what the backend takes

@@ -6,7 +6,7 @@ from array import array
 from collections.abc import Iterator
 from typing import Any
 
-from ..core.native import lodestone_native as native
+from ...core.native import lodestone_native as native
 
 CURVES_RADIUS = 0.005  # metres, of hair curves that have none of their own (as Cycles)
 _ORIGIN = (0.0, 0.0, 0.0)

@@ -8,10 +8,10 @@ from typing import Any
 
 from mathutils import Matrix
 
-from ..core.native import lodestone_native as native
-from . import blender_versions
-from .datablock_ids import called
-from .nodes.texture_coordinates import Coordinates
+from ...core.native import lodestone_native as native
+from .. import blender_versions
+from ..datablock_ids import called
+from ..nodes.texture_coordinates import Coordinates
 
 
 def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates | None]) -> array:

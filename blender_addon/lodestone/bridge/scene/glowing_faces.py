@@ -17,9 +17,9 @@ from typing import Any
 
 from mathutils import Matrix, Vector
 
-from ..core.native import lodestone_native as native
-from ..core.problems import WARNING, Problems, Subject
-from . import blender_versions, datablock_ids
+from ...core.native import lodestone_native as native
+from ...core.problems import WARNING, Problems, Subject
+from .. import blender_versions, datablock_ids
 
 MOST_FACES = 4096  # of a mesh that is looked at
 MOST_FLAT = 6  # sides of a body

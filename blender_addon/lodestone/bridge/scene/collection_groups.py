@@ -7,18 +7,18 @@ from itertools import repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..core import stable_ids
-from ..core.placement_decision import Decision
-from . import datablock_ids
-from .datablock_ids import name_of
-from .instances import Context, Emitted, Entry, offset
-from .leaves import HAIR
-from .listed_instances import Rows, gathered, rows
-from .motion.motion_sampling import Motion
-from .motion.shutter_motion import Moving
-from .parts import Parts
-from .placements import Placements
-from .plain import Plain
+from ...core import stable_ids
+from ...core.placement_decision import Decision
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..listed_instances import Rows, gathered, rows
+from ..motion.motion_sampling import Motion
+from ..motion.shutter_motion import Moving
+from .leaf_objects import HAIR
+from .model_parts import Parts
+from .placement_columns import Placements
+from .plain_objects import Plain
+from .shown_instances import Context, Emitted, Entry, offset
 
 IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
 ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit

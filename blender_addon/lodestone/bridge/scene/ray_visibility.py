@@ -5,9 +5,9 @@ do it."""
 from collections.abc import Iterator
 from typing import Any
 
-from ..core.native import lodestone_native as native
-from ..core.problems import INFO, WARNING, Problems
-from .datablock_ids import name_of
+from ...core.native import lodestone_native as native
+from ...core.problems import INFO, WARNING, Problems
+from ..datablock_ids import name_of
 
 RayClass = native.RayClass
 _SWITCHES = (  # Blender's names, the ray class of ours

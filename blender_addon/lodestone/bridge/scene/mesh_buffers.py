@@ -7,9 +7,10 @@ from typing import Any
 
 import bmesh
 
-from ..core.native import lodestone_native as native
-from . import blender_versions, mesh_colors, mesh_uvs
-from .nodes.materials import Wanted
+from ...core.native import lodestone_native as native
+from .. import blender_versions
+from ..nodes.materials import Wanted
+from . import mesh_colors, mesh_uvs
 
 
 def extract(instance_object: Any, wanted: Sequence[Wanted], in_place: int = 0) -> Any:

@@ -4,7 +4,7 @@
 from collections import defaultdict
 from typing import Any
 
-from .datablock_ids import Key, key_of_local
+from ..datablock_ids import Key, key_of_local
 
 
 class Parts:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import Any
 
-from . import blender_versions
+from .. import blender_versions
+from ..nodes.material_looks import VertexColors
 from .mesh_uvs import corners_of_slots
-from .nodes.material_looks import VertexColors
 
 
 def vertex_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array | None:

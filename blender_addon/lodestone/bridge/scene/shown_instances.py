@@ -14,17 +14,18 @@ from typing import Any
 
 from mathutils import Matrix
 
-from ..core.placement_decision import UNDECIDED, Decision
-from ..core.problems import ERROR, INFO, WARNING, Problems
-from . import datablock_ids, strands
-from .datablock_ids import name_of
-from .glow import Glows
-from .leaves import DRAWN, GREASE_PENCIL, Leaf, Look, undrawn
-from .listed_instances import Listed, Rows, rows
-from .motion.motion_sampling import Motion
-from .plain import Plain, find
-from .users import Users
-from .visibility import RayClass, Visibility
+from ...core.placement_decision import UNDECIDED, Decision
+from ...core.problems import ERROR, INFO, WARNING, Problems
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..listed_instances import Listed, Rows, rows
+from ..motion.motion_sampling import Motion
+from . import hair_strands
+from .glowing_faces import Glows
+from .leaf_objects import DRAWN, GREASE_PENCIL, Leaf, Look, undrawn
+from .material_users import Users
+from .plain_objects import Plain, find
+from .ray_visibility import RayClass, Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
 Emitted = tuple[Leaf, Rows, int, Decision]  # what, where, hidden from which ray classes
@@ -233,7 +234,7 @@ class Instances:
     def _take_points(
         self, shown: Any, owner: Any, matrix: Matrix, context: Context, entry: Entry
     ) -> None:
-        points = strands.point_cloud(shown.data)
+        points = hair_strands.point_cloud(shown.data)
         if not points:
             return
         look = self._look(context, entry, owner)

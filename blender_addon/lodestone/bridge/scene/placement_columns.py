@@ -4,8 +4,8 @@
 from array import array
 from typing import Any
 
-from ..core.placement_decision import UNDECIDED, Decision
-from .listed_instances import Rows
+from ...core.placement_decision import UNDECIDED, Decision
+from ..listed_instances import Rows
 
 
 class Placements:

@@ -7,9 +7,9 @@ from functools import partial
 from itertools import chain
 from typing import Any
 
-from ..core.problems import Problem, Subject
-from . import blender_versions, datablock_ids
-from .leaves import material_slots
+from ...core.problems import Problem, Subject
+from .. import blender_versions, datablock_ids
+from .leaf_objects import material_slots
 
 
 class Shown:
