@@ -20,7 +20,8 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
 
 import lodestone  # noqa: E402
 from lodestone import batch_pictures, extract_engine  # noqa: E402
-from lodestone.bridge import blend_check, quality_settings, requirements  # noqa: E402
+from lodestone.bridge import quality_settings  # noqa: E402
+from lodestone.bridge.checks import blend_check, picture_requirements  # noqa: E402
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
 from lodestone.bridge.scene import deforming_poses  # noqa: E402
 from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
@@ -127,7 +128,7 @@ class FileRun:
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
         if self.job.verb in ("render", "compare"):
-            requirements.post_processing(scene, self.problems)
+            picture_requirements.post_processing(scene, self.problems)
         if self.job.frames:
             # The same frames whichever part of the scene's range this process renders
             self._sample(scene, min(first, scene.frame_start), max(last, scene.frame_end))
@@ -178,14 +179,14 @@ class FileRun:
                 self._poses = request.poses
         self.problems.extend(extraction.problems)
         if self.job.verb != "build":
-            requirements.grease_pencil(self.problems)
+            picture_requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
             self.result.setdefault("model", run_report.model_part(totals))
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)
-            if totals.occurrences == 0 and not requirements.something(scene, self.problems):
-                raise Failed(ExitCode.FAILED, requirements.NOTHING)
+            if totals.occurrences == 0 and not picture_requirements.something(scene, self.problems):
+                raise Failed(ExitCode.FAILED, picture_requirements.NOTHING)
             self.clock.tail = f"{progress_text.count(totals.triangles_placed)} triangles"
             store = store_path.store_folder(self.job.file, self.job.store)
             self.result["store"] = str(store)

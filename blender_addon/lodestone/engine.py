@@ -15,7 +15,8 @@ from dataclasses import replace
 import bpy
 
 from . import handlers, preferences, preview, render_job
-from .bridge import ignored_problems, quality_settings, render_result, requirements
+from .bridge import ignored_problems, quality_settings, render_result
+from .bridge.checks import picture_requirements
 from .bridge.datablock_ids import name_of
 from .bridge.motion import shutter_motion
 from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
@@ -58,8 +59,8 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
     def update(self, data, depsgraph):
         self.lodestone_blend = data.filepath  # bpy.data is out of bounds inside render()
         self.lodestone_libraries = Problems()
-        requirements.names(data, self.lodestone_libraries)
-        requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
+        picture_requirements.names(data, self.lodestone_libraries)
+        picture_requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
     def view_update(self, context, depsgraph):
         preview.update(self, context, depsgraph)
@@ -149,8 +150,8 @@ class _Run:
             model = stack.enter_context(extraction.model)
             totals = model.totals()
             shown = self.depsgraph.scene
-            if totals.occurrences == 0 and not requirements.something(shown, self.problems):
-                raise Refused("nothing_to_render", requirements.NOTHING)
+            if totals.occurrences == 0 and not picture_requirements.something(shown, self.problems):
+                raise Refused("nothing_to_render", picture_requirements.NOTHING)
             triangles = progress_text.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
             closing = None
@@ -208,8 +209,8 @@ class _Run:
     def _required(self):
         """The camera. What a picture cannot do without is looked for before hours of work."""
         lacking = Problems()
-        found = self.engine.camera_override or requirements.camera(self.scene, lacking)
-        requirements.povray(self.settings.program, lacking)
+        found = self.engine.camera_override or picture_requirements.camera(self.scene, lacking)
+        picture_requirements.povray(self.settings.program, lacking)
         if len(lacking):
             self.problems.extend(lacking)
             first = lacking.wrong[0]

@@ -8,10 +8,11 @@ import traceback
 
 import bpy
 
-from .bridge import extraction_check, quality_settings
+from .bridge import quality_settings
+from .bridge.checks import extraction_check
+from .bridge.checks.picture_requirements import NO_CAMERA
 from .bridge.datablock_ids import name_of
 from .bridge.motion import shutter_motion
-from .bridge.requirements import NO_CAMERA
 from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
 from .bridge.scene_settings import SceneSettings
 from .core.background_calls import Stopped

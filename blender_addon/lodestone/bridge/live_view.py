@@ -15,9 +15,9 @@ from ..core.preview import preview_tree
 from ..core.problems import Problems
 from ..core.store import store_levels, store_path
 from . import preview_scene, quality_settings, viewport_view
+from .checks.scene_check import rendered_objects
 from .scene import quality_lenses
 from .scene import scene_camera as cameras
-from .scene_check import rendered_objects
 from .scene_settings import SceneSettings
 
 _chooser = view_statistics.Chooser()

@@ -4,7 +4,8 @@
 import bpy
 
 from .. import handlers, preferences
-from ..bridge import datablock_ids, ignored_problems, requirements, scene_check
+from ..bridge import datablock_ids, ignored_problems
+from ..bridge.checks import picture_requirements, scene_check
 from ..core import problem_causes
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
@@ -17,10 +18,10 @@ from .polled import Polled
 def check_scene(context):
     """Checks the context's scene as its view layer shows it; the panels show the result."""
     problems, scene = Problems(), context.scene
-    requirements.povray(preferences.povray_program(), problems)
-    requirements.folder(store_path.store_folder(bpy.data.filepath), problems)
-    requirements.names(bpy.data, problems)
-    requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
+    picture_requirements.povray(preferences.povray_program(), problems)
+    picture_requirements.folder(store_path.store_folder(bpy.data.filepath), problems)
+    picture_requirements.names(bpy.data, problems)
+    picture_requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
     depsgraph = context.evaluated_depsgraph_get()
     found = scene_check.check(scene, context.view_layer, depsgraph, problems)
     last_check.put(datablock_ids.name_of(scene), found)

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from ..core.native import lodestone_native as native
-from ..core.problems import ERROR, INFO, WARNING, Problems
-from ..core.store import store_path
-from .datablock_ids import name_of
-from .scene.leaf_objects import DRAWN, GREASE_PENCIL
+from ...core.native import lodestone_native as native
+from ...core.problems import ERROR, INFO, WARNING, Problems
+from ...core.store import store_path
+from ..datablock_ids import name_of
+from ..scene.leaf_objects import DRAWN, GREASE_PENCIL
 
 NO_CAMERA = 'Scene "{}" has no camera: add one, or choose one in Scene > Camera'
 NOTHING = "Nothing to render: no object with faces is visible in renders"

@@ -6,9 +6,9 @@ from typing import Any
 
 from mathutils import Matrix
 
-from .datablock_ids import name_of
-from .scene.leaf_objects import DRAWN, material_slots, override_of, undrawn
-from .scene.scene_extraction import Extraction
+from ..datablock_ids import name_of
+from ..scene.leaf_objects import DRAWN, material_slots, override_of, undrawn
+from ..scene.scene_extraction import Extraction
 
 TOLERANCE = 1e-5  # of the largest number in a transform
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import bpy
 
-from ..core.problems import ERROR, Problems
-from . import requirements
-from .datablock_ids import name_of
+from ...core.problems import ERROR, Problems
+from ..datablock_ids import name_of
+from . import picture_requirements
 
 
 def check_file(problems: Problems, scripts_ran: bool) -> None:
@@ -38,14 +38,14 @@ def check_file(problems: Problems, scripts_ran: bool) -> None:
 def repair_names(problems: Problems) -> None:
     """Gives what is called by bytes that are no UTF-8 a name that Blender can tell. Only for a file
     that is not saved afterwards."""
-    for item in list(requirements.unreadable(bpy.data)):  # renaming sorts them anew
+    for item in list(picture_requirements.unreadable(bpy.data)):  # renaming sorts them anew
         item.name = name_of(item)
-        requirements.name_unreadable(item, problems)
+        picture_requirements.name_unreadable(item, problems)
 
 
 def _owners_of_scripts() -> Iterator[Any]:
     """Datablocks with drivers that Blender runs as Python: it works out simple ones itself."""
-    for item in requirements.datablocks(bpy.data):
+    for item in picture_requirements.datablocks(bpy.data):
         for owner in (
             item,
             getattr(item, "node_tree", None),

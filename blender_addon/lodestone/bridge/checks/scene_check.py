@@ -13,15 +13,15 @@ from itertools import compress
 from operator import attrgetter
 from typing import Any
 
-from ..core.problems import Problems
-from ..core.session.last_check import Check
-from . import requirements
-from .listed_instances import Listed, Rows, by_itself, rows
-from .nodes.image_means import ImageHeads
-from .nodes.materials import Materials
-from .scene import hair_strands, quality_lenses, scene_camera, scene_extraction
-from .scene.glowing_faces import Glow, glow_of
-from .scene.leaf_objects import material_slots, override_of
+from ...core.problems import Problems
+from ...core.session.last_check import Check
+from ..listed_instances import Listed, Rows, by_itself, rows
+from ..nodes.image_means import ImageHeads
+from ..nodes.materials import Materials
+from ..scene import hair_strands, quality_lenses, scene_camera, scene_extraction
+from ..scene.glowing_faces import Glow, glow_of
+from ..scene.leaf_objects import material_slots, override_of
+from . import picture_requirements
 
 _ORIGINAL = attrgetter("original")
 
@@ -43,8 +43,8 @@ def check(
     walk = scene_extraction.walked(depsgraph, glances, problems, tick, None, shown)
     scene_extraction.surroundings(recorder, evaluated, walk.found, problems, heads)
     if walk.found.shown == 0:
-        requirements.something(original, problems)
-    eye = requirements.camera(evaluated, problems)
+        picture_requirements.something(original, problems)
+    eye = picture_requirements.camera(evaluated, problems)
     if eye is not None:
         scene_camera.extract(eye, scene_camera.Frame.of(evaluated.render), problems)
     scene_camera.report_render(evaluated, problems)
