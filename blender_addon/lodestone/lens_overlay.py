@@ -6,7 +6,7 @@ import bpy
 from mathutils import Vector
 
 from . import handlers
-from .bridge import live_view
+from .bridge.live import live_view
 from .core.picture import lens_rim
 from .operators import screen_lenses
 

@@ -12,7 +12,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
 from . import forced_lod, handlers, preview
-from .bridge import kept_view
+from .bridge.live import kept_model_view
 from .core.native import lodestone_native as native
 from .core.picture import false_colors
 from .core.session import kept_model
@@ -115,7 +115,7 @@ def settings(context):
 
 def wanted_key(context, scene, kept, mode):
     """Tells when what is shown is of something else."""
-    asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+    asked = kept_model_view.now(kept, scene, context.evaluated_depsgraph_get())
     return (scene.name, id(kept), mode, asked)
 
 
@@ -215,7 +215,7 @@ def _draw_colors(context, mode):
         if batch is not None:
             _draw_batch(context, gpu, batch)
     lines = list(_shown.lines)
-    if kept_view.old(kept, context.scene):
+    if kept_model_view.old(kept, context.scene):
         lines.append("The scene has changed since: Read Scene")
     _draw_text(context, _shown.legend, lines)
 

@@ -15,8 +15,9 @@ import weakref
 import bpy
 
 from . import forced_lod, handlers, preview_draw
-from .bridge import datablock_ids, preview_scene, viewport_view
+from .bridge import datablock_ids
 from .bridge.datablock_ids import name_of
+from .bridge.live import preview_changes, viewport_camera
 from .bridge.object_decisions import edits_of
 from .bridge.scene import quality_lenses
 from .bridge.scene_settings import SceneSettings
@@ -48,8 +49,8 @@ class _Source:
         self.key = key
         self.folder = store_path.store_folder(bpy.data.filepath)
         self.stamp = _stamp(self.folder)
-        self.worker = preview_worker.Worker(self.folder, preview_scene.names_of(scene))
-        self.scene = preview_scene.Scene(changed_shapes.names())
+        self.worker = preview_worker.Worker(self.folder, preview_changes.names_of(scene))
+        self.scene = preview_changes.Scene(changed_shapes.names())
         self.views = weakref.WeakValueDictionary()  # by viewport
         self._lenses = self._sun = None  # not looked at since something has changed
 
@@ -179,7 +180,7 @@ def _ask(source, state, context, depsgraph):
     source.scene.refresh(depsgraph, worker.tree)
     region, space = context.region, context.space_data
     region_data = context.region_data
-    camera = viewport_view.camera_of(
+    camera = viewport_camera.camera_of(
         region_data.view_matrix, region_data.window_matrix, space.clip_start
     )
     if camera is None or region.width < 1 or region.height < 1:

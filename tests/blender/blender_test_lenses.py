@@ -13,7 +13,7 @@ import bmesh
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import live_view
+from lodestone.bridge.live import live_view
 from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems

@@ -10,7 +10,8 @@ import bmesh
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import quality_settings, viewport_view
+from lodestone.bridge import quality_settings
+from lodestone.bridge.live import viewport_camera
 from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import quality_tree
@@ -218,7 +219,7 @@ class Viewports(unittest.TestCase):
             bpy.context.view_layer.update()
             window = camera.calc_matrix_camera(bpy.context.evaluated_depsgraph_get(), x=64, y=36)
             view = camera.matrix_world.inverted()
-            made = viewport_view.camera_of(view, window, camera.data.clip_start)
+            made = viewport_camera.camera_of(view, window, camera.data.clip_start)
             frame = cameras.Frame(64, 36)
             real = cameras.extract(camera, frame, Problems())
             self.assertEqual(made.orthographic, real.orthographic)
@@ -229,9 +230,9 @@ class Viewports(unittest.TestCase):
     def test_a_view_of_no_volume_is_none(self):
         from mathutils import Matrix
 
-        self.assertIsNone(viewport_view.camera_of(Matrix(), Matrix.Scale(0.0, 4), 0.1))
-        self.assertIsNone(viewport_view.camera_of(Matrix.Scale(0.0, 4), Matrix(), 0.1))
-        self.assertIsNone(viewport_view.of_screen(None))
+        self.assertIsNone(viewport_camera.camera_of(Matrix(), Matrix.Scale(0.0, 4), 0.1))
+        self.assertIsNone(viewport_camera.camera_of(Matrix.Scale(0.0, 4), Matrix(), 0.1))
+        self.assertIsNone(viewport_camera.of_screen(None))
 
 
 class WithoutAWindow(unittest.TestCase):

@@ -141,14 +141,14 @@ class Seeing(unittest.TestCase):
         self.assertIn("off", compare.refusal(bpy.context))
 
     def test_why_this_level_tells_of_originals_where_levels_are_off(self):
-        from lodestone.bridge import kept_view
+        from lodestone.bridge.live import kept_model_view
 
         bpy.ops.lodestone.update_levels()
         bpy.ops.lodestone.read_levels()
 
         def title():
             depsgraph = bpy.context.evaluated_depsgraph_get()
-            return kept_view.explained(self.scene, depsgraph, self.far).title
+            return kept_model_view.explained(self.scene, depsgraph, self.far).title
 
         self.scene.lodestone.pixel_error_render = 16.0
         self.assertNotIn("Original", title())
@@ -156,7 +156,7 @@ class Seeing(unittest.TestCase):
         self.assertIn("Original", title())
 
     def test_why_this_level_missed_instances_of_a_collection_with_an_offset(self):
-        from lodestone.bridge import kept_view
+        from lodestone.bridge.live import kept_model_view
 
         inner = scenes.collection("Inner")
         inner.instance_offset = (1, 2, 3)
@@ -165,14 +165,14 @@ class Seeing(unittest.TestCase):
         bpy.context.view_layer.update()
         bpy.ops.lodestone.read_levels()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        found = kept_view.explained(self.scene, depsgraph, copy)
+        found = kept_model_view.explained(self.scene, depsgraph, copy)
         self.assertNotEqual(found.title, "Not in the last picture")
 
     def explained(self, item):
-        from lodestone.bridge import kept_view
+        from lodestone.bridge.live import kept_model_view
 
         bpy.context.view_layer.update()
-        return kept_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), item)
+        return kept_model_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), item)
 
     def test_a_lens_was_missing_from_why_this_level_after_read_scene(self):
         self.scene.lodestone.pixel_error_render = 8.0
@@ -209,20 +209,20 @@ class Seeing(unittest.TestCase):
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):
-        from lodestone.bridge import kept_view
+        from lodestone.bridge.live import kept_model_view
 
         self.scene.lodestone.pixel_error_render = 1.0
         self.scene.lodestone.build_on_render = "ALL"
         bpy.ops.render.render()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        near = kept_view.explained(self.scene, depsgraph, self.near)
-        far = kept_view.explained(self.scene, depsgraph, self.far)
+        near = kept_model_view.explained(self.scene, depsgraph, self.near)
+        far = kept_model_view.explained(self.scene, depsgraph, self.far)
         self.assertNotEqual(near.title, far.title)
         self.assertRegex(far.lines[0], r"^\d+ m . .*m = .* px . 1 px$")
         self.assertIn("would be", " ".join(near.lines))
         empty = scenes.link(bpy.data.objects.new("Later", None))
         bpy.context.view_layer.update()
-        found = kept_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), empty)
+        found = kept_model_view.explained(self.scene, bpy.context.evaluated_depsgraph_get(), empty)
         self.assertEqual(found.title, "Not in the last picture")
         render = self.renders.get(self.scene.name)
         self.assertGreater(render.actual_s, 0.0)
@@ -267,7 +267,7 @@ class Seeing(unittest.TestCase):
                 self.assertEqual(self.kept.get(self.scene.name).outdated, coarser)
 
     def test_motion_of_the_camera_was_missing_from_why_this_level_after_read_scene(self):
-        from lodestone.bridge import kept_view
+        from lodestone.bridge.live import kept_model_view
 
         camera = self.scene.camera
         camera.keyframe_insert("location", frame=1)
@@ -277,9 +277,9 @@ class Seeing(unittest.TestCase):
         bpy.ops.lodestone.update_levels()
         bpy.ops.lodestone.read_levels()
         self.scene.lodestone.coarser_moving_dark = True
-        self.assertTrue(kept_view.old(self.kept.get(self.scene.name), self.scene))
+        self.assertTrue(kept_model_view.old(self.kept.get(self.scene.name), self.scene))
         bpy.ops.lodestone.read_levels()
-        self.assertFalse(kept_view.old(self.kept.get(self.scene.name), self.scene))
+        self.assertFalse(kept_model_view.old(self.kept.get(self.scene.name), self.scene))
         self.assertIn("Motion", " ".join(self.explained(self.near).lines))
         self.scene.lodestone.coarser_moving_dark = False
         self.assertNotIn("Motion", " ".join(self.explained(self.near).lines))

@@ -11,7 +11,8 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.bridge import live_view, quality_settings
+from lodestone.bridge import quality_settings
+from lodestone.bridge.live import live_view
 from lodestone.bridge.scene_settings import SceneSettings
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import unseen_detail

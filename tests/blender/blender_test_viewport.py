@@ -29,18 +29,18 @@ class Viewport(unittest.TestCase):
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         self.scene = bpy.context.scene
         bpy.ops.lodestone.update_levels()
-        from lodestone.bridge import preview_scene
+        from lodestone.bridge.live import preview_changes
         from lodestone.core.preview import preview_worker
         from lodestone.core.store import store_path
 
-        self.preview_scene, self.preview_worker = preview_scene, preview_worker
-        names = preview_scene.names_of(self.scene)
+        self.preview_scene, self.preview_worker = preview_changes, preview_worker
+        names = preview_changes.names_of(self.scene)
         store = store_path.store_folder(bpy.data.filepath)
         self.worker = preview_worker.Worker(store, names)
         self.addCleanup(self.worker.close)
         self.wait(lambda: self.worker.ready)
         self.assertEqual(self.worker.problem, "")
-        self.preview = preview_scene.Scene(set())
+        self.preview = preview_changes.Scene(set())
         self.refresh()
         while not self.preview.learned:
             self.preview.learn(self.depsgraph(), 1.0)
@@ -165,7 +165,7 @@ class Viewport(unittest.TestCase):
             self.assertFalse(found.use_pin_render)
 
     def test_statistics_of_the_viewport_follow_its_pins(self):
-        from lodestone.bridge import live_view
+        from lodestone.bridge.live import live_view
         from lodestone.core.store import store_levels, store_path
 
         store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))

@@ -13,7 +13,7 @@ from bpy.props import EnumProperty
 from mathutils import Vector
 
 from .. import preferences
-from ..bridge import kept_view
+from ..bridge.live import kept_model_view
 from ..core import background_calls
 from ..core.native import lodestone_native as native
 from ..core.picture import false_colors, legend_strip, overview_camera
@@ -141,7 +141,7 @@ class _Session(read_levels.Reading):
     def start_picture(self, context):
         scene = context.scene
         kept = kept_model.get(scene.name)
-        asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+        asked = kept_model_view.now(kept, scene, context.evaluated_depsgraph_get())
         self._outcome = {}
         self.picturing = True
         self.start(lambda: self.asked.make(kept, asked, self.work.new_job))
@@ -181,9 +181,9 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
         try:
             request = self._asked(context)
             kept = kept_model.get(scene.name)
-            if kept is None or kept_view.old(kept, scene):
+            if kept is None or kept_model_view.old(kept, scene):
                 kept = read_levels.read_levels(scene)
-            asked = kept_view.now(kept, scene, context.evaluated_depsgraph_get())
+            asked = kept_model_view.now(kept, scene, context.evaluated_depsgraph_get())
             into_image(request.make(kept, asked, background_calls.Work().new_job))
         except FAILURES as error:
             self.report({"ERROR"}, sentence(error))

@@ -5,7 +5,8 @@ and what that saves."""
 import bpy
 from bpy.types import Panel
 
-from ..bridge import live_view, quality_settings
+from ..bridge import quality_settings
+from ..bridge.live import live_view
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.picture import unseen_detail

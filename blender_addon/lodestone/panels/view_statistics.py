@@ -6,7 +6,7 @@ import bpy
 from bpy.types import Panel
 
 from .. import handlers
-from ..bridge import live_view
+from ..bridge.live import live_view
 from ..bridge.scene import quality_lenses
 from ..core import progress_text
 from ..core.native import lodestone_native as native

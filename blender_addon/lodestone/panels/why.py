@@ -4,7 +4,7 @@
 import bpy
 from bpy.types import Panel
 
-from ..bridge import kept_view
+from ..bridge.live import kept_model_view
 from ..core.native import lodestone_native as native
 from ..core.session import kept_model
 
@@ -25,7 +25,9 @@ class LODESTONE_OBJECT_PT_why(Panel):
             layout.operator("lodestone.read_levels", icon="FILE_REFRESH")
             return
         try:
-            found = kept_view.explained(scene, context.evaluated_depsgraph_get(), context.object)
+            found = kept_model_view.explained(
+                scene, context.evaluated_depsgraph_get(), context.object
+            )
         except native.LodestoneError as error:
             layout.label(text=str(error), icon="ERROR")
             return
@@ -36,7 +38,7 @@ class LODESTONE_OBJECT_PT_why(Panel):
         column.label(text=found.title, icon="OUTLINER_OB_MESH")
         for line in found.lines:
             column.label(text=line)
-        if kept_view.old(kept, scene):
+        if kept_model_view.old(kept, scene):
             row = layout.row()
             row.label(text="The scene has changed since", icon="INFO")
             row.operator("lodestone.read_levels", text="", icon="FILE_REFRESH")

@@ -11,8 +11,8 @@ import zlib
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from . import blender_versions
-from .datablock_ids import name_of
+from .. import blender_versions
+from ..datablock_ids import name_of
 
 
 class Shape(NamedTuple):

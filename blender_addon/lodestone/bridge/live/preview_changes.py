@@ -8,17 +8,18 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from ..core.placement_decision import UNDECIDED, Decision
-from ..core.preview.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
-from ..core.preview.preview_worker import MOST_TRIANGLES, LiveThing, Things
-from . import datablock_ids, preview_live
-from .datablock_ids import name_of
-from .fingerprints import Fingerprints
-from .motion.motion_sampling import Motion
+from ...core.placement_decision import UNDECIDED, Decision
+from ...core.preview.preview_tree import Change, Changes, Names, Rows, Slot, Tree, same
+from ...core.preview.preview_worker import MOST_TRIANGLES, LiveThing, Things
+from .. import datablock_ids
+from ..datablock_ids import name_of
+from ..motion.motion_sampling import Motion
+from . import live_objects
+from .shape_fingerprints import Fingerprints
 
 READ_S = 0.03  # of a redraw, for reading what is drawn as it is
 _states = itertools.count(1)
-_SHOWN = preview_live.GEOMETRY | {"EMPTY", "CURVES", "POINTCLOUD"}
+_SHOWN = live_objects.GEOMETRY | {"EMPTY", "CURVES", "POINTCLOUD"}
 
 
 def names_of(scene: Any) -> Names:
@@ -117,7 +118,7 @@ class Scene:
         for name, slots in tree.objects.items():
             item = shown.get(name)
             gone = item is None or name in live
-            world = None if item is None else preview_live.expected_world(item)
+            world = None if item is None else live_objects.expected_world(item)
             self._change(changes, slots, self._decision(item, name), gone, world)
         for name, slots in tree.inner.items():
             self._change(changes, slots, self._decision(None, name), False, None)
@@ -176,7 +177,7 @@ class Scene:
         for name, item in shown.items():
             slots = tree.objects.get(name)
             if slots is None:
-                if preview_live.shows_itself(item) or item.is_instancer:
+                if live_objects.shows_itself(item) or item.is_instancer:
                     live.add(name)
             elif name in self._touched or item.mode in {"EDIT", "SCULPT"}:
                 live.add(name)
@@ -185,7 +186,7 @@ class Scene:
             elif self._deforms(motion, name, item):
                 live.add(name)
             elif not all(slot.follows for slot in slots):  # particles are where they were born
-                own = preview_live.expected_world(item)
+                own = live_objects.expected_world(item)
                 if any(not same(slot.world, own) for slot in slots if slot.follows):
                     live.add(name)
         return live
@@ -229,7 +230,7 @@ class Scene:
         lacking = {name: item for name, item in live.items() if name not in known}
         if lacking:
             room = MOST_TRIANGLES - sum(part.triangles for part in self._live)
-            reader = preview_live.Reader(depsgraph, room)
+            reader = live_objects.Reader(depsgraph, room)
             thing = reader.read(lacking, READ_S)
             self._live.append(_Portion(reader.names, reader.too_much, reader.triangles, thing))
             self.stale = len(reader.names) < len(lacking)

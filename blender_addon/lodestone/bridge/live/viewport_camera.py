@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a 3D view sees, as a camera of explicit frame vectors, like bridge/scene/scene_camera.py's."""
+"""What a 3D view sees, as a camera of explicit frame vectors, like scene_camera.py's."""
 
 from typing import Any
 
 from mathutils import Vector
 
-from ..core.native import lodestone_native as native
+from ...core.native import lodestone_native as native
 
 NEAREST = 1e-4  # metres: a near clip that is none
 

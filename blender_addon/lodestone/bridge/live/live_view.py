@@ -8,17 +8,18 @@ from typing import Any
 
 import bpy
 
-from ..core.native import lodestone_native as native
-from ..core.picture import view_statistics
-from ..core.picture.picture_maker import Settings
-from ..core.preview import preview_tree
-from ..core.problems import Problems
-from ..core.store import store_levels, store_path
-from . import preview_scene, quality_settings, viewport_view
-from .checks.scene_check import rendered_objects
-from .scene import quality_lenses
-from .scene import scene_camera as cameras
-from .scene_settings import SceneSettings
+from ...core.native import lodestone_native as native
+from ...core.picture import view_statistics
+from ...core.picture.picture_maker import Settings
+from ...core.preview import preview_tree
+from ...core.problems import Problems
+from ...core.store import store_levels, store_path
+from .. import quality_settings
+from ..checks.scene_check import rendered_objects
+from ..scene import quality_lenses
+from ..scene import scene_camera as cameras
+from ..scene_settings import SceneSettings
+from . import preview_changes, viewport_camera
 
 _chooser = view_statistics.Chooser()
 
@@ -47,12 +48,12 @@ def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
     view or no store."""
     scene = context.scene
     store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
-    seen = viewport_view.of_screen(context.screen)
+    seen = viewport_camera.of_screen(context.screen)
     if store.model is None or seen is None:
         return None
     own = scene.lodestone
     model, decided, chooser = store.model, (), _chooser
-    if preview_scene.any_pin():
+    if preview_changes.any_pin():
         _pinned.follow(store, scene)
         model, decided, chooser = _pinned.model, _pinned.decided(), _pinned.chooser
     parts_of = quality_lenses.parts_stored(model)
@@ -77,7 +78,7 @@ class _Pinned:
 
     def follow(self, store: Any, scene: Any) -> None:
         """Reads it when it is not yet that of the store. Raises LodestoneError."""
-        names = preview_scene.names_of(scene)
+        names = preview_changes.names_of(scene)
         key = (id(store), names)
         if self._key != key:
             self.model = native.Model.read(str(store.folder))
@@ -85,7 +86,7 @@ class _Pinned:
             self._key = key
 
     def decided(self) -> Hashable:
-        changes = preview_scene.decisions(self._model.tree)
+        changes = preview_changes.decisions(self._model.tree)
         self._model.apply(changes)
         return tuple(sorted(changes.items()))
 

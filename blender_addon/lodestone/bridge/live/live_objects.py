@@ -8,14 +8,14 @@ from typing import Any
 
 from mathutils import Matrix
 
-from ..core.native import lodestone_native as native
-from ..core.preview.preview_worker import LiveThing
-from ..core.problems import Problems
-from . import datablock_ids
-from .listed_instances import rows
-from .nodes.materials import Materials, Wanted
-from .scene import mesh_buffers
-from .scene.leaf_objects import material_slots
+from ...core.native import lodestone_native as native
+from ...core.preview.preview_worker import LiveThing
+from ...core.problems import Problems
+from .. import datablock_ids
+from ..listed_instances import rows
+from ..nodes.materials import Materials, Wanted
+from ..scene import mesh_buffers
+from ..scene.leaf_objects import material_slots
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _PLAIN = Wanted()

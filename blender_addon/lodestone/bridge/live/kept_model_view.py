@@ -4,12 +4,13 @@
 from dataclasses import replace
 from typing import Any
 
-from ..core.picture import why_sentences
-from ..core.problems import Problems
-from ..core.session import kept_model
-from . import datablock_ids, live_view, preview_live, render_result
-from .scene import quality_lenses, scene_camera
-from .scene_settings import SceneSettings
+from ...core.picture import why_sentences
+from ...core.problems import Problems
+from ...core.session import kept_model
+from .. import datablock_ids, render_result
+from ..scene import quality_lenses, scene_camera
+from ..scene_settings import SceneSettings
+from . import live_objects, live_view
 
 
 def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
@@ -45,7 +46,7 @@ def explained(scene: Any, depsgraph: Any, item: Any) -> "why_sentences.Explanati
         if kept.closed:
             return None
         cut = kept.cut(now(kept, scene, depsgraph))
-        world = preview_live.expected_world(item.evaluated_get(depsgraph))
+        world = live_objects.expected_world(item.evaluated_get(depsgraph))
         drawn, position = kept.find([datablock_ids.key_of("object", item.original)], world)
         return why_sentences.explain(cut, drawn, position)
     finally:
