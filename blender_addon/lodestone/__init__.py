@@ -18,8 +18,8 @@ bl_info = {
 }
 
 _MODULES = (
-    "lens_properties",
-    "properties",
+    "properties.lens_properties",
+    "properties.property_groups",
     "preferences",
     "preview",
     "engine",

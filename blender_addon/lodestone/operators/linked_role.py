@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..bridge import object_decisions
-from ..properties import ROLES
+from ..properties.property_groups import ROLES
 
 
 class LODESTONE_OT_linked_role(bpy.types.Operator):

@@ -4,8 +4,8 @@ until it is set, and one that is stored, which is below 0 while it inherits."""
 
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
-from .bridge import quality_settings
-from .core.picture import quality_tree, unseen_detail
+from ..bridge import quality_settings
+from ..core.picture import quality_tree, unseen_detail
 
 
 def _reader(key):

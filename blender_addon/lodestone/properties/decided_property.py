@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Properties that hold what the designer decides about objects, collections and cameras."""
 
-from .bridge import object_decisions
+from ..bridge import object_decisions
 
 
 def _decided(self, context):

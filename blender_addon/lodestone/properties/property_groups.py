@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from .bridge import object_decisions
+from ..bridge import object_decisions
 from .decided_property import decided
 from .lens_properties import LODESTONE_PG_lens
 from .quality_properties import Overrides, RayClasses
