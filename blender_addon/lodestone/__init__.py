@@ -22,7 +22,7 @@ _MODULES = (
     "properties.property_groups",
     "preferences",
     "preview",
-    "engine",
+    "engines.render_engine",
     "operators.session",
     "operators.update_levels",
     "operators.auto_structure",

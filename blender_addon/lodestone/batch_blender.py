@@ -19,7 +19,7 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
     sys.path.insert(0, str(PACKAGE.parent))
 
 import lodestone  # noqa: E402
-from lodestone import batch_pictures, extract_engine  # noqa: E402
+from lodestone import batch_pictures  # noqa: E402
 from lodestone.bridge import quality_settings  # noqa: E402
 from lodestone.bridge.checks import blend_check, picture_requirements  # noqa: E402
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
@@ -38,6 +38,7 @@ from lodestone.core.picture.picture_maker import make_picture, remove_others  # 
 from lodestone.core.picture.picture_maker import used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.store import motion_file, store_path  # noqa: E402
+from lodestone.engines import extract_engine  # noqa: E402
 
 
 NO_LEVELS = (

@@ -64,10 +64,10 @@ def lodestone(folder: Path, addons: Path) -> dict:
     import lodestone as addon
 
     addon.register()
-    from lodestone import extract_engine
     from lodestone.bridge.scene import scene_extraction as extraction
     from lodestone.core.native import lodestone_native as native
     from lodestone.core.picture.picture_maker import Settings, cut_and_export
+    from lodestone.engines import extract_engine
 
     native.version()  # loads the library
     spent, before = 0.0, 0

@@ -114,7 +114,7 @@ def encoded(value):
 
 def extract(compare=True, cameras=()):
     """(extraction, differences to the depsgraph); close the extraction's model."""
-    from lodestone import extract_engine
+    from lodestone.engines import extract_engine
 
     request = extract_engine.Request(cameras=cameras, compare=compare)
     extraction = extract_engine.extract_now(bpy.context.scene, request)

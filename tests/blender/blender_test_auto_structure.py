@@ -48,7 +48,7 @@ class AutoStructure(unittest.TestCase):
         bpy.context.view_layer.active_layer_collection = layer.children[collection.name]
 
     def extracted(self, **options):
-        from lodestone import extract_engine
+        from lodestone.engines import extract_engine
 
         request = extract_engine.Request(compare=True, **options)
         extraction = extract_engine.extract_now(self.scene, request)

@@ -35,7 +35,7 @@ class LooseParts(unittest.TestCase):
         self.copy.location = (300, 0, 0)
 
     def extracted(self, **options):
-        from lodestone import extract_engine
+        from lodestone.engines import extract_engine
 
         request = extract_engine.Request(compare=True, **options)
         extraction = extract_engine.extract_now(self.scene, request)

@@ -151,8 +151,8 @@ class Built(unittest.TestCase):
         ball("Flag", street, (0, 6, 0)).modifiers.new("Wave", "WAVE")
 
     def build(self, frame):
-        from lodestone import extract_engine
         from lodestone.core.native import lodestone_native as native
+        from lodestone.engines import extract_engine
 
         self.scene.frame_set(frame)
         request = extract_engine.Request(compare=True)
@@ -220,8 +220,8 @@ class Followed(unittest.TestCase):
 
     def build(self, frame, store="store"):
         """The report, the problems, and [(indices, positions)] of the flag from the finest on."""
-        from lodestone import extract_engine
         from lodestone.core.native import lodestone_native as native
+        from lodestone.engines import extract_engine
 
         self.scene.frame_set(frame)
         request = extract_engine.Request(with_poses=True)
@@ -240,7 +240,7 @@ class Followed(unittest.TestCase):
         self.fail("no flag")
 
     def test_a_camera_bound_to_a_marker_is_the_one_of_its_frame(self):
-        from lodestone import extract_engine
+        from lodestone.engines import extract_engine
 
         second = bpy.data.objects.new("Second", bpy.data.cameras.new("Second"))
         second.location = (0, 0, 20)
@@ -331,10 +331,10 @@ class Followed(unittest.TestCase):
         bpy.ops.render.render(write_still=True)
         self.assertEqual(scene.frame_current, 7)
         self.assertTrue((self.folder / "picture.png").is_file())
-        from lodestone import engine
         from lodestone.core.session import last_render
+        from lodestone.engines import render_engine
 
-        self.assertEqual(engine._poses, {})
+        self.assertEqual(render_engine._poses, {})
         used = last_render.get(scene.name)
         self.assertEqual(used.triangles_placed, 1280)
         self.assertLess(used.triangles, 200)

@@ -160,14 +160,14 @@ class PeerFailures(Case):
         self.assertEqual(self.found(), [])
 
     def test_b03_a_failure_is_never_exit_code_0_and_a_black_picture(self):
-        from lodestone import engine
+        from lodestone.engines import render_engine
 
         scenes.cube()
-        extract, engine.scene.extract = engine.scene.extract, lambda *_, **__: 1 // 0
+        extract, render_engine.scene.extract = render_engine.scene.extract, lambda *_, **__: 1 // 0
         try:
             self.refused("ZeroDivisionError")
         finally:
-            engine.scene.extract = extract
+            render_engine.scene.extract = extract
         self.povray(b"echo 'Parse Error: no such thing' >&2; exit 1\n")
         self.refused("no such thing")
         os.environ["LODESTONE_POVRAY"] = "/nowhere/povray"

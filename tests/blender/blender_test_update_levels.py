@@ -121,8 +121,8 @@ class UpdateLevels(unittest.TestCase):
         self.assertEqual(summary(report), "There is nothing here to build levels of")
 
     def test_writing_ids_makes_nothing_stale(self):
-        from lodestone import extract_engine
         from lodestone.core.native import lodestone_native as native
+        from lodestone.engines import extract_engine
         from lodestone.operators.update_levels import update_levels
 
         store = str(self.folder / "lodestone" / "street")

@@ -193,6 +193,6 @@ class Viewport(unittest.TestCase):
         self.assertEqual(self.preview.things.changes, {})
 
     def test_material_preview_stays_eevees(self):
-        from lodestone.engine import LODESTONE_RE_povray
+        from lodestone.engines.render_engine import LODESTONE_RE_povray
 
         self.assertTrue(LODESTONE_RE_povray.bl_use_eevee_viewport)

@@ -39,7 +39,7 @@ class Visibility(Case):
         other = bpy.data.scenes.new("Other")
         scenes.cube("Elsewhere", collection=other.collection)
         scenes.cube("Here")
-        from lodestone import extract_engine
+        from lodestone.engines import extract_engine
 
         request = extract_engine.Request(compare=True)
         extraction = extract_engine.extract_now(other, request)

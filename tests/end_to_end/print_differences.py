@@ -15,7 +15,7 @@ import bpy
 
 addon_utils.enable("lodestone", default_set=True)
 
-from lodestone import extract_engine  # noqa: E402
+from lodestone.engines import extract_engine  # noqa: E402
 
 for path in sys.argv[sys.argv.index("--") + 1 :]:
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)

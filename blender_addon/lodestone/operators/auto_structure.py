@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import bpy
 
-from .. import extract_engine
 from ..bridge.scene import found_structure
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
 from ..core.store import motion_file, store_path
+from ..engines import extract_engine
 from . import session as sessions
 from .polled import Polled
 

@@ -6,7 +6,7 @@ The scene is read by a render job, a thread finds its levels; Esc stops either.
 
 import bpy
 
-from .. import extract_engine, handlers
+from .. import handlers
 from ..bridge import quality_settings
 from ..bridge.scene import quality_lenses
 from ..bridge.scene_settings import SceneSettings
@@ -16,6 +16,7 @@ from ..core.printable_text import sentence
 from ..core.session import kept_model
 from ..core.store import motion_file, store_path
 from ..core.store.store_levels import is_store
+from ..engines import extract_engine
 from . import session as sessions
 from .polled import Polled
 

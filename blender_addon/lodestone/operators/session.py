@@ -10,10 +10,11 @@ import traceback
 
 import bpy
 
-from .. import extract_engine, handlers, render_job
+from .. import handlers
 from ..core import background_calls
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
+from ..engines import extract_engine, render_job
 
 INTERVAL_S = 0.1
 FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)

@@ -7,13 +7,13 @@ In the window the scene is read, a dialog tells what would be built, a thread bu
 import bpy
 from bpy.props import BoolProperty
 
-from .. import extract_engine
 from ..bridge import object_decisions
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
 from ..core.session import changed_shapes
 from ..core.store import motion_file, store_path
+from ..engines import extract_engine
 from . import session as sessions
 from .polled import Polled
 

@@ -14,23 +14,24 @@ from dataclasses import replace
 
 import bpy
 
-from . import handlers, preferences, preview, render_job
-from .bridge import ignored_problems, quality_settings, render_result
-from .bridge.checks import picture_requirements
-from .bridge.datablock_ids import name_of
-from .bridge.motion import shutter_motion
-from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
-from .bridge.scene_settings import SceneSettings
-from .core import progress_text
-from .core.background_calls import Stopped, Work
-from .core.native import lodestone_native as native
-from .core.picture import compare_plan
-from .core.picture.picture_maker import Settings, make_identities, make_picture
-from .core.picture.render_folder import RenderFolder
-from .core.printable_text import printable, sentence, valid
-from .core.problems import ERROR, Problems
-from .core.session import changed_shapes, kept_model, last_check, last_render
-from .core.store import motion_file, store_path
+from .. import handlers, preferences, preview
+from ..bridge import ignored_problems, quality_settings, render_result
+from ..bridge.checks import picture_requirements
+from ..bridge.datablock_ids import name_of
+from ..bridge.motion import shutter_motion
+from ..bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
+from ..bridge.scene_settings import SceneSettings
+from ..core import progress_text
+from ..core.background_calls import Stopped, Work
+from ..core.native import lodestone_native as native
+from ..core.picture import compare_plan
+from ..core.picture.picture_maker import Settings, make_identities, make_picture
+from ..core.picture.render_folder import RenderFolder
+from ..core.printable_text import printable, sentence, valid
+from ..core.problems import ERROR, Problems
+from ..core.session import changed_shapes, kept_model, last_check, last_render
+from ..core.store import motion_file, store_path
+from . import render_job
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}

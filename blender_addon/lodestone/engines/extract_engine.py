@@ -8,18 +8,18 @@ import traceback
 
 import bpy
 
-from .bridge import quality_settings
-from .bridge.checks import extraction_check
-from .bridge.checks.picture_requirements import NO_CAMERA
-from .bridge.datablock_ids import name_of
-from .bridge.motion import shutter_motion
-from .bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
-from .bridge.scene_settings import SceneSettings
-from .core.background_calls import Stopped
-from .core.native import lodestone_native as native
-from .core.printable_text import sentence, valid
-from .core.problems import Problems
-from .core.session import changed_shapes
+from ..bridge import quality_settings
+from ..bridge.checks import extraction_check
+from ..bridge.checks.picture_requirements import NO_CAMERA
+from ..bridge.datablock_ids import name_of
+from ..bridge.motion import shutter_motion
+from ..bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
+from ..bridge.scene_settings import SceneSettings
+from ..core.background_calls import Stopped
+from ..core.native import lodestone_native as native
+from ..core.printable_text import sentence, valid
+from ..core.problems import Problems
+from ..core.session import changed_shapes
 
 _request = None
 
