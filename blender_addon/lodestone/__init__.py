@@ -21,7 +21,7 @@ _MODULES = (
     "properties.lens_properties",
     "properties.property_groups",
     "preferences",
-    "preview",
+    "viewport.levels_preview",
     "engines.render_engine",
     "operators.session",
     "operators.update_levels",
@@ -39,9 +39,9 @@ _MODULES = (
     "operators.read_levels",
     "operators.false_color_picture",
     "operators.show_levels",
-    "overlay",
+    "viewport.false_color_overlay",
     "panels",
-    "lens_overlay",
+    "viewport.lens_overlay",
     "compat_panels",
 )
 _loaded: list = []

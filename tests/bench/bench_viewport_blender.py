@@ -62,14 +62,19 @@ def steps():
     turn(0.0)
     redraw()
     if SHADING == "RENDERED":
-        from lodestone import preview
+        from lodestone.viewport import levels_preview
 
         while True:
             yield
-            state = preview.state_of(area)
-            if state and state.view.shown and state.view.shown.final and not preview._busy(state):
+            state = levels_preview.state_of(area)
+            if (
+                state
+                and state.view.shown
+                and state.view.shown.final
+                and not levels_preview._busy(state)
+            ):
                 break
-        print(state.view.line(), state.batches, "batches", preview._pool.bytes, flush=True)
+        print(state.view.line(), state.batches, "batches", levels_preview._pool.bytes, flush=True)
     found = {
         "first_s": time.monotonic() - start,
         "first_cpu_s": time.process_time() - cpu,

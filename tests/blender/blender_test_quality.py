@@ -237,7 +237,7 @@ class Viewports(unittest.TestCase):
 
 class WithoutAWindow(unittest.TestCase):
     def test_the_overlay_touches_no_gpu(self):
-        from lodestone import lens_overlay
+        from lodestone.viewport import lens_overlay
 
         scenes.fresh()
         self.assertEqual(lens_overlay._handles, [])

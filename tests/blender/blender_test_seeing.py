@@ -190,7 +190,7 @@ class Seeing(unittest.TestCase):
         self.assertFalse(self.kept.get(self.scene.name).outdated, "lenses are followed")
 
     def test_of_a_budget_why_this_level_and_colors_told_as_of_a_picture_without(self):
-        from lodestone import overlay
+        from lodestone.viewport import false_color_overlay
 
         self.near.data = scenes.bumpy_mesh(subdivisions=6)
         self.scene.lodestone.pixel_error_render = 0.0
@@ -202,10 +202,10 @@ class Seeing(unittest.TestCase):
         found = self.explained(self.near)
         self.assertNotEqual(found.title, "LOD 0  Original")
         self.assertNotIn("0 px: nothing finer can be drawn", found.lines[0])
-        self.assertTrue(overlay.refresh(bpy.context, self.scene, "ERROR"))
-        self.addCleanup(overlay.forget)
-        self.assertNotIn("Pixel Error 0:", overlay._shown.lines[0])
-        self.assertNotEqual(overlay._shown.legend[-1][0], "above 0 px")
+        self.assertTrue(false_color_overlay.refresh(bpy.context, self.scene, "ERROR"))
+        self.addCleanup(false_color_overlay.forget)
+        self.assertNotIn("Pixel Error 0:", false_color_overlay._shown.lines[0])
+        self.assertNotEqual(false_color_overlay._shown.legend[-1][0], "above 0 px")
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):
@@ -309,21 +309,25 @@ class Seeing(unittest.TestCase):
         self.assertEqual(len([i for i in bpy.data.images if "False" in i.name]), 1)
 
     def test_the_overlay_makes_what_it_draws_without_a_gpu(self):
-        from lodestone import overlay
+        from lodestone.viewport import false_color_overlay
 
         bpy.ops.lodestone.read_levels()
-        self.assertTrue(overlay.refresh(bpy.context, self.scene, "LEVEL"))
-        shown = overlay._shown
+        self.assertTrue(false_color_overlay.refresh(bpy.context, self.scene, "LEVEL"))
+        shown = false_color_overlay._shown
         self.assertGreater(shown.triangles, 2000)
         self.assertEqual(len(shown._arrays[0]), 9 * shown.triangles)
         self.assertEqual(len(shown._arrays[1]), 12 * shown.triangles)
         kept = self.kept.get(self.scene.name)
-        self.assertEqual(overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key)
+        self.assertEqual(
+            false_color_overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key
+        )
         self.scene.camera.location.z = 500.0
         bpy.context.view_layer.update()
-        self.assertNotEqual(overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key)
-        self.assertIsNone(overlay._handle)  # without a window nothing is drawn
-        overlay.forget()
+        self.assertNotEqual(
+            false_color_overlay.wanted_key(bpy.context, self.scene, kept, "LEVEL"), shown.key
+        )
+        self.assertIsNone(false_color_overlay._handle)  # without a window nothing is drawn
+        false_color_overlay.forget()
 
     def test_files_are_opened_as_they_are_whatever_was_shown(self):
         bpy.context.window_manager.lodestone_overlay.mode = "COST"

@@ -34,9 +34,9 @@ def areas():
 
 
 def state(area=None):
-    from lodestone import preview
+    from lodestone.viewport import levels_preview
 
-    return preview.state_of(area or areas()[0])
+    return levels_preview.state_of(area or areas()[0])
 
 
 def picture(area=None):
@@ -101,10 +101,10 @@ def levels_are_drawn_and_the_file_stays_as_it_is():
 
 def pixels_are_red(area):
     """What was drawn last, somewhere: the balls' color, and the background elsewhere."""
-    from lodestone import preview
+    from lodestone.viewport import levels_preview
 
     region = next(r for r in area.regions if r.type == "WINDOW")
-    texture = preview._canvases[region.as_pointer()]._offscreen.texture_color
+    texture = levels_preview._canvases[region.as_pointer()]._offscreen.texture_color
     pixels = texture.read()
     pixels.dimensions = len(pixels) * len(pixels[0]) * 4
     values = list(pixels)
@@ -166,9 +166,9 @@ def moved_hidden_and_new_things_follow():
 
 
 def preview_pool():
-    from lodestone import preview
+    from lodestone.viewport import levels_preview
 
-    return preview._pool
+    return levels_preview._pool
 
 
 def what_is_edited_is_drawn_as_it_is():
@@ -241,36 +241,36 @@ def a_forced_level_is_one_viewports_and_no_files():
 
 
 def an_exception_is_told_once_and_nothing_breaks():
-    from lodestone import preview
+    from lodestone.viewport import levels_preview
 
-    area, before = area_now(), preview._show
-    printed = len(preview._told)
+    area, before = area_now(), levels_preview._show
+    printed = len(levels_preview._told)
 
     def broken(*_):
         raise RuntimeError("broken on purpose")
 
-    preview._show = broken
+    levels_preview._show = broken
     try:
         for _ in range(5):
             area.tag_redraw()
             yield
         assert "broken on purpose" in state(area).view.problem
-        assert len(preview._told) == printed + 1
+        assert len(levels_preview._told) == printed + 1
     finally:
-        preview._show = before
+        levels_preview._show = before
 
 
 def disabling_the_add_on_ends_it():
     import threading
 
-    from lodestone import preview
+    from lodestone.viewport import levels_preview
 
     addon_utils.disable("lodestone", default_set=True)
     for _ in range(5):
         yield
     assert not [t for t in threading.enumerate() if t.name == "Lodestone viewport"]
-    assert preview._on_change not in bpy.app.handlers.depsgraph_update_post
-    assert not preview._canvases and not preview._sources
+    assert levels_preview._on_change not in bpy.app.handlers.depsgraph_update_post
+    assert not levels_preview._canvases and not levels_preview._sources
 
 
 STEPS = (

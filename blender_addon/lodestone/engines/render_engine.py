@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import bpy
 
-from .. import handlers, preferences, preview
+from .. import handlers, preferences
 from ..bridge import ignored_problems, quality_settings, render_result
 from ..bridge.checks import picture_requirements
 from ..bridge.datablock_ids import name_of
@@ -31,6 +31,7 @@ from ..core.printable_text import printable, sentence, valid
 from ..core.problems import ERROR, Problems
 from ..core.session import changed_shapes, kept_model, last_check, last_render
 from ..core.store import motion_file, store_path
+from ..viewport import levels_preview
 from . import render_job
 
 # Where each stage starts on the progress bar, and how much of it it takes
@@ -64,10 +65,10 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
         picture_requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
     def view_update(self, context, depsgraph):
-        preview.update(self, context, depsgraph)
+        levels_preview.update(self, context, depsgraph)
 
     def view_draw(self, context, depsgraph):
-        preview.draw(self, context, depsgraph)
+        levels_preview.draw(self, context, depsgraph)
 
     def render(self, depsgraph):
         try:

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import preview
+from ..viewport import levels_preview
 from .polled import Polled
 
 _before = {}  # shading by area, for as long as the window is open
@@ -21,7 +21,7 @@ class LODESTONE_OT_show_levels(Polled, bpy.types.Operator):
     def refused(cls, context):
         if context.space_data is None or context.space_data.type != "VIEW_3D":
             return "Point at a 3D Viewport"
-        if context.scene.render.engine != preview.ENGINE:
+        if context.scene.render.engine != levels_preview.ENGINE:
             return "Choose the render engine Lodestone POV-Ray"
         return ""
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the 3D Viewport's popover Levels that is about what the viewport draws."""
 
-from .. import preview
+from . import levels_preview
 
 
 def draw_levels(layout, context):
-    shown = preview.shows_levels(context)
+    shown = levels_preview.shows_levels(context)
     text = "Levels Are Shown" if shown else "Show Levels"
     layout.operator("lodestone.show_levels", text=text, icon="MOD_DECIM", depress=shown)
     settings = context.scene.lodestone
@@ -23,5 +23,5 @@ def draw_levels(layout, context):
     sub.active = chosen.use_force_lod
     sub.prop(chosen, "force_lod", text="")
     told = layout.column(align=True)
-    for line in preview.lines(context):
+    for line in levels_preview.lines(context):
         told.label(text=line)

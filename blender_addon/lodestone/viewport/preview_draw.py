@@ -3,7 +3,7 @@
 
 import time
 
-from .core.preview import viewport_state
+from ..core.preview import viewport_state
 
 MOST_BYTES = 1_000_000_000  # of batches that are kept; beyond it those go that nobody shows
 KEPT_S = 20.0  # that batches nobody shows are kept, for when one looks back

@@ -11,12 +11,12 @@ import traceback
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
-from . import forced_lod, handlers, preview
-from .bridge.live import kept_model_view
-from .core.native import lodestone_native as native
-from .core.picture import false_colors
-from .core.session import kept_model
-from .panels import viewport_levels
+from .. import handlers
+from ..bridge.live import kept_model_view
+from ..core.native import lodestone_native as native
+from ..core.picture import false_colors
+from ..core.session import kept_model
+from . import forced_lod, levels_popover, levels_preview
 
 MOST_TRIANGLES = 400_000
 DELAY_S = 0.05
@@ -193,7 +193,7 @@ def _draw_own(context, mode):
     """The legend of what preview.py colors itself."""
     if mode == "NONE" or not context.space_data.overlay.show_overlays:
         return
-    if not preview.shows_levels(context):
+    if not levels_preview.shows_levels(context):
         _draw_text(context, (), ("Lodestone: this viewport shows no levels",))
         return
     asked = context.scene.lodestone.pixel_error_viewport
@@ -313,7 +313,7 @@ class LODESTONE_VIEW3D_PT_false_colors(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         chosen = settings(context)
-        viewport_levels.draw_levels(layout, context)
+        levels_popover.draw_levels(layout, context)
         layout.separator()
         layout.prop(chosen, "mode")
         column = layout.column()
@@ -330,8 +330,8 @@ def _draw_header(self, context):
     chosen = settings(context)
     icon = "COLOR" if chosen.mode != "NONE" else "NONE"
     row = self.layout.row(align=True)
-    if context.scene.render.engine == preview.ENGINE:
-        shown = preview.shows_levels(context)
+    if context.scene.render.engine == levels_preview.ENGINE:
+        shown = levels_preview.shows_levels(context)
         row.operator("lodestone.show_levels", text="", icon="MOD_DECIM", depress=shown)
     name = LODESTONE_VIEW3D_PT_false_colors.__name__
     row.popover(panel=name, text="Levels", icon=icon)

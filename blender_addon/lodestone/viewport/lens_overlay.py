@@ -5,10 +5,10 @@ screen lenses on the image. Nothing of the GPU is touched before something is dr
 import bpy
 from mathutils import Vector
 
-from . import handlers
-from .bridge.live import live_view
-from .core.picture import lens_rim
-from .operators import screen_lenses
+from .. import handlers
+from ..bridge.live import live_view
+from ..core.picture import lens_rim
+from ..operators import screen_lenses
 
 _RIM = (0.35, 0.75, 1.0, 0.9)
 _HALF = (0.35, 0.75, 1.0, 0.35)

@@ -5,7 +5,7 @@ viewport has its own; none is ever saved."""
 import bpy
 from bpy.props import BoolProperty, IntProperty
 
-from .core.preview.preview_tree import NOT_FORCED
+from ..core.preview.preview_tree import NOT_FORCED
 
 _DEFAULT = 1
 _on = set()  # viewports

@@ -14,19 +14,20 @@ import weakref
 
 import bpy
 
-from . import forced_lod, handlers, preview_draw
-from .bridge import datablock_ids
-from .bridge.datablock_ids import name_of
-from .bridge.live import preview_changes, viewport_camera
-from .bridge.object_decisions import edits_of
-from .bridge.scene import quality_lenses
-from .bridge.scene_settings import SceneSettings
-from .core.preview import preview_worker
-from .core.preview.preview_worker import Failed, Made, Picture, Wanted
-from .core.preview.viewport_state import View
-from .core.problems import Problems
-from .core.session import changed_shapes
-from .core.store import store_levels, store_path
+from .. import handlers
+from ..bridge import datablock_ids
+from ..bridge.datablock_ids import name_of
+from ..bridge.live import preview_changes, viewport_camera
+from ..bridge.object_decisions import edits_of
+from ..bridge.scene import quality_lenses
+from ..bridge.scene_settings import SceneSettings
+from ..core.preview import preview_worker
+from ..core.preview.preview_worker import Failed, Made, Picture, Wanted
+from ..core.preview.viewport_state import View
+from ..core.problems import Problems
+from ..core.session import changed_shapes
+from ..core.store import store_levels, store_path
+from . import forced_lod, preview_draw
 
 ENGINE = "LODESTONE_POVRAY"
 UPLOAD_S = 0.015  # of a redraw
