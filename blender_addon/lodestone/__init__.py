@@ -42,7 +42,7 @@ _MODULES = (
     "viewport.false_color_overlay",
     "panels",
     "viewport.lens_overlay",
-    "compat_panels",
+    "panels.stock_panels",
 )
 _loaded: list = []
 

@@ -4,7 +4,7 @@
     /usr/bin/python3 batch.py build|render|export FILE... [options]
 
 This half runs in plain Python and outlives whatever happens to Blender; the other half is
-batch_blender.py. A crash, a signal and a missing report all become exit codes.
+batch_blender/. A crash, a signal and a missing report all become exit codes.
 """
 
 import os
@@ -74,7 +74,7 @@ class Run:
         files = Path(beside).absolute().with_suffix(".files") if beside else None
         self.around = Surroundings(
             blender=options.blender or os.environ.get("LODESTONE_BLENDER") or "blender",
-            script=PACKAGE / "batch_blender.py",
+            script=PACKAGE / "batch_blender" / "file_run.py",
             limits=Limits(options.timeout, options.max_memory),
             skip_existing=getattr(options, "skip_existing", False),
             files=files,

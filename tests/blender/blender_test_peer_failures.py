@@ -163,11 +163,12 @@ class PeerFailures(Case):
         from lodestone.engines import render_engine
 
         scenes.cube()
-        extract, render_engine.scene.extract = render_engine.scene.extract, lambda *_, **__: 1 // 0
+        extraction = render_engine.scene_extraction
+        extract, extraction.extract = extraction.extract, lambda *_, **__: 1 // 0
         try:
             self.refused("ZeroDivisionError")
         finally:
-            render_engine.scene.extract = extract
+            extraction.extract = extract
         self.povray(b"echo 'Parse Error: no such thing' >&2; exit 1\n")
         self.refused("no such thing")
         os.environ["LODESTONE_POVRAY"] = "/nowhere/povray"

@@ -40,7 +40,7 @@ def overlay():
 
 
 def shown():
-    return false_color_overlay()._shown._batch is not None
+    return overlay()._shown._batch is not None
 
 
 def colors_are_drawn_and_follow_the_camera():
@@ -61,18 +61,18 @@ def colors_are_drawn_and_follow_the_camera():
         chosen.mode = mode
 
         def drawn():
-            return shown() and false_color_overlay()._shown.key[2] == mode
+            return shown() and overlay()._shown.key[2] == mode
 
         yield from steps.wait_until(drawn)
         assert chosen.mode == mode, "an exception while it was drawn turns it off"
         assert painted == {item.name: tuple(item.color) for item in bpy.data.objects}
-    before = false_color_overlay()._shown._batch
+    before = overlay()._shown._batch
     with steps.window():
         bpy.ops.ed.undo_push(message="Before")
     bpy.context.scene.camera.location.y = -40.0
 
     def follows():
-        return shown() and false_color_overlay()._shown._batch is not before
+        return shown() and overlay()._shown._batch is not before
 
     yield from steps.wait_until(follows)
     with steps.window():

@@ -194,7 +194,7 @@ class Sessions(unittest.TestCase):
 
     def test_a_killed_processs_log_is_not_empty(self):
         text = (
-            "import ctypes, os, signal; from lodestone.core import process_session\n"
+            "import ctypes, os, signal; from lodestone.core.batch import process_session\n"
             "c = ctypes.CDLL(None); c.printf(b'before\\n'); process_session.speak_in_lines()\n"
             "c.printf(b'after\\n'); os.kill(os.getpid(), signal.SIGKILL)"
         )

@@ -36,7 +36,8 @@ UNDECIDED = Decision()
 
 
 def decision(use: str, coarsest: int, importance: float, pin: int = -1) -> Decision:
-    """Of the settings of an object or collection, as properties.py names them; pin: the LOD number
+    """Of the settings of an object or collection, as property_groups.py names
+    them; pin: the LOD number
     it is always drawn with, below 0: none. UNDECIDED itself where they ask for nothing."""
     limits = {"ORIGINAL": 0, "EXCLUDE": 0, "LIMIT": coarsest}
     if math.isnan(importance):  # Blender lets scripts and drivers set it so

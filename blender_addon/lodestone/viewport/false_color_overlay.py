@@ -190,7 +190,7 @@ def _draw():
 
 
 def _draw_own(context, mode):
-    """The legend of what preview.py colors itself."""
+    """The legend of what levels_preview.py colors itself."""
     if mode == "NONE" or not context.space_data.overlay.show_overlays:
         return
     if not levels_preview.shows_levels(context):

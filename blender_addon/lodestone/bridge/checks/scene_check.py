@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Check Scene: what F12 would report of a scene, without a render and without reading a mesh.
 
-It takes the way of the extraction (instances.py, materials.py, lights.py, ...) with a stand-in
+It takes the way of the extraction (shown_instances.py, materials.py, ...) with a stand-in
 for the leaves and one for the model, so that there is one set of rules. What it walks is the
 depsgraph of the viewport, less what renders hide; what only renders show is added as it is stored.
 """

@@ -21,11 +21,9 @@ class PictureRequest:
     camera: str = ""
     pixel_error: float | None = None
     antialias: str | None = None
-    overrides: dict[str, float] = field(
-        default_factory=dict
-    )  # of core/picture/quality_tree.py's controls
+    overrides: dict[str, float] = field(default_factory=dict)  # of quality_tree.py's controls
     budget: int | None = None  # bytes of POV-Ray's scene
-    off_screen: str | None = None  # these two as core/picture/unseen_detail.py's words
+    off_screen: str | None = None  # these two as unseen_detail.py's words
     ray_classes: str | None = None
     false_color: bool = False
     covered_only: bool = False

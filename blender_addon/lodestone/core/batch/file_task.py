@@ -46,7 +46,7 @@ class Surroundings:
     takes progress, `began(task)` and `done(task)` its beginning and end."""
 
     blender: str
-    script: Path  # batch_blender.py
+    script: Path  # batch_blender/file_run.py
     limits: Limits
     skip_existing: bool
     files: Path | None  # folder of logs and thumbnails; None: logs beside the levels

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import bpy
 
-PACKAGE = Path(__file__).resolve().parent
+PACKAGE = Path(__file__).resolve().parents[1]
 if __name__ == "__main__":  # never enabled in any preferences: registered from its own folder
     sys.path.insert(0, str(PACKAGE.parent))
 
 import lodestone  # noqa: E402
-from lodestone import batch_pictures  # noqa: E402
+from lodestone.batch_blender import picture_files  # noqa: E402
 from lodestone.bridge import quality_settings  # noqa: E402
 from lodestone.bridge.checks import blend_check, picture_requirements  # noqa: E402
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
@@ -273,16 +273,16 @@ class FileRun:
                     raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
                 raise
             if compares:
-                about.update(batch_pictures.save_compared(scene, made, Path(picture.out), settings))
+                about.update(picture_files.save_compared(scene, made, Path(picture.out), settings))
             else:
                 with_alpha = picture.covered_only
-                batch_pictures.save(
+                picture_files.save(
                     scene, made.path, Path(picture.out), with_alpha, settings.stamp()
                 )
             if self.job.keep_exr:
-                batch_pictures.copy_exr(made.path, Path(picture.out).with_suffix(".exr"))
+                picture_files.copy_exr(made.path, Path(picture.out).with_suffix(".exr"))
         if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
-            batch_pictures.save_thumbnail(picture.out, self.job.thumbnail)
+            picture_files.save_thumbnail(picture.out, self.job.thumbnail)
         return {**about, **made.parts, "picture": picture.out}
 
     def _scene_folder(self, kept: Path):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .panels import ENGINE
+from . import ENGINE
 
 # Panels of what our pictures do not have, and those that ours stand for
 _LEFT_OUT = {

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import bpy
 
-from .core import file_names, run_report
-from .core.exit_codes import ExitCode, Failed
-from .core.native import lodestone_native as native
-from .core.picture import compare_plan
-from .core.picture.picture_maker import Settings
+from ..core import file_names, run_report
+from ..core.exit_codes import ExitCode, Failed
+from ..core.native import lodestone_native as native
+from ..core.picture import compare_plan
+from ..core.picture.picture_maker import Settings
 
 THUMBNAIL = 192  # pixels
 THUMBNAIL_OF = 64_000_000  # pixels of the largest picture that gets one
