@@ -129,7 +129,7 @@ def tag(item: Any) -> None:
 
 
 def edits_of(item: Any) -> tuple[str, str]:
-    """What core.edits knows an object by: its name and that of its data."""
+    """What changed_shapes knows an object by: its name and that of its data."""
     data = item.original.data
     name = "" if data is None else f"{type(data).__name__} {name_of(data, 'name_full')}"
     return name_of(item), name

@@ -162,7 +162,7 @@ def leaves_of(model: Any, root: Any) -> list[tuple[Any, int]]:
 
 class Change(NamedTuple):
     """What is different about a placement from how levels were built. `world`: None: where it was.
-    `importance`, `coarsest`, `pinned`: as core.decision has them."""
+    `importance`, `coarsest`, `pinned`: as placement_decision has them."""
 
     world: Rows | None = None
     hidden: bool = False

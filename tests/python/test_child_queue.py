@@ -153,8 +153,8 @@ class KilledSupervisor(unittest.TestCase):
 import os, sys
 from pathlib import Path
 import addon_path
-from test_batch_queue import Command
-from lodestone.core.batch_queue import Interrupts, Queue
+from test_child_queue import Command
+from lodestone.core.batch.child_queue import Interrupts, Queue
 folder = Path(sys.argv[1])
 with Interrupts() as interrupts:
     Queue([Command(f"echo $$ > {folder}/pid; exec sleep 60", folder)], 1, interrupts).run()
