@@ -52,6 +52,11 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">]', re.MULTIL
 
 # Add-on modules from the ground up; everything else of the add-on stands on top.
 ADDON_FLOORS = ("lodestone_native", "core", "bridge")
+# The rooms of a floor, from the ground up; "" are the files of the floor itself, which serve all.
+ADDON_ROOMS = {
+    "core": ("", "expression", "store", "picture", "preview", "batch", "session"),
+    "bridge": ("", "motion", "nodes", "world", "scene", "checks", "live"),
+}
 BLENDER_MODULES = ("bpy", "bpy_extras", "bmesh", "mathutils", "gpu", "gpu_extras", "bl_ui", "blf")
 
 
@@ -140,27 +145,42 @@ def imported_modules(name: str, text: str) -> list[str]:
     return found
 
 
-def addon_floor(module: str) -> int:
-    """Height of a dotted module name of the add-on: 0 the binding ... 3 the panels."""
+def addon_height(module: str) -> tuple[int, int]:
+    """Floor of a dotted module name of the add-on, 0 the binding ... 3 the panels, and its room."""
     parts = module.split(".")
     if parts[0] == "lodestone_native":
-        return 0
-    part = parts[1] if len(parts) > 1 else ""
-    return ADDON_FLOORS.index(part) if part in ADDON_FLOORS else len(ADDON_FLOORS)
+        return (0, 0)
+    floor = parts[1] if len(parts) > 1 else ""
+    if floor not in ADDON_FLOORS:
+        return (len(ADDON_FLOORS), 0)
+    rooms = ADDON_ROOMS.get(floor, ("",))
+    room = parts[2] if len(parts) > 2 else ""
+    return (ADDON_FLOORS.index(floor), rooms.index(room) if room in rooms else 0)
+
+
+def unknown_room(name: str) -> str | None:
+    """The folder of a file of core or bridge, when it is no room that has a height."""
+    parts = name.removeprefix("blender_addon/lodestone/").split("/")
+    known = ADDON_ROOMS.get(parts[0])
+    folder = "/".join(parts[1:-1])
+    return folder if known is not None and folder not in known else None
 
 
 def check_python(name: str, text: str) -> list[str]:
     """All wrong imports of one Python file of the add-on or the binding."""
     own = name.removeprefix("blender_addon/").removeprefix("backend/python/")
-    height = addon_floor(own.removesuffix(".py").replace("/", "."))
+    height = addon_height(own.removesuffix(".py").replace("/", "."))
     found = []
+    room = unknown_room(name)
+    if room is not None:
+        found.append(f"{name}: {room} is no room of check_layers.py")
     for module in imported_modules(name, text):
         top = module.split(".")[0]
         if top == "numpy":
             found.append(f"{name}: imports numpy, which Debian's Blender does not bring")
-        elif top in BLENDER_MODULES and height < ADDON_FLOORS.index("bridge"):
+        elif top in BLENDER_MODULES and height[0] < ADDON_FLOORS.index("bridge"):
             found.append(f"{name}: imports {top}; bpy does not appear below bridge")
-        elif top in ("lodestone", "lodestone_native") and addon_floor(module) > height:
+        elif top in ("lodestone", "lodestone_native") and addon_height(module) > height:
             found.append(f"{name}: imports {module}, which is above it")
     return found
 

@@ -98,6 +98,23 @@ class TheCheck(unittest.TestCase):
         self.assert_wrong(place + "bridge/a.py", "def f():\n    import lodestone.ui", "above")
         self.assert_wrong("backend/python/lodestone_native/a.py", "import lodestone.core", "above")
 
+    def test_rooms_of_the_add_on_import_downwards(self):
+        place = "blender_addon/lodestone/"
+        self.assert_right(place + "core/preview/a.py", "from ..picture import cost_model\n")
+        self.assert_right(place + "core/picture/a.py", "from . import b\nfrom .. import problems\n")
+        self.assert_right(place + "bridge/motion/a.py", "from ...core.session import edits\n")
+        self.assert_wrong(place + "core/picture/a.py", "from ..preview import b", "above")
+        self.assert_wrong(place + "core/picture/a.py", "from .. import batch", "above")
+        self.assert_wrong(place + "core/problems.py", "from .store import store_path", "above")
+        self.assert_wrong(place + "bridge/motion/a.py", "from ..scene import b", "above")
+        self.assert_wrong(place + "bridge/nodes/a.py", "import lodestone.bridge.world.b", "above")
+
+    def test_a_folder_of_the_add_on_is_a_room_with_a_height(self):
+        place = "blender_addon/lodestone/"
+        for floor in ("core", "bridge"):
+            self.assert_wrong(f"{place}{floor}/attic/a.py", "import math\n", "no room")
+            self.assert_wrong(f"{place}{floor}/attic/b/a.py", "import math\n", "no room")
+
     def test_bpy_stays_above_core(self):
         for text in ("import bpy", "from bpy.types import Mesh", "def f():\n    import mathutils"):
             with self.subTest(text):
