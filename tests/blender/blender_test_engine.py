@@ -8,10 +8,12 @@ import os
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import bpy
 
 import blender_scenes as scenes
+from lodestone.core import egl_library
 from lodestone.core.session import last_check, last_render
 
 
@@ -30,6 +32,9 @@ class Engine(unittest.TestCase):
 
     def render(self):
         bpy.ops.render.render(write_still=True)
+        return self.pixels()
+
+    def pixels(self):
         image = bpy.data.images.load(str(self.out))
         self.addCleanup(lambda: None)
         width, height = image.size
@@ -39,6 +44,16 @@ class Engine(unittest.TestCase):
             [pixels[4 * (y * width + x) : 4 * (y * width + x) + 4] for x in range(width)]
             for y in range(height)
         ]
+
+    def pencil(self, name="Ink"):
+        turn = (math.pi / 2, 0, 0)
+        bpy.ops.object.gpencil_add(type="STROKE", location=(0, 0, 2), rotation=turn)
+        bpy.context.object.name = name
+        return bpy.context.object
+
+    def problems(self, code):
+        found = last_check.get(self.scene.name).problems
+        return [problem for problem in found if problem.code == code]
 
     def refused(self, text):
         self.out.write_bytes(b"last night's picture")
@@ -228,7 +243,7 @@ class Engine(unittest.TestCase):
 
     def test_grease_pencil_in_a_layer_with_depth_crashed_blender(self):
         scenes.cube()
-        bpy.ops.object.gpencil_add(type="STROKE", location=(0, 0, 2), rotation=(math.pi / 2, 0, 0))
+        self.pencil()
         without = self.render()
         bpy.context.view_layer.use_pass_z = True
         found = self.render()
@@ -237,6 +252,51 @@ class Engine(unittest.TestCase):
         self.assertNotEqual(found, self.render())
         severities = {problem.severity for problem in last_check.get(self.scene.name).problems}
         self.assertNotIn("error", severities)
+
+    def test_grease_pencil_ended_blender_where_libegl_is_missing(self):
+        scenes.cube()
+        ink = self.pencil()
+        drawn = self.render()
+        with mock.patch.object(egl_library, "LIBRARY", "libEGL_of_no_machine.so"):
+            without = self.render()
+        problems = self.problems("egl_missing")
+        self.assertEqual([(item.object, item.severity) for item in problems], [("Ink", "error")])
+        self.assertIn("install libegl1", problems[0].message)
+        self.assertFalse(ink.hide_render)
+        self.assertEqual(self.render(), drawn)
+        self.assertEqual(self.problems("egl_missing"), [])
+        ink.hide_render = True
+        self.assertEqual(self.render(), without)
+        self.assertNotEqual(drawn, without)
+
+    def test_where_libegl_is_missing_grease_pencil_is_left_out_however_it_is_shown(self):
+        scenes.cube()
+        first = self.pencil()
+        first.hide_render = True
+        without = self.render()
+        first.keyframe_insert("hide_render", frame=self.scene.frame_current - 1)
+        first.hide_render = False
+        first.keyframe_insert("hide_render", frame=self.scene.frame_current)
+        second = self.pencil("Member")
+        driver = second.driver_add("hide_render").driver
+        driver.expression = "0"
+        held = scenes.collection("Held")
+        held.objects.link(second)
+        self.scene.collection.objects.unlink(second)
+        scenes.instance("Host", held)
+        self.scene.view_layers.new("Second")
+        self.scene.render.filepath = str(self.folder / "frame_")
+        self.scene.frame_start, self.scene.frame_end = self.scene.frame_current - 1, 2
+        with mock.patch.object(egl_library, "LIBRARY", "libEGL_of_no_machine.so"):
+            bpy.ops.render.render(animation=True)
+        for number in range(3):
+            self.out = self.folder / f"frame_{number:04}.png"
+            self.assertEqual(self.pixels(), without)
+        named = [problem.object for problem in self.problems("egl_missing")]
+        self.assertEqual(named, ["Ink", "Member"])
+        curves = [*first.animation_data.action.fcurves, *second.animation_data.drivers]
+        self.assertEqual([curve.mute for curve in curves], [False, False])
+        self.assertEqual((first.hide_render, second.hide_render), (False, False))
 
     def test_settings_of_a_newer_version_are_their_defaults_here(self):
         scenes.cube()

@@ -16,12 +16,12 @@ import bpy
 
 from .. import handlers, preferences
 from ..bridge import ignored_problems, quality_settings, render_result
-from ..bridge.checks import picture_requirements
+from ..bridge.checks import hidden_grease_pencil, picture_requirements
 from ..bridge.datablock_ids import name_of
 from ..bridge.motion import shutter_motion
 from ..bridge.scene import deforming_poses, quality_lenses, scene_camera, scene_extraction
 from ..bridge.scene_settings import SceneSettings
-from ..core import progress_text
+from ..core import egl_library, progress_text
 from ..core.background_calls import Stopped, Work
 from ..core.native import lodestone_native as native
 from ..core.picture import compare_plan
@@ -40,6 +40,7 @@ _SHARES["Coverage"] = (1.0, 0.0)
 # Of the render that is running
 _folder = RenderFolder()
 _poses = {}  # by scene and view layer
+_hidden_pencil = hidden_grease_pencil.HiddenGreasePencil()
 _leaving = False  # the add-on is disabled: what runs is to stop
 
 
@@ -118,6 +119,7 @@ class _Run:
         self.problems = Problems()
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))
         self.ignored = ignored_problems.keys(depsgraph.scene)
+        self.problems.extend(_hidden_pencil.problems)
         self.users = {}
         self.poses = deforming_poses.Poses()
         self.plan = compare_plan.current()
@@ -370,8 +372,24 @@ def _forget(*_):
     _poses.clear()
 
 
-_HANDLERS = tuple(
-    (name, _forget) for name in ("render_init", "render_complete", "render_cancel", "load_pre")
+@bpy.app.handlers.persistent
+def _hide_pencil(rendered, *_):
+    """A picture begins: grease pencil is hidden while it is made, where drawing it ends Blender."""
+    ours = rendered.render.engine == LODESTONE_RE_povray.bl_idname
+    if ours and bpy.app.background and len(bpy.data.grease_pencils) and egl_library.missing():
+        _hidden_pencil.hide(bpy.data, rendered, bpy.context.view_layer)
+
+
+@bpy.app.handlers.persistent
+def _show_pencil(*_):
+    _hidden_pencil.put_back()
+
+
+_ENDS = ("render_complete", "render_cancel")
+_HANDLERS = (
+    *((name, _forget) for name in ("render_init", *_ENDS, "load_pre")),
+    ("render_pre", _hide_pencil),
+    *((name, _show_pencil) for name in ("render_post", *_ENDS)),
 )
 _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray,))
 
