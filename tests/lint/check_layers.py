@@ -37,7 +37,7 @@ THIRD_PARTY = (
     ),
     (r"tiny_?gltf|stb", r"backend/src/format/"),
     (r"(tbb|oneapi)/", r"backend/src/base/parallel\.cpp$"),
-    (r"OpenMesh/", r"backend/src/simplify/simplify"),
+    (r"OpenMesh/", r"backend/src/geometry/repair"),
     (r"curl/", r"backend/src/segment/fetch"),
     (r"nlohmann/", r".*\.cpp$"),
     (r"glm/", r"(backend/src|povray_export)/"),

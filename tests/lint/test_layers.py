@@ -40,7 +40,7 @@ class TheCheck(unittest.TestCase):
 
     def test_includes_may_not_point_up(self):
         self.assert_wrong("backend/src/base/a.h", '#include "model/mesh.h"', "above base")
-        self.assert_wrong("backend/src/build/a.h", '  # include "povray_export/x.h"', "above build")
+        self.assert_wrong("backend/src/hierarchy/a.h", '  # include "povray_export/x.h"', "above hierarchy")
         self.assert_wrong("backend/src/ray/a.cpp", '#include "../capi/x.h"', "climbs out")
         self.assert_wrong("backend/src/ray/a.cpp", '#include "ray.h"', "on no floor")
         self.assert_wrong("backend/src/ray/a.cpp", '#include "lodestone/lodestone.h"', "only capi")

@@ -2,6 +2,7 @@
 #include "geometry/closest_on_triangle.h"
 
 #include <cstring>
+#include <limits>
 
 namespace lodestone::geometry {
 namespace {
@@ -18,7 +19,45 @@ Lanes dot(const Vectors& a, const Vectors& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// Parameter in 0...1 of the point of a + s d that is closest to p.
+double on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& d) {
+    const double square = glm::dot(d, d);
+    return square > 0 ? std::clamp(glm::dot(p - a, d) / square, 0.0, 1.0) : 0.0;
+}
+
 }  // namespace
+
+OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                               const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a;
+    const glm::dvec3 ac = c - a;
+    const glm::dvec3 normal = glm::cross(ab, ac);
+    const double square = glm::dot(normal, normal);
+    if (square > 0) {
+        const glm::dvec3 ap = p - a;
+        const double u = glm::dot(glm::cross(ap, ac), normal) / square;
+        const double v = glm::dot(glm::cross(ab, ap), normal) / square;
+        if (u >= 0 && v >= 0 && u + v <= 1)
+            return {a + u * ab + v * ac, u, v};
+    }
+    // Outside the prism over the triangle: the nearest point lies on an edge.
+    const double s_ab = on_segment(p, a, ab);
+    const double s_ac = on_segment(p, a, ac);
+    const double s_bc = on_segment(p, b, c - b);
+    const std::array<OnTriangle, 3> edges{OnTriangle{a + s_ab * ab, s_ab, 0},
+                                          OnTriangle{a + s_ac * ac, 0, s_ac},
+                                          OnTriangle{b + s_bc * (c - b), 1 - s_bc, s_bc}};
+    size_t best = 0;
+    double best_square = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 arm = p - edges[i].point;
+        if (glm::dot(arm, arm) < best_square) {
+            best_square = glm::dot(arm, arm);
+            best = i;
+        }
+    }
+    return edges[best];
+}
 
 Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point) {
     const glm::vec3 a = corners[0] - point;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearest on triangle: the place of a triangle that is nearest to a point.
+// The place of a triangle that is closest to a point: exactly, one at a time, and in single precision
+// for the many that fitting asks for.
 #pragma once
 
 #include "base/maths.h"
@@ -11,6 +12,16 @@
 #include <span>
 
 namespace lodestone::geometry {
+
+/// The point of a triangle that is closest to another: (1-u-v) a + u b + v c.
+struct OnTriangle {
+    glm::dvec3 point{0.0};
+    double u = 0;
+    double v = 0;
+};
+/// Also of a triangle without area.
+OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                               const glm::dvec3& c);
 
 /// No triangle was found.
 inline constexpr uint32_t kNoTriangle = ~uint32_t{0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/vertex_rings.h"
 
-#include "ray/closest_search.h"
+#include "geometry/closest_on_triangle.h"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ bool Nearest::visit(uint32_t index) {
     const glm::dvec3 a(points_[t.x]);
     const glm::dvec3 b(points_[t.y]);
     const glm::dvec3 c(points_[t.z]);
-    const ray::OnTriangle on = ray::closest_on_triangle(from_, a, b, c);
+    const OnTriangle on = closest_on_triangle(from_, a, b, c);
     const glm::dvec3 arm = on.point - from_;
     const double square = glm::dot(arm, arm);
     const glm::dvec3 sum = a + b + c;  // the nearest point may lie on the edge of two that are

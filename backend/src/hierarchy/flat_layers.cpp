@@ -3,10 +3,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "geometry/closest_on_triangle.h"
 #include "hierarchy/evaluators/stand_in_evaluator.h"
 #include "measure/visible/convex_bound.h"
 #include "measure/visible/surface_inertia.h"
-#include "ray/closest_search.h"
 
 #include <glm/matrix.hpp>
 
@@ -232,7 +232,7 @@ private:
             const Box3 box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
             if (!overlap({point, point}, box, gap))
                 continue;
-            const glm::dvec3 arm = ray::closest_on_triangle(point, a, b, c).point - point;
+            const glm::dvec3 arm = geometry::closest_on_triangle(point, a, b, c).point - point;
             if (glm::dot(arm, arm) <= gap * gap)
                 return true;
         }
