@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/scene_lights.h"
 
-#include "povray_export/lamp/penumbra.h"
+#include "light/penumbra.h"
 #include "povray_export/scene/magnification.h"
 #include "povray_export/scene/povray_number.h"
 
@@ -12,7 +12,7 @@ namespace lodestone::povray {
 void SceneLights::append(std::string& out, Light light) const {
     constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
     constexpr double kPoint = 1e-7;  // of an area's edges, which say where it shines
-    const double widest = widest_penumbra(light, view_, occluders_);
+    const double widest = light::widest_penumbra(light, view_, occluders_);
     const double step = std::max(kLeast, shading_.shadow_error);
     if (widest <= step) {
         light.angle = light.radius = 0;
@@ -25,7 +25,8 @@ void SceneLights::append(std::string& out, Light light) const {
     append_light(out, magnified(light, times_), bound_, sampling, problems_);
 }
 
-std::vector<std::string> SceneLights::declare(std::string& out, const LightPlan& plan) const {
+std::vector<std::string> SceneLights::declare(std::string& out,
+                                              const light::LightPlan& plan) const {
     std::vector<std::string> names(plan.lights.size());
     for (size_t i = 0; i < names.size(); ++i) {
         std::string light;
@@ -39,7 +40,7 @@ std::vector<std::string> SceneLights::declare(std::string& out, const LightPlan&
     return names;
 }
 
-std::string grouped_text(const LightPlan& plan, const std::vector<std::string>& names,
+std::string grouped_text(const light::LightPlan& plan, const std::vector<std::string>& names,
                          const std::vector<std::string>& objects) {
     std::string out;
     for (size_t i = 0; i < objects.size(); ++i) {

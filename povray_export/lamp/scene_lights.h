@@ -2,7 +2,7 @@
 // Scene lights: the lights of a view, each as far as its pixels can tell, and groups lit by them.
 #pragma once
 
-#include "povray_export/lamp/light_plan.h"
+#include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/scene/shading.h"
 
@@ -29,7 +29,7 @@ public:
     void append(std::string& out, Light light) const;
 
     /// Declares the lights of a plan; their names, empty for one that gives no light.
-    std::vector<std::string> declare(std::string& out, const LightPlan& plan) const;
+    std::vector<std::string> declare(std::string& out, const light::LightPlan& plan) const;
 
 private:
     const View& view_;
@@ -42,7 +42,7 @@ private:
 };
 
 /// `objects`: the text of what each group of the plan lights. Suns light all groups.
-std::string grouped_text(const LightPlan& plan, const std::vector<std::string>& names,
+std::string grouped_text(const light::LightPlan& plan, const std::vector<std::string>& names,
                          const std::vector<std::string>& objects);
 
 }  // namespace lodestone::povray

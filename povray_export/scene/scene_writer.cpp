@@ -4,8 +4,9 @@
 #include "base/files.h"
 #include "choose/criterion.h"
 #include "light/light_arrival.h"
-#include "povray_export/lamp/light_plan.h"
+#include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
+#include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/lamp/scene_lights.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/include_files.h"
@@ -287,30 +288,30 @@ private:
     }
 
     /// By which lights what is drawn; its numbers are those of the uses that are drawn.
-    LightPlan light_plan(const std::vector<Bound>& occluders) {
+    light::LightPlan light_plan(const std::vector<Bound>& occluders) {
         const double error = options_.light_error.value_or(view_.pixel_error);
         report_.lamps = static_cast<uint64_t>(
             std::count_if(model_.lights.begin(), model_.lights.end(), light::lamp));
         report_.lights_each = static_cast<double>(report_.lamps);
-        if (!lit() || !(error > 0) || report_.lamps < kFewLamps)
+        if (!lit() || !(error > 0) || report_.lamps < light::kFewLamps)
             return {};
-        std::vector<Lit> drawn;
+        std::vector<light::Lit> drawn;
         drawn.reserve(occluders.size());
         for (const Use& use : uses_) {
             if (includes_.at(use.file).drawn)
                 drawn.push_back(
                     {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
         }
-        LightPlan plan =
-            plan_lights(model_, drawn, view_, error, shading_.bounces, problems_, job_);
+        light::LightPlan plan = light::plan_lights(model_, renderer_surfaces(model_), drawn, view_,
+                                                   error, shading_.bounces, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
         return plan;
     }
 
     /// Everything that is drawn, with the lights of its group around it.
-    std::string grouped_objects(const LightPlan& plan, const std::vector<std::string>& lights,
-                                double times) {
+    std::string grouped_objects(const light::LightPlan& plan,
+                                const std::vector<std::string>& lights, double times) {
         std::string out;
         std::vector<const Use*> drawn;
         drawn.reserve(uses_.size());
@@ -326,7 +327,7 @@ private:
         }
         report_.occurrences = drawn.size();
         std::vector<std::string> groups(plan.groups.size());
-        for (const Piece& piece : plan.pieces)
+        for (const light::Piece& piece : plan.pieces)
             append_object(groups[piece.group], *drawn[piece.drawn], times, piece.within);
         return plan.empty() ? out : grouped_text(plan, lights, groups);
     }
@@ -376,7 +377,7 @@ private:
         }
         const double times = magnification(view_, occluders);
         bound = magnified(bound, times);
-        const LightPlan plan = light_plan(occluders);
+        const light::LightPlan plan = light_plan(occluders);
         std::string lights;
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);

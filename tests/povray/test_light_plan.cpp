@@ -2,13 +2,14 @@
 // Guards approximated lights in pictures: rooms shade with their own lamps, nothing shines through
 // walls, floors of many rooms are cut, and what the number allows is all that differs.
 #include "base/parallel.h"
+#include "light/light_plan.h"
 #include "povray/povray_scenes.h"
-#include "povray_export/lamp/light_plan.h"
 #include "ray/mesh_scene.h"
 
 #include <limits>
 
 using namespace lodestone;
+using namespace lodestone::light;
 using namespace lodestone::povray;
 using scenes::Builder;
 
@@ -167,7 +168,7 @@ TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
     View view = from_above(1);
     view.camera.position = {2, 2, 0.5};
     view.camera.direction = {0, 0, 0};
-    EXPECT_NO_THROW(plan_lights(builder.model, {}, view, 1, 0, problems));
+    EXPECT_NO_THROW(plan_lights(builder.model, {}, {}, view, 1, 0, problems));
 }
 
 TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/lamp/light_coverage.h"
+#include "light/light_coverage.h"
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 namespace {
 
 constexpr double kMostLooks = 524288;
@@ -54,7 +54,7 @@ private:
     static constexpr uint32_t kNobody = ~uint32_t{0};
 
     struct Look {
-        light::LitPoint point;
+        LitPoint point;
         size_t cell = 0;
         uint32_t speaker = kNobody;
     };
@@ -80,7 +80,7 @@ private:
             (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns_);
         const double y = (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows_);
         const size_t cell = cell_at(x, y);
-        for (light::LitPoint& point : scene_.seen(view_, x, y)) {
+        for (LitPoint& point : scene_.seen(view_, x, y)) {
             Look one{std::move(point), cell, kNobody};
             one.speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
                 for (uint32_t i = grid_.first[there]; i < grid_.first[there + 1]; ++i) {
@@ -105,8 +105,8 @@ private:
     uint32_t speaker_of(const Look& one, const Among& among) const {
         const double most = reach_beside(view_, grid_, one.point);
         const auto speaks = [&](uint32_t index) {
-            const light::LitPoint& a = grid_.points[index];
-            const light::LitPoint& b = one.point;
+            const LitPoint& a = grid_.points[index];
+            const LitPoint& b = one.point;
             const double facing = glm::dot(a.aside, b.aside);
             return a.region == b.region && glm::length(a.position - b.position) <= most &&
                    facing > kSameWay * glm::length(a.aside) * glm::length(b.aside) &&
@@ -179,7 +179,7 @@ std::vector<Sighting> cover(const LitScene& scene, const View& view,
 }
 
 void lend(std::span<const Sighting> sightings, const LightRegions& regions,
-          std::vector<light::LitPoint>& points, light::LightShares& shares) {
+          std::vector<LitPoint>& points, LightShares& shares) {
     // Pieces are in the order of what is drawn.
     std::vector<size_t> first;
     for (size_t i = 0; i < regions.pieces.size(); ++i) {
@@ -205,4 +205,4 @@ void lend(std::span<const Sighting> sightings, const LightRegions& regions,
     }
 }
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

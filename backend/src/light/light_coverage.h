@@ -4,10 +4,10 @@
 // of its room.
 #pragma once
 
-#include "povray_export/lamp/light_regions.h"
-#include "povray_export/lamp/lit_points.h"
+#include "light/light_regions.h"
+#include "light/lit_points.h"
 
-namespace lodestone::povray {
+namespace lodestone::light {
 
 /// A point that is seen, and the lit point that stands for it.
 struct Sighting {
@@ -28,6 +28,6 @@ std::vector<Sighting> cover(const LitScene& scene, const View& view,
 /// Where a thing is cut between a sighting and its point, lends the point to the piece that is
 /// seen: copies of it in that region, and of its shares.
 void lend(std::span<const Sighting> sightings, const LightRegions& regions,
-          std::vector<light::LitPoint>& points, light::LightShares& shares);
+          std::vector<LitPoint>& points, LightShares& shares);
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/lamp/light_plan.h"
+#include "light/light_plan.h"
 
 #include "light/light_arrival.h"
-#include "povray_export/lamp/light_coverage.h"
-#include "povray_export/lamp/light_regions.h"
-#include "povray_export/lamp/lit_points.h"
+#include "light/light_coverage.h"
+#include "light/light_regions.h"
+#include "light/lit_points.h"
 
 #include <algorithm>
 #include <map>
 #include <unordered_set>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 namespace {
 
 constexpr double kShare = 0.05;   // points to pixels
@@ -35,15 +35,15 @@ uint64_t distinct_triangles(std::span<const Lit> drawn) {
     return count;
 }
 
-LightPlan plan_of(const light::LightTree& tree, const light::LightCut& cut,
-                  std::span<const light::LitPoint> points, const LightRegions& regions) {
+LightPlan plan_of(const LightTree& tree, const LightCut& cut, std::span<const LitPoint> points,
+                  const LightRegions& regions) {
     std::vector<uint32_t> all;
     for (uint32_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {
-        if (light::lamp(tree.nodes[i].light))
+        if (lamp(tree.nodes[i].light))
             all.push_back(i);
     }
     double sum = 0;
-    for (const light::LitPoint& point : points)
+    for (const LitPoint& point : points)
         sum += static_cast<double>(cut[point.region].size());
     LightPlan plan;
     plan.lights_each = sum / static_cast<double>(points.size());
@@ -58,11 +58,11 @@ LightPlan plan_of(const light::LightTree& tree, const light::LightCut& cut,
             lists.push_back(list);
         group_of.push_back(at->second);
     }
-    std::vector<uint32_t> number(tree.nodes.size(), light::kNoLight);
+    std::vector<uint32_t> number(tree.nodes.size(), kNoLight);
     for (const std::vector<uint32_t>& list : lists) {
         std::vector<uint32_t>& group = plan.groups.emplace_back();
         for (const uint32_t node : list) {
-            if (number[node] == light::kNoLight) {
+            if (number[node] == kNoLight) {
                 number[node] = static_cast<uint32_t>(plan.lights.size());
                 plan.lights.push_back(tree.nodes[node].light);
             }
@@ -77,10 +77,11 @@ LightPlan plan_of(const light::LightTree& tree, const light::LightCut& cut,
 
 }  // namespace
 
-LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
-                      double pixel_error, int bounces, Problems& problems, const Job& job) {
+LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
+                      std::span<const Lit> drawn, const View& view, double pixel_error, int bounces,
+                      Problems& problems, const Job& job) {
     const auto lamps =
-        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), light::lamp));
+        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), lamp));
     if (!(pixel_error > 0) || lamps < kFewLamps || drawn.empty() || !ray::available())
         return {};
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
@@ -90,7 +91,7 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
                                  "triangles, than can be looked through")});
         return {};
     }
-    const LitScene scene(model, drawn, job);
+    const LitScene scene(model, renderer, drawn, job);
     const double wanted = std::max(kShare * view.width * view.height, kRooms);
     const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
                                     kFewestPoints, kMostPoints);
@@ -107,23 +108,22 @@ LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View
     }
     const size_t even = grid.points.size();
     const std::vector<Sighting> sightings = cover(scene, view, divisible, grid, job);
-    std::vector<light::LitPoint>& points = grid.points;
+    std::vector<LitPoint>& points = grid.points;
     if (points.empty())
         return {};
-    const light::LightTree tree = light::make_light_tree(
+    const LightTree tree = make_light_tree(
         model.lights,
         [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
-    const light::Reaches reaches = [&](const Light& light, const light::LitPoint& point,
-                                       uint32_t& blocker) {
+    const Reaches reaches = [&](const Light& light, const LitPoint& point, uint32_t& blocker) {
         return scene.reaches(light, point, blocker);
     };
-    light::LightShares shares = light::find_shares(tree, points, reaches, job);
+    LightShares shares = find_shares(tree, points, reaches, job);
     const LightRegions regions = make_light_regions(bounds, divisible, shares, points);
     lend(sightings, regions, points, shares);
-    const light::LightCut cut = light::cut_lights(tree, points, shares, regions.count,
-                                                  model.world.color, reaches, pixel_error, job);
+    const LightCut cut = cut_lights(tree, points, shares, regions.count, model.world.color, reaches,
+                                    pixel_error, job);
     // What was added looks at corners: the mean is of what is spread evenly.
     return plan_of(tree, cut, std::span(points).first(even > 0 ? even : points.size()), regions);
 }
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

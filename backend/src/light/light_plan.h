@@ -9,7 +9,21 @@
 #include <optional>
 #include <span>
 
-namespace lodestone::povray {
+namespace lodestone::light {
+
+/// How much light a material sends back, as the renderer draws it.
+struct SurfaceReflection {
+    glm::dvec3 albedo{0.8};  // diffuse share of each color
+    double gloss = 0;        // albedo of its highlight
+    double exponent = 1;     // of that highlight's cosine
+    bool mirror = false;     // rays go on from it, mirrored or refracted
+};
+
+/// The surfaces of a model as its renderer takes them.
+struct RendererSurfaces {
+    std::vector<SurfaceReflection> reflections;  // one for each material of the model
+    double tolerance = 0;  // metres: the renderer lets nothing nearer than this cast a shadow
+};
 
 /// Something that is drawn.
 struct Lit {
@@ -44,7 +58,7 @@ inline constexpr size_t kFewLamps = 8;
 /// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000,
 /// in mirrors and behind glass too, and as many more as it takes that every part of a thing that a
 /// pixel shows sees one (light_coverage.h). They tell which lamps reach what, and by how much a
-/// light that stands for several differs from these (light::cut_lights). A lamp that reaches no
+/// light that stands for several differs from these (cut_lights). A lamp that reaches no
 /// point of an object, nor any beside these, is not among its lights; so a patch of light smaller
 /// than the distance of points can be missed. Things without any point are lit by all lamps. Things
 /// that many lamps light here and there (the floor of many rooms) are cut into boxes. `bounces`: of
@@ -52,7 +66,8 @@ inline constexpr size_t kFewLamps = 8;
 ///
 /// Empty if that saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is
 /// too much to cast them at (a problem).
-LightPlan plan_lights(const Model& model, std::span<const Lit> drawn, const View& view,
-                      double pixel_error, int bounces, Problems& problems, const Job& job = {});
+LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
+                      std::span<const Lit> drawn, const View& view, double pixel_error, int bounces,
+                      Problems& problems, const Job& job = {});
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

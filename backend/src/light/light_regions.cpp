@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/lamp/light_regions.h"
+#include "light/light_regions.h"
 
 #include <glm/common.hpp>
 
@@ -7,7 +7,7 @@
 #include <bit>
 #include <numeric>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 namespace {
 
 constexpr size_t kOwn = 48;            // points that make a thing a region of its own
@@ -20,7 +20,7 @@ constexpr size_t kGaps = 12;           // widest gaps between points along an ax
 class Maker {
 public:
     Maker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-          const light::LightShares& shares, std::vector<light::LitPoint>& points)
+          const LightShares& shares, std::vector<LitPoint>& points)
         : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
 
     LightRegions make() {
@@ -246,8 +246,8 @@ private:
 
     std::span<const Bound> bounds_;
     std::span<const uint8_t> divisible_;
-    const light::LightShares& shares_;
-    std::vector<light::LitPoint>& points_;
+    const LightShares& shares_;
+    std::vector<LitPoint>& points_;
     std::vector<size_t> counts_;       // by thing
     std::vector<glm::dvec3> middles_;  // by thing
     std::vector<uint32_t> pooled_;     // by thing
@@ -259,9 +259,8 @@ private:
 }  // namespace
 
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                                const light::LightShares& shares,
-                                std::vector<light::LitPoint>& points) {
+                                const LightShares& shares, std::vector<LitPoint>& points) {
     return Maker(bounds, divisible, shares, points).make();
 }
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "light/light_cut.h"
-#include "povray_export/lamp/light_plan.h"
+#include "light/light_plan.h"
 
-namespace lodestone::povray {
+namespace lodestone::light {
 
 struct LightRegions {
     size_t count = 0;
@@ -19,7 +19,6 @@ inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 /// `divisible` allows is cut where that makes shorter lists of lamps for its points, into at most
 /// 128 boxes that fill its bound.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                                const light::LightShares& shares,
-                                std::vector<light::LitPoint>& points);
+                                const LightShares& shares, std::vector<LitPoint>& points);
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

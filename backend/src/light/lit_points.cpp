@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/lamp/lit_points.h"
+#include "light/lit_points.h"
 
 #include "base/parallel.h"
 #include "choose/criterion.h"
 #include "light/light_arrival.h"
-#include "povray_export/scene/magnification.h"
-#include "povray_export/texture/surface_finish.h"
-#include "povray_export/texture/texture_writer.h"
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -17,14 +14,13 @@
 #include <numbers>
 #include <unordered_map>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 namespace {
 
 constexpr int kMostBounces = 4;     // mirrors and panes in a row
 constexpr double kPoint = 0.04;     // size over distance below which one ray tells of a light
 constexpr double kBeside = 8;       // in distances of points: farther is not beside
 constexpr double kRelative = 1e-4;  // of its way, where a ray begins again
-constexpr double kSharpest = 200;   // exponent of highlights, as far as points can see them
 
 bool see_through(const Material& material) {
     const bool covered =
@@ -50,7 +46,7 @@ std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column) {
     return cells;
 }
 
-double reach_beside(const View& view, const LitGrid& grid, const light::LitPoint& point) {
+double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point) {
     const double cell = view.width / static_cast<double>(grid.columns);
     const double z = glm::length(point.position - view.camera.position);
     return kBeside * cell * choose::pixel_size(view, z);
@@ -78,23 +74,11 @@ LitScene::Shape LitScene::shape_of(const Lit& lit) const {
     return shape;
 }
 
-LitScene::LitScene(const Model& model, std::span<const Lit> drawn, const Job& job)
-    : model_(model), drawn_(drawn) {
-    for (const Material& material : model.materials) {
-        const Look look = look_of(material);
-        const Finish finish = finish_of(look);
-        Surface surface;
-        surface.albedo = glm::clamp(material.base_color, 0.0, 1.0);
-        const double alpha = std::max(1e-3, look.roughness * look.roughness);
-        surface.gloss = finish.specular * (1 - look.metallic) +
-                        look.metallic * light::luminance(surface.albedo);
-        surface.exponent = std::clamp(2 / (alpha * alpha) - 2, 1.0, kSharpest);
-        surface.albedo = glm::max(surface.albedo, glm::dvec3(0.02));
-        surface.mirror =
-            finish.mirror > 0 || finish.mirror_grazing > 0 || refraction_of(material) > 0;
-        surface.see_through = see_through(material);
-        surfaces_.push_back(surface);
-    }
+LitScene::LitScene(const Model& model, const RendererSurfaces& renderer, std::span<const Lit> drawn,
+                   const Job& job)
+    : model_(model), drawn_(drawn), tolerance_(renderer.tolerance) {
+    for (size_t i = 0; i < model.materials.size(); ++i)
+        surfaces_.push_back({renderer.reflections[i], see_through(model.materials[i])});
     surfaces_.emplace_back();
     std::unordered_map<Hash, uint32_t> known;
     std::vector<uint32_t> firsts;
@@ -131,8 +115,8 @@ LitScene::Surface LitScene::surface_of(const Lit& lit, uint16_t slot) const {
     return surfaces_[std::min(index, surfaces_.size() - 1)];
 }
 
-std::vector<light::LitPoint> LitScene::followed(Ray ray) const {
-    std::vector<light::LitPoint> out;
+std::vector<LitPoint> LitScene::followed(Ray ray) const {
+    std::vector<LitPoint> out;
     bool mirrored = false;
     for (int bounce = 0; bounce <= kMostBounces; ++bounce) {
         const ray::PlacedScenes::Hit hit = seen_.first_hit(ray.origin, ray.direction);
@@ -164,18 +148,18 @@ std::vector<light::LitPoint> LitScene::followed(Ray ray) const {
         const RayMask sees = mirrored ? kReflectionRays : kCameraRays;
         const bool shown = (lit.hidden & sees) == 0;
         if (shown) {
-            light::LitPoint lit_point;
+            LitPoint lit_point;
             lit_point.position = point;
             lit_point.aside = flat * aside;
             lit_point.normal = normal;
             lit_point.to_eye = -ray.direction;
-            lit_point.albedo = surface.albedo;
-            lit_point.gloss = surface.gloss;
-            lit_point.exponent = surface.exponent;
+            lit_point.albedo = surface.reflection.albedo;
+            lit_point.gloss = surface.reflection.gloss;
+            lit_point.exponent = surface.reflection.exponent;
             lit_point.region = hit.name;
             out.push_back(lit_point);
         }
-        if (shown && surface.mirror && !surface.see_through) {
+        if (shown && surface.reflection.mirror && !surface.see_through) {
             ray.direction = ray.direction - 2 * glm::dot(ray.direction, normal) * normal;
             if (!(glm::dot(ray.direction, flat) > 0))
                 return out;
@@ -201,9 +185,9 @@ LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
 }
 
 /// From the last point on, as a matt surface hands on light.
-void LitScene::bounce(int times, Random& random, std::vector<light::LitPoint>& out) const {
+void LitScene::bounce(int times, Random& random, std::vector<LitPoint>& out) const {
     for (int i = 0; i < times && !out.empty(); ++i) {
-        const light::LitPoint& from = out.back();
+        const LitPoint& from = out.back();
         const double turn = 2 * std::numbers::pi * random.uniform();
         const double out_of = random.uniform();  // square of the sine
         const glm::dvec3 u = any_across(from.normal);
@@ -212,7 +196,7 @@ void LitScene::bounce(int times, Random& random, std::vector<light::LitPoint>& o
         ray.origin = from.position + from.aside;
         ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
                         std::sqrt(1 - out_of) * from.normal;
-        std::vector<light::LitPoint> more = followed(ray);
+        std::vector<LitPoint> more = followed(ray);
         if (more.empty())
             return;
         out.push_back(std::move(more.back()));
@@ -228,14 +212,14 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
     grid.columns =
         static_cast<size_t>(std::clamp(static_cast<double>(count) / rows, 1.0, view.width * 1.0));
     const auto columns = static_cast<double>(grid.columns);
-    std::vector<std::vector<light::LitPoint>> found(grid.rows * grid.columns);
+    std::vector<std::vector<LitPoint>> found(grid.rows * grid.columns);
     parallel_for(grid.rows, [&](size_t row) {
         job.check();
         Random random(1, row);
         for (size_t column = 0; column < grid.columns; ++column) {
             const double x = (static_cast<double>(column) + random.uniform()) / columns;
             const double y = (static_cast<double>(row) + random.uniform()) / rows;
-            std::vector<light::LitPoint>& points = found[row * grid.columns + column];
+            std::vector<LitPoint>& points = found[row * grid.columns + column];
             points = seen(view, x, y);
             bounce(bounces, random, points);
         }
@@ -250,7 +234,7 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
             const size_t here = row * grid.columns + column;
             for (size_t i = 0; i < found[here].size(); ++i) {
                 grid.points.push_back(found[here][i]);
-                light::LitPoint& point = grid.points.back();
+                LitPoint& point = grid.points.back();
                 const double most = reach_beside(view, grid, point);
                 for (const size_t there : around(grid, row, column)) {
                     if (there == here || i >= found[there].size())
@@ -271,8 +255,7 @@ bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
     return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
 }
 
-double LitScene::reaches(const Light& light, const light::LitPoint& point,
-                         uint32_t& blocker) const {
+double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const {
     if (!light.shadow && light.kind == LightKind::Point)
         return 1;
     const glm::dvec3 from = point.position + point.aside;
@@ -280,10 +263,10 @@ double LitScene::reaches(const Light& light, const light::LitPoint& point,
         const glm::dvec3 way = place - from;
         const double distance = glm::length(way);
         // As POV-Ray: what is that near to a light throws no shadow.
-        return distance <= kTolerance ||
-               !blocking_.occluded(from, way, 1 - kTolerance / distance, blocker);
+        return distance <= tolerance_ ||
+               !blocking_.occluded(from, way, 1 - tolerance_ / distance, blocker);
     };
-    const double extent = light::extent_of(light);
+    const double extent = extent_of(light);
     const glm::dvec3 way = light.position - point.position;
     const double distance = glm::length(way);
     if (extent <= kPoint * distance)
@@ -303,4 +286,4 @@ double LitScene::reaches(const Light& light, const light::LitPoint& point,
     return sum / static_cast<double>(places.size());
 }
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

@@ -4,42 +4,43 @@
 
 #include "base/random.h"
 #include "light/light_cut.h"
-#include "povray_export/lamp/light_plan.h"
+#include "light/light_plan.h"
 #include "ray/placed_scenes.h"
 
-namespace lodestone::povray {
+namespace lodestone::light {
 
 /// Points in a grid over a picture, row by row; those of one cell lie one behind the other.
 struct LitGrid {
     size_t rows = 0;
     size_t columns = 0;
     std::vector<uint32_t> first;  // point of each cell; one more at the end
-    std::vector<light::LitPoint> points;
+    std::vector<LitPoint> points;
 };
 
 /// A cell and those that touch it, rising.
 std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column);
 
 /// How far from a point those are that count as beside it.
-double reach_beside(const View& view, const LitGrid& grid, const light::LitPoint& point);
+double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point);
 
 /// The drawn things, ready for rays. Things hidden from a class of rays are not met by it.
 class LitScene {
 public:
     /// Throws Error(RaysUnavailable); needs what is drawn to be resident, and to outlive it.
-    LitScene(const Model& model, std::span<const Lit> drawn, const Job& job);
+    LitScene(const Model& model, const RendererSurfaces& renderer, std::span<const Lit> drawn,
+             const Job& job);
 
     /// About `count` cells, a ray through each; `region` of a point is the index of the drawn
     /// thing. `bounces`: then from where it ends on, each where light may come from.
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
     /// What is seen at a place of the picture (0...1 from its left, top), nearest first.
-    std::vector<light::LitPoint> seen(const View& view, double x, double y) const {
+    std::vector<LitPoint> seen(const View& view, double x, double y) const {
         return followed(ray_at(view, x, y));
     }
 
     /// Share of a light that reaches a point; what is see-through hides nothing.
-    /// `blocker`: see light::Reaches.
-    double reaches(const Light& light, const light::LitPoint& point, uint32_t& blocker) const;
+    /// `blocker`: see Reaches.
+    double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
     /// Whether any of a drawn thing is.
     bool partly_clear(uint32_t drawn) const {
         const Shape& shape = shapes_[shape_of_[drawn]];
@@ -55,10 +56,7 @@ private:
         std::shared_ptr<const ray::Scene> opaque;  // null: nothing is; the same where everything is
     };
     struct Surface {
-        glm::dvec3 albedo{0.8};
-        double gloss = 0;
-        double exponent = 1;
-        bool mirror = false;
+        SurfaceReflection reflection;
         bool see_through = false;
     };
     struct Ray {
@@ -70,8 +68,8 @@ private:
     Surface surface_of(const Lit& lit, uint16_t slot) const;
     Shape shape_of(const Lit& lit) const;
     static Ray ray_at(const View& view, double x, double y);
-    std::vector<light::LitPoint> followed(Ray ray) const;
-    void bounce(int times, Random& random, std::vector<light::LitPoint>& out) const;
+    std::vector<LitPoint> followed(Ray ray) const;
+    void bounce(int times, Random& random, std::vector<LitPoint>& out) const;
 
     const Model& model_;
     std::span<const Lit> drawn_;
@@ -80,7 +78,8 @@ private:
     std::vector<Surface> surfaces_;  // by material, and one for none
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
+    double tolerance_ = 0;
     double least_ = 0;  // no ray begins nearer than this to what it leaves
 };
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/lamp/penumbra.h"
+#include "light/penumbra.h"
 
 #include "base/maths.h"
 #include "choose/criterion.h"
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 namespace {
 
 double of_sun(const Light& sun, const View& view, std::span<const Bound> occluders) {
@@ -36,7 +36,7 @@ double of_lamp(const Light& lamp, const View& view) {
     constexpr double kDarkest = 0.004;  // about one step of a display
     const bool area = lamp.kind == LightKind::Area;
     const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * (area ? 1 : kPi));
-    const double size = 2 * light::extent_of(lamp);
+    const double size = 2 * extent_of(lamp);
     const double reach = std::sqrt(std::max({shining.x, shining.y, shining.z}) / kDarkest);
     const double z = std::max(0.0, glm::length(lamp.position - view.camera.position) - reach);
     return kMagnified * size / choose::pixel_size(view, z);
@@ -59,4 +59,4 @@ double widest_penumbra(const Light& light, const View& view, std::span<const Bou
     return 0;
 }
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace lodestone::povray {
+namespace lodestone::light {
 
 /// The widest penumbra in pixels that a light gives in a view of these occluders (world frame).
 /// Sun: what stands above the lowest point of all of them by h throws its shadow at most
@@ -16,4 +16,4 @@ namespace lodestone::povray {
 /// light; areas likewise, their diagonal for the size. 0 without a size and without occluders.
 double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders);
 
-}  // namespace lodestone::povray
+}  // namespace lodestone::light

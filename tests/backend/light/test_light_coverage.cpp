@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that whatever a picture shows is spoken for by a lit point that is near it and sees it.
+#include "light/light_coverage.h"
 #include "povray/povray_scenes.h"
-#include "povray_export/lamp/light_coverage.h"
+#include "povray_export/lamp/renderer_surfaces.h"
 #include "ray/mesh_scene.h"
 
 using namespace lodestone;
+using namespace lodestone::light;
 using namespace lodestone::povray;
 
 namespace {
@@ -41,7 +43,7 @@ TEST_F(LightCoverage, NothingIsSpokenForByAPointFarFromIt) {
     builder.place(box, place, "floor");
     const Model& model = builder.finish();
     const std::vector<Lit> drawn = {{&model.objects[box].representations[0], place}};
-    const LitScene scene(model, drawn, {});
+    const LitScene scene(model, povray::renderer_surfaces(model), drawn, {});
     const View view = along_a_floor();
     LitGrid grid = scene.points(view, 1200, 0, {});
     const size_t even = grid.points.size();

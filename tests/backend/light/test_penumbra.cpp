@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards when a sun's shadows are drawn soft: where a pixel could tell, and nowhere else.
-#include "povray_export/lamp/penumbra.h"
+#include "light/penumbra.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -45,19 +45,19 @@ Light sun(double angle, const glm::dvec3& way = {0, 0, -1}) {
 }  // namespace
 
 TEST(Penumbra, NothingOrAPointCastsNone) {
-    EXPECT_EQ(povray::widest_penumbra(sun(0.1), from(100), {}), 0);
-    EXPECT_EQ(povray::widest_penumbra(sun(0), from(100), scene()), 0);
+    EXPECT_EQ(light::widest_penumbra(sun(0.1), from(100), {}), 0);
+    EXPECT_EQ(light::widest_penumbra(sun(0), from(100), scene()), 0);
     const std::vector<Bound> ground{scene()[0]};
-    EXPECT_EQ(povray::widest_penumbra(sun(0.1), from(100), ground), 0);
+    EXPECT_EQ(light::widest_penumbra(sun(0.1), from(100), ground), 0);
 }
 
 TEST(Penumbra, ATowersIsItsHeightTimesTheAngleInPixelsThere) {
     // 10 m times 2 tan(.005) = .1 m, seen from 999 - 10 m: a pixel is (999 - 10) / 640 m wide.
-    const double found = povray::widest_penumbra(sun(0.01), from(1000), scene());
+    const double found = light::widest_penumbra(sun(0.01), from(1000), scene());
     EXPECT_NEAR(found, 0.1 * 640 / 989, 0.001);
     // A sun at 30 degrees throws it twice as far.
     const double slanted =
-        povray::widest_penumbra(sun(0.01, {std::sqrt(0.75), 0, -0.5}), from(1000), scene());
+        light::widest_penumbra(sun(0.01, {std::sqrt(0.75), 0, -0.5}), from(1000), scene());
     EXPECT_NEAR(slanted, 0.2 * 640 / 979, 0.001);
 }
 
@@ -67,19 +67,19 @@ TEST(Penumbra, ALampsIsTwiceItsSizeAsNearAsItStillLights) {
     lamp.position = {0, 0, 5};
     lamp.power = 4 * std::numbers::pi * std::numbers::pi * 0.4;  // lights 10 m far
     lamp.radius = 0.1;
-    EXPECT_NEAR(povray::widest_penumbra(lamp, from(1010), scene()), 0.4 * 640 / 1000, 1e-6);
+    EXPECT_NEAR(light::widest_penumbra(lamp, from(1010), scene()), 0.4 * 640 / 1000, 1e-6);
     lamp.radius = 0;
-    EXPECT_EQ(povray::widest_penumbra(lamp, from(1010), scene()), 0);
+    EXPECT_EQ(light::widest_penumbra(lamp, from(1010), scene()), 0);
     lamp.kind = LightKind::Area;  // 1 m x 1 m, and half the solid angle gets more of its light
     lamp.power /= std::numbers::pi;
-    EXPECT_NEAR(povray::widest_penumbra(lamp, from(1010), scene()), 2 * std::sqrt(2) * 640 / 1000,
+    EXPECT_NEAR(light::widest_penumbra(lamp, from(1010), scene()), 2 * std::sqrt(2) * 640 / 1000,
                 1e-6);
 }
 
 TEST(Penumbra, NearerAndFlatterIsWider) {
-    EXPECT_GT(povray::widest_penumbra(sun(0.01), from(20), scene()),
-              povray::widest_penumbra(sun(0.01), from(200), scene()));
-    const double low = povray::widest_penumbra(sun(0.01, {1, 0, -0.01}), from(1000), scene());
-    EXPECT_GT(low, povray::widest_penumbra(sun(0.01), from(1000), scene()));
+    EXPECT_GT(light::widest_penumbra(sun(0.01), from(20), scene()),
+              light::widest_penumbra(sun(0.01), from(200), scene()));
+    const double low = light::widest_penumbra(sun(0.01, {1, 0, -0.01}), from(1000), scene());
+    EXPECT_GT(low, light::widest_penumbra(sun(0.01), from(1000), scene()));
     EXPECT_TRUE(std::isfinite(low));
 }
