@@ -17,8 +17,8 @@ std::string written(double value) {
 
 }  // namespace
 
-Arguments::Arguments(const std::vector<std::string>& words,
-                     const std::vector<OptionHelp>& options) {
+CommandArguments::CommandArguments(const std::vector<std::string>& words,
+                                   const std::vector<OptionHelp>& options) {
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
         if (word == "--") {  // what follows are names, however they begin
@@ -50,13 +50,13 @@ Arguments::Arguments(const std::vector<std::string>& words,
     }
 }
 
-std::optional<std::string> Arguments::text(const std::string& option) const {
+std::optional<std::string> CommandArguments::text(const std::string& option) const {
     const auto at = values_.find(option);
     return at == values_.end() ? std::nullopt : std::optional<std::string>(at->second);
 }
 
-double Arguments::number(const std::string& option, double otherwise, double least,
-                         double most) const {
+double CommandArguments::number(const std::string& option, double otherwise, double least,
+                                double most) const {
     const auto at = values_.find(option);
     if (at == values_.end())
         return otherwise;
@@ -69,7 +69,7 @@ double Arguments::number(const std::string& option, double otherwise, double lea
     return value;
 }
 
-uint64_t Arguments::count(const std::string& option, uint64_t otherwise) const {
+uint64_t CommandArguments::count(const std::string& option, uint64_t otherwise) const {
     const auto at = values_.find(option);
     if (at == values_.end())
         return otherwise;

@@ -22,10 +22,10 @@ struct OptionHelp {
     const char* text;
 };
 
-class Arguments {
+class CommandArguments {
 public:
     /// `words` after the verb. Throws UsageError for an unknown option or a missing value.
-    Arguments(const std::vector<std::string>& words, const std::vector<OptionHelp>& options);
+    CommandArguments(const std::vector<std::string>& words, const std::vector<OptionHelp>& options);
 
     const std::vector<std::string>& positional() const { return positional_; }
     bool has(const std::string& option) const { return values_.count(option) != 0; }

@@ -83,22 +83,22 @@ std::optional<lds_camera> camera_named(const lds_model* model, const std::string
 }
 
 /// The ball around a leaf, in the world; enlarged as much as along the most enlarged axis.
-struct Ball {
+struct LeafBall {
     Vector center{};
     double radius = 0;
 };
 
-std::vector<Ball> balls_of(lds_model* model) {
+std::vector<LeafBall> balls_of(lds_model* model) {
     size_t count = 0;
     check(lds_model_occurrence_count(model, &count));
     std::vector<lds_occurrence> leaves(count);
     check(lds_model_occurrence_copy(model, leaves.data(), count));
-    std::vector<Ball> balls;
+    std::vector<LeafBall> balls;
     for (const lds_occurrence& leaf : leaves) {
         lds_object_summary summary{};
         summary.struct_size = sizeof summary;
         check(lds_model_object_summary(model, leaf.object, &summary));
-        Ball ball;
+        LeafBall ball;
         for (size_t i = 0; i < 3; ++i) {
             const double* row = leaf.world + 4 * i;
             ball.center[i] = row[0] * summary.center[0] + row[1] * summary.center[1] +
@@ -112,19 +112,19 @@ std::vector<Ball> balls_of(lds_model* model) {
 
 /// Sees everything from the front right above.
 lds_camera camera_around(lds_model* model, double angle_deg, double aspect) {
-    const std::vector<Ball> balls = balls_of(model);
+    const std::vector<LeafBall> balls = balls_of(model);
     Vector middle{};
     for (size_t i = 0; i < 3 && !balls.empty(); ++i) {
         double low = balls[0].center[i] - balls[0].radius;
         double high = balls[0].center[i] + balls[0].radius;
-        for (const Ball& ball : balls) {
+        for (const LeafBall& ball : balls) {
             low = std::min(low, ball.center[i] - ball.radius);
             high = std::max(high, ball.center[i] + ball.radius);
         }
         middle[i] = 0.5 * (low + high);
     }
     double radius = 1e-6;
-    for (const Ball& ball : balls) {
+    for (const LeafBall& ball : balls) {
         const Vector away{ball.center[0] - middle[0], ball.center[1] - middle[1],
                           ball.center[2] - middle[2]};
         radius = std::max(radius, length(away) + ball.radius);
@@ -143,7 +143,7 @@ lds_camera camera_around(lds_model* model, double angle_deg, double aspect) {
 
 }  // namespace
 
-std::optional<std::pair<int, int>> size_of(const Arguments& arguments) {
+std::optional<std::pair<int, int>> size_of(const CommandArguments& arguments) {
     const auto text = arguments.text("size");
     if (!text)
         return std::nullopt;
@@ -155,7 +155,7 @@ std::optional<std::pair<int, int>> size_of(const Arguments& arguments) {
     return size;
 }
 
-lds_view view_of(const Arguments& arguments, lds_model* model, bool frame) {
+lds_view view_of(const CommandArguments& arguments, lds_model* model, bool frame) {
     const auto size = size_of(arguments);
     const double angle_deg = arguments.number("angle-deg", 50, 0.01, 175);
     const double aspect = size ? static_cast<double>(size->first) / size->second : kAspect;

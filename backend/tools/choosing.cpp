@@ -50,7 +50,7 @@ uint32_t classes_of(const std::optional<std::string>& list) {
 
 /// The place of what an option says among its words, the first by default. Throws UsageError.
 template <size_t Count>
-int32_t word_of(const Arguments& arguments, const char* option,
+int32_t word_of(const CommandArguments& arguments, const char* option,
                 const std::array<const char*, Count>& words) {
     const std::string wanted = arguments.text(option).value_or(words[0]);
     std::string all;
@@ -65,7 +65,7 @@ int32_t word_of(const Arguments& arguments, const char* option,
 
 }  // namespace
 
-Choosing::Choosing(const Arguments& arguments, lds_view& view)
+CutOptions::CutOptions(const CommandArguments& arguments, lds_view& view)
     : view_(view),
       modifiers_(lds_modifiers_default()),
       criterion_(arguments.text("criterion").value_or("resolution")) {
@@ -87,7 +87,7 @@ Choosing::Choosing(const Arguments& arguments, lds_view& view)
         view_.pixel_error = 0;
 }
 
-CutHandle Choosing::cut(lds_model* model, lds_job* job) {
+CutHandle CutOptions::cut(lds_model* model, lds_job* job) {
     lds_cut* made = nullptr;
     if (budget_.triangles == 0 && budget_.bytes == 0) {
         check(lds_cut_create(model, &view_, job, &made));
@@ -100,7 +100,7 @@ CutHandle Choosing::cut(lds_model* model, lds_job* job) {
     return CutHandle(made);
 }
 
-Fields Choosing::rays(const lds_cut* cut) const {
+Fields CutOptions::rays(const lds_cut* cut) const {
     Fields out;
     for (const auto& [name, rays] : kClasses) {
         if ((modifiers_.ray_classes & rays) == 0)
@@ -127,7 +127,7 @@ Fields Choosing::rays(const lds_cut* cut) const {
     return out;
 }
 
-void Choosing::report(Fields& fields) const {
+void CutOptions::report(Fields& fields) const {
     fields.push_back({"criterion", criterion_});
     if (found_.cuts > 0)
         fields.push_back({"budget", Fields{{"triangles", budget_.triangles},

@@ -15,12 +15,12 @@ extern const OptionHelp kCriterion;
 extern const OptionHelp kOffScreen;
 extern const OptionHelp kRayClasses;
 
-class Choosing {
+class CutOptions {
 public:
     /// Throws UsageError. The view's threshold is the criterion's.
-    Choosing(const Arguments& arguments, lds_view& view);
-    Choosing(const Choosing&) = delete;
-    Choosing& operator=(const Choosing&) = delete;
+    CutOptions(const CommandArguments& arguments, lds_view& view);
+    CutOptions(const CutOptions&) = delete;
+    CutOptions& operator=(const CutOptions&) = delete;
 
     /// The view's cut; with a budget view.pixel_error becomes what fits, and a warning is said
     /// where nothing does.

@@ -16,7 +16,7 @@ void print_help(std::FILE* out) {
                  "Lodestone %s: simpler versions of models, and just the detail a picture needs\n\n"
                  "usage: lodestone VERB ... [--options]\n\n",
                  lds_version());
-    for (const Verb& verb : verbs())
+    for (const CommandVerb& verb : verbs())
         std::fprintf(out, "  %-9s %-9s %s\n", verb.name, verb.usage, verb.text);
     std::fprintf(out,
                  "\n`lodestone VERB --help` explains one. Examples:\n"
@@ -25,7 +25,7 @@ void print_help(std::FILE* out) {
                  "  lodestone cut city_store --eye 100,-80,40 --pixel-error 2\n");
 }
 
-void print_help(std::FILE* out, const Verb& verb) {
+void print_help(std::FILE* out, const CommandVerb& verb) {
     std::fprintf(out, "usage: lodestone %s %s [--options]\n\n%s\n", verb.name, verb.usage,
                  verb.text);
     if (verb.details[0] != '\0')
@@ -59,7 +59,7 @@ int run(const std::vector<std::string>& words) {
         print_help(stdout);
         return 0;
     }
-    for (const Verb& verb : verbs()) {
+    for (const CommandVerb& verb : verbs()) {
         if (words[0] != verb.name && !(words[0] == "--version" && verb.run == run_version))
             continue;
         const std::vector<std::string> rest(words.begin() + 1, words.end());
@@ -71,7 +71,7 @@ int run(const std::vector<std::string>& words) {
                 return 0;
             }
         }
-        const Arguments arguments(rest, verb.options);
+        const CommandArguments arguments(rest, verb.options);
         if (arguments.positional().size() != verb.positional)
             throw UsageError(std::string("expected: lodestone ") + verb.name + " " + verb.usage);
         return verb.run(arguments);
@@ -93,13 +93,13 @@ int main(int argc, char** argv) {
     try {
         return told(run(std::vector<std::string>(argv + 1, argv + argc)));
     } catch (const UsageError& error) {
-        std::fprintf(stderr, "lodestone: %s\n", shown(error.what()).c_str());
+        std::fprintf(stderr, "lodestone: %s\n", terminal_text(error.what()).c_str());
         return 2;
-    } catch (const Failure& failure) {
-        std::fprintf(stderr, "lodestone: %s\n", shown(failure.what()).c_str());
+    } catch (const CallFailure& failure) {
+        std::fprintf(stderr, "lodestone: %s\n", terminal_text(failure.what()).c_str());
         return exit_code_of(failure.status);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "lodestone: %s\n", shown(error.what()).c_str());
+        std::fprintf(stderr, "lodestone: %s\n", terminal_text(error.what()).c_str());
         return 1;
     }
 }

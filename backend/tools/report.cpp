@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Value& value);
+Json json_of(const ReportValue& value);
 
 template <typename T>
 Json json_of(const T& held) {
@@ -23,7 +23,7 @@ Json json_of(const T& held) {
 
 Json json_of(const List& values) {
     Json out = Json::array();
-    for (const Value& value : values)
+    for (const ReportValue& value : values)
         out.push_back(json_of(value));
     return out;
 }
@@ -35,7 +35,7 @@ Json json_of(const Fields& fields) {
     return out;
 }
 
-Json json_of(const Value& value) {
+Json json_of(const ReportValue& value) {
     return std::visit([](const auto& held) { return json_of(held); }, value.held());
 }
 
@@ -70,8 +70,8 @@ List problems_of(const lds_model* model) {
                                      {"severity", severity},
                                      {"code", problem.code},
                                      {"message", problem.message}});
-        std::fprintf(stderr, "%s: %s: %s\n", severity, shown(problem.object).c_str(),
-                     shown(problem.message).c_str());
+        std::fprintf(stderr, "%s: %s: %s\n", severity, terminal_text(problem.object).c_str(),
+                     terminal_text(problem.message).c_str());
     }
     return problems;
 }
@@ -86,12 +86,12 @@ void write_report(const std::string* path, const Fields& report) {
         file.flush();
         if (!file) {
             std::remove(temporary.c_str());
-            throw Failure(LDS_ERROR_IO, "cannot write '" + *path + "'");
+            throw CallFailure(LDS_ERROR_IO, "cannot write '" + *path + "'");
         }
     }
     if (std::rename(temporary.c_str(), path->c_str()) != 0) {
         std::remove(temporary.c_str());
-        throw Failure(LDS_ERROR_IO, "cannot write '" + *path + "'");
+        throw CallFailure(LDS_ERROR_IO, "cannot write '" + *path + "'");
     }
 }
 

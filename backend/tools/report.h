@@ -13,24 +13,24 @@
 
 namespace lodestone::tools {
 
-class Value;
-using List = std::vector<Value>;
-using Fields = std::vector<std::pair<std::string, Value>>;  // an object; its order is kept
+class ReportValue;
+using List = std::vector<ReportValue>;
+using Fields = std::vector<std::pair<std::string, ReportValue>>;  // an object; its order is kept
 
 /// Anything JSON can hold.
-class Value {
+class ReportValue {
 public:
     using Held = std::variant<std::nullptr_t, bool, uint64_t, double, std::string, List, Fields>;
 
     // Not explicit: a report reads as a table of names and plain values.
-    Value() : held_(nullptr) {}
-    Value(bool value) : held_(value) {}
-    Value(std::unsigned_integral auto value) : held_(uint64_t{value}) {}
-    Value(double value) : held_(value) {}
-    Value(const char* text) : held_(std::string(text)) {}
-    Value(std::string text) : held_(std::move(text)) {}
-    Value(List values) : held_(std::move(values)) {}
-    Value(Fields fields) : held_(std::move(fields)) {}
+    ReportValue() : held_(nullptr) {}
+    ReportValue(bool value) : held_(value) {}
+    ReportValue(std::unsigned_integral auto value) : held_(uint64_t{value}) {}
+    ReportValue(double value) : held_(value) {}
+    ReportValue(const char* text) : held_(std::string(text)) {}
+    ReportValue(std::string text) : held_(std::move(text)) {}
+    ReportValue(List values) : held_(std::move(values)) {}
+    ReportValue(Fields fields) : held_(std::move(fields)) {}
 
     const Held& held() const { return held_; }
 
@@ -47,7 +47,7 @@ Fields fields_of(const lds_cut_summary& summary);
 /// The model's problems as the report's list; printed to stderr too.
 List problems_of(const lds_model* model);
 
-/// Writes the report as JSON where --json says (atomically), if it says so. Throws Failure.
+/// Writes the report as JSON where --json says (atomically), if it says so. Throws CallFailure.
 void write_report(const std::string* path, const Fields& report);
 
 }  // namespace lodestone::tools

@@ -19,7 +19,7 @@ void on_interrupt(int) {
 
 void check(lds_status status) {
     if (status != LDS_OK)
-        throw Failure(status, lds_last_error_text());
+        throw CallFailure(status, lds_last_error_text());
 }
 
 ModelHandle read_model(const std::string& path) {
@@ -28,7 +28,7 @@ ModelHandle read_model(const std::string& path) {
     return ModelHandle(model);
 }
 
-Progress::Progress(const char* what) {
+ProgressBar::ProgressBar(const char* what) {
     job_.struct_size = sizeof job_;
     interrupted = 0;
     std::signal(SIGINT, on_interrupt);
@@ -54,7 +54,7 @@ Progress::Progress(const char* what) {
     });
 }
 
-Progress::~Progress() {
+ProgressBar::~ProgressBar() {
     done_ = true;
     watcher_.join();
     std::signal(SIGINT, SIG_DFL);

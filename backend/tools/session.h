@@ -12,13 +12,13 @@
 namespace lodestone::tools {
 
 /// A failed call of the library: its status and sentence.
-struct Failure : std::runtime_error {
-    Failure(lds_status cause, const std::string& sentence)
+struct CallFailure : std::runtime_error {
+    CallFailure(lds_status cause, const std::string& sentence)
         : std::runtime_error(sentence), status(cause) {}
     lds_status status;
 };
 
-/// Throws Failure with the library's sentence unless the call went well.
+/// Throws CallFailure with the library's sentence unless the call went well.
 void check(lds_status status);
 
 struct DestroyModel {
@@ -33,12 +33,12 @@ using CutHandle = std::unique_ptr<lds_cut, DestroyCut>;
 ModelHandle read_model(const std::string& path);
 
 /// Draws a bar on stderr while it lives (only on a terminal) and passes Ctrl-C to the job.
-class Progress {
+class ProgressBar {
 public:
-    explicit Progress(const char* what);
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    explicit ProgressBar(const char* what);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
     lds_job* job() { return &job_; }
 
 private:

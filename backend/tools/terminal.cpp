@@ -29,7 +29,7 @@ bool continues(char c) {
 
 }  // namespace
 
-std::string shown(std::string_view text, size_t most) {
+std::string terminal_text(std::string_view text, size_t most) {
     std::string out;
     while (!text.empty()) {
         size_t size = steering(text);
@@ -51,7 +51,7 @@ std::string shown(std::string_view text, size_t most) {
 }
 
 std::string in_brackets(std::string_view text) {
-    return text.empty() ? std::string() : " (" + shown(text) + ")";
+    return text.empty() ? std::string() : " (" + terminal_text(text) + ")";
 }
 
 std::string temporary_beside(const std::string& path) {

@@ -9,9 +9,9 @@ namespace lodestone::tools {
 
 /// The text with '?' for each character that controls a terminal, ends a line or turns the
 /// direction of reading; of at most that many bytes, cut between characters.
-std::string shown(std::string_view text, size_t most = std::string_view::npos);
+std::string terminal_text(std::string_view text, size_t most = std::string_view::npos);
 
-/// " (text)" as shown() shows it; nothing for no text.
+/// " (text)" as terminal_text() shows it; nothing for no text.
 std::string in_brackets(std::string_view text);
 
 /// A name of a file that is written beside `path` and then renamed to it.

@@ -16,13 +16,13 @@
 namespace lodestone::tools {
 namespace {
 
-int32_t threads_of(const Arguments& arguments) {
+int32_t threads_of(const CommandArguments& arguments) {
     return static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
 }
 
 constexpr std::array<const char*, 3> kModes{"fast", "best", "cluster"};  // as lds_simplify_mode
 
-int32_t mode_of(const Arguments& arguments) {
+int32_t mode_of(const CommandArguments& arguments) {
     const std::string name = arguments.text("mode").value_or(kModes[LDS_SIMPLIFY_FAST]);
     for (size_t i = 0; i < kModes.size(); ++i) {
         if (name == kModes[i])
@@ -32,7 +32,7 @@ int32_t mode_of(const Arguments& arguments) {
 }
 
 /// Makes groups of meshes of many loose parts, as --loose-parts says.
-void split_loose_parts(const Arguments& arguments, lds_model* model, int32_t threads) {
+void split_loose_parts(const CommandArguments& arguments, lds_model* model, int32_t threads) {
     const std::string way = arguments.text("loose-parts").value_or("auto");
     if (way != "auto" && way != "one" && way != "objects")
         throw UsageError("--loose-parts is '" + way + "'; auto, one or objects expected");
@@ -43,7 +43,7 @@ void split_loose_parts(const Arguments& arguments, lds_model* model, int32_t thr
     options.threads = threads;
     lds_loose_report done{};
     done.struct_size = sizeof done;
-    Progress progress("splitting");
+    ProgressBar progress("splitting");
     check(lds_model_split_loose_parts(model, nullptr, 0, &options, progress.job(), &done));
     if (done.split > 0)
         std::printf("%llu meshes of %llu loose parts: %llu clusters and groups of these\n",
@@ -53,7 +53,7 @@ void split_loose_parts(const Arguments& arguments, lds_model* model, int32_t thr
 }
 
 /// Fills ratio, triangles, error or pixels. Throws UsageError unless exactly one way is given.
-void set_target(const Arguments& arguments, lds_simplify_options& options) {
+void set_target(const CommandArguments& arguments, lds_simplify_options& options) {
     options.ratio = arguments.number("ratio", 0, 0, 1);
     options.triangles = arguments.count("triangles", 0);
     options.error = arguments.number("error", 0, 0, 1e12);
@@ -128,14 +128,14 @@ List list_of(const double* values, size_t count) {
     return List(values, values + count);
 }
 
-void finish(const Arguments& arguments, const Fields& report) {
+void finish(const CommandArguments& arguments, const Fields& report) {
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
 }
 
 }  // namespace
 
-int run_measure(const Arguments& arguments) {
+int run_measure(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     lds_measure_options options = lds_measure_options_default();
     options.rays = arguments.count("rays", options.rays);
@@ -153,10 +153,10 @@ int run_measure(const Arguments& arguments) {
         const std::string name = summary_of(model.get(), object).name;
         lds_attributes a{};
         a.struct_size = sizeof a;
-        Progress progress("measuring");
+        ProgressBar progress("measuring");
         check(lds_model_measure(model.get(), object, &options, progress.job(), &a));
         std::printf("%-32s %12.6g %12.6g  %8.4g %8.4g %8.4g %5.2f %5.2f %5.2f\n",
-                    shown(name, 32).c_str(), a.visible_area, a.surface_area, a.centroid[0],
+                    terminal_text(name, 32).c_str(), a.visible_area, a.surface_area, a.centroid[0],
                     a.centroid[1], a.centroid[2], a.color[0], a.color[1], a.color[2]);
         objects.emplace_back(Fields{{"name", name},
                                     {"visible_area", a.visible_area},
@@ -176,7 +176,7 @@ int run_measure(const Arguments& arguments) {
     return 0;
 }
 
-int run_simplify(const Arguments& arguments) {
+int run_simplify(const CommandArguments& arguments) {
     // Memory that reading the model frees is used again, instead of new pages asked of the system.
     mallopt(M_MMAP_THRESHOLD, 32 << 20);
     mallopt(M_TRIM_THRESHOLD, INT_MAX);
@@ -193,7 +193,7 @@ int run_simplify(const Arguments& arguments) {
     lds_simplify_report done{};
     done.struct_size = sizeof done;
     {
-        Progress progress("simplifying");
+        ProgressBar progress("simplifying");
         check(lds_model_simplify(model.get(), &options, progress.job(), &done));
     }
     check(lds_model_write(model.get(), output.c_str()));
@@ -222,7 +222,7 @@ int run_simplify(const Arguments& arguments) {
     return 0;
 }
 
-int run_build(const Arguments& arguments) {
+int run_build(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const std::string& store = arguments.positional()[1];
     lds_build_options options = lds_build_options_default();
@@ -238,7 +238,7 @@ int run_build(const Arguments& arguments) {
     lds_build_report done{};
     done.struct_size = sizeof done;
     {
-        Progress progress("building");
+        ProgressBar progress("building");
         check(lds_model_build(model.get(), store.c_str(), &options, progress.job(), &done));
     }
     std::printf(
@@ -260,7 +260,7 @@ int run_build(const Arguments& arguments) {
     return 0;
 }
 
-int run_info(const Arguments& arguments) {
+int run_info(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const uint64_t most = arguments.count("objects", 40);
     const ModelHandle model = read_model(input);
@@ -282,7 +282,7 @@ int run_info(const Arguments& arguments) {
         const lds_object_summary summary = summary_of(model.get(), object);
         List levels;
         if (i < most)
-            std::printf("%s%s\n", shown(summary.name).c_str(),
+            std::printf("%s%s\n", terminal_text(summary.name).c_str(),
                         summary.role == LDS_ROLE_ENVIRONMENT ? "  (environment)" : "");
         for (uint32_t lod = 0; lod < summary.representation_count; ++lod) {
             lds_representation level{};

@@ -28,14 +28,14 @@ public:
             path_ = *kept;
             fs::create_directories(path_, error);
             if (error)
-                throw Failure(LDS_ERROR_IO,
-                              "cannot make the folder '" + *kept + "': " + error.message());
+                throw CallFailure(LDS_ERROR_IO,
+                                  "cannot make the folder '" + *kept + "': " + error.message());
             return;
         }
         std::string name = (fs::temp_directory_path() / "lodestone-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
-            throw Failure(LDS_ERROR_IO, "cannot make a temporary folder: " +
-                                            std::generic_category().message(errno));
+            throw CallFailure(LDS_ERROR_IO, "cannot make a temporary folder: " +
+                                                std::generic_category().message(errno));
         path_ = name;
     }
     ~SceneFolder() {
@@ -52,7 +52,7 @@ private:
     bool temporary_;
 };
 
-int32_t antialias_of(const Arguments& arguments) {
+int32_t antialias_of(const CommandArguments& arguments) {
     static constexpr std::array<const char*, 3> kNames{"off", "final", "reference"};
     const std::string wanted = arguments.text("antialias").value_or("final");
     for (size_t i = 0; i < kNames.size(); ++i) {
@@ -104,13 +104,13 @@ void deliver(const fs::path& picture, const std::string& out) {
     if (error) {
         const std::string reason = error.message();
         fs::remove(beside, error);
-        throw Failure(LDS_ERROR_IO, "cannot write '" + out + "': " + reason);
+        throw CallFailure(LDS_ERROR_IO, "cannot write '" + out + "': " + reason);
     }
 }
 
 }  // namespace
 
-int run_povray(const Arguments& arguments) {
+int run_povray(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const auto out = arguments.text("out");
     if (!out || fs::path(*out).extension() != ".png")
@@ -134,7 +134,7 @@ int run_povray(const Arguments& arguments) {
     lds_view view = view_of(arguments, model.get(), true);
     view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID |
                  1u << LDS_KIND_COMPOSITE;
-    Choosing choosing(arguments, view);
+    CutOptions choosing(arguments, view);
     const SceneFolder folder(arguments.text("scene"));
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;
@@ -146,7 +146,7 @@ int run_povray(const Arguments& arguments) {
     std::string largest;
     Fields rays;
     {
-        Progress progress("exporting");
+        ProgressBar progress("exporting");
         const CutHandle cut = choosing.cut(model.get(), progress.job());
         check(lds_cut_get_summary(cut.get(), &summary));
         largest = summary.largest_error_name;
@@ -155,7 +155,7 @@ int run_povray(const Arguments& arguments) {
                                 progress.job(), &exported));
     }
     {
-        Progress progress("rendering");
+        ProgressBar progress("rendering");
         check(lds_povray_run(folder.path().c_str(), "picture.png", &options, progress.job(),
                              &rendered));
     }
@@ -164,7 +164,7 @@ int run_povray(const Arguments& arguments) {
     deliver(picture, *out);
 
     std::printf("%s: %d x %d, camera %s; %llu triangles, largest error %.3f px%s\n%.1f s\n",
-                out->c_str(), view.width, view.height, shown(camera).c_str(),
+                out->c_str(), view.width, view.height, terminal_text(camera).c_str(),
                 static_cast<unsigned long long>(summary.triangles), summary.largest_error_px,
                 in_brackets(largest).c_str(), rendered.wall_s);
     Fields report = report_of("povray", input);

@@ -10,12 +10,12 @@
 #include <cstdio>
 
 namespace lodestone::tools {
-int run_cut(const Arguments& arguments) {
+int run_cut(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     size_of(arguments);  // before anything is read
     const ModelHandle model = read_model(input);
     lds_view view = view_of(arguments, model.get(), false);
-    Choosing choosing(arguments, view);
+    CutOptions choosing(arguments, view);
     const CutHandle cut = choosing.cut(model.get(), nullptr);
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;
@@ -44,7 +44,7 @@ int run_cut(const Arguments& arguments) {
         check(lds_cut_choice_copy(cut.get(), choices.data(), choices.size()));
         for (size_t i = 0; i < choices.size(); ++i)
             std::printf("LOD %-2u %8.3f px  %s\n", choices[i].lod, choices[i].error_px,
-                        shown(lds_cut_choice_path(cut.get(), i)).c_str());
+                        terminal_text(lds_cut_choice_path(cut.get(), i)).c_str());
     }
     report.push_back({"problems", problems_of(model.get())});
     const auto path = arguments.text("json");
@@ -52,7 +52,7 @@ int run_cut(const Arguments& arguments) {
     return 0;
 }
 
-int run_compare(const Arguments& arguments) {
+int run_compare(const CommandArguments& arguments) {
     const std::string& a = arguments.positional()[0];
     const std::string& b = arguments.positional()[1];
     const auto mask = arguments.text("mask");
@@ -74,7 +74,7 @@ int run_compare(const Arguments& arguments) {
     return 0;
 }
 
-int run_version(const Arguments& arguments) {
+int run_version(const CommandArguments& arguments) {
     const bool rays = lds_rays_check() == LDS_OK;
     const std::string rays_reason = rays ? "Embree 3" : lds_last_error_text();
     const char* found = nullptr;
@@ -86,7 +86,7 @@ int run_version(const Arguments& arguments) {
     report.push_back({"version", lds_version()});
     report.push_back({"abi", lds_abi_version()});
     report.push_back({"rays", rays});
-    report.push_back({"povray_path", povray ? Value(povray_path) : Value()});
+    report.push_back({"povray_path", povray ? ReportValue(povray_path) : ReportValue()});
     const auto path = arguments.text("json");
     write_report(path ? &*path : nullptr, report);
     return 0;

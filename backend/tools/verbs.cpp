@@ -12,8 +12,8 @@ const OptionHelp kSeed{"seed", "N", "seed of random samples (default 1)"};
 
 }  // namespace
 
-const std::vector<Verb>& verbs() {
-    static const std::vector<Verb> kAll{
+const std::vector<CommandVerb>& verbs() {
+    static const std::vector<CommandVerb> kAll{
         {"measure",
          "FILE",
          "visible area, center, inertia and mean color of each object",

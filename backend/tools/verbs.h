@@ -9,26 +9,26 @@
 
 namespace lodestone::tools {
 
-struct Verb {
+struct CommandVerb {
     const char* name;
     const char* usage;  // after the verb
     const char* text;   // one line
     const char* details;
     size_t positional;  // how many it takes
     std::vector<OptionHelp> options;
-    int (*run)(const Arguments&);
+    int (*run)(const CommandArguments&);
 };
 
 /// In the order a user meets them.
-const std::vector<Verb>& verbs();
+const std::vector<CommandVerb>& verbs();
 
-int run_measure(const Arguments& arguments);
-int run_simplify(const Arguments& arguments);
-int run_build(const Arguments& arguments);
-int run_info(const Arguments& arguments);
-int run_cut(const Arguments& arguments);
-int run_povray(const Arguments& arguments);
-int run_compare(const Arguments& arguments);
-int run_version(const Arguments& arguments);
+int run_measure(const CommandArguments& arguments);
+int run_simplify(const CommandArguments& arguments);
+int run_build(const CommandArguments& arguments);
+int run_info(const CommandArguments& arguments);
+int run_cut(const CommandArguments& arguments);
+int run_povray(const CommandArguments& arguments);
+int run_compare(const CommandArguments& arguments);
+int run_version(const CommandArguments& arguments);
 
 }  // namespace lodestone::tools

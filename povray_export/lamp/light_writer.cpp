@@ -24,15 +24,15 @@ glm::dvec3 perpendicular(const glm::dvec3& unit) {
 }
 
 /// Rays along an edge: 2^n + 1, for POV-Ray refines by halving.
-struct Grid {
+struct RayGrid {
     int u = 1;
     int v = 1;
     int start = 1;  // POV-Ray's adaptive: the first 2^start + 1 rays of an edge are always cast
 };
 
-class Writer {
+class LightWriter {
 public:
-    Writer(std::string& out, const Light& light, const LightSampling& sampling)
+    LightWriter(std::string& out, const Light& light, const LightSampling& sampling)
         : out_(out), light_(light), soft_(sampling.rays > 1 && light.shadow) {
         rays_ = sampling.rays;
         start_ = sampling.thorough ? 1 : 0;
@@ -54,7 +54,7 @@ public:
         out_ += " parallel point_at ";
         append_vector(out_, bound.center, 15);
         if (soft_ && half > 1e-4) {
-            Grid grid{17, 17, start_};
+            RayGrid grid{17, 17, start_};
             if (half > kWideSun)
                 ++grid.start;
             else if (half < kNarrowSun)
@@ -99,11 +99,11 @@ public:
         const bool soft = soft_ && std::max(width, height) > kNear;
         if (!soft)  // a disk of this size on its axis
             fade = std::sqrt(size / kPi);
-        const Cone cone = spread_cone();
+        const SpotCone cone = spread_cone();
         fading(light_.position, color * (cone.strength / (4 * kPi)), fade);
         append_cone(cone.inner, cone.outer, cone.tightness);
         if (soft) {
-            Grid grid{9, 9, start_ + 1};
+            RayGrid grid{9, 9, start_ + 1};
             const double ratio = std::max(width, height) / std::min(width, height);
             int& longer = width > height ? grid.u : grid.v;
             int& shorter = width > height ? grid.v : grid.u;
@@ -118,7 +118,7 @@ public:
     }
 
 private:
-    struct Cone {
+    struct SpotCone {
         double inner = kPi / 2;
         double outer = kPi / 2;
         double tightness = 1;
@@ -157,7 +157,7 @@ private:
 
     /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is
     /// wanted.
-    void append_grid(const glm::dvec3& u, const glm::dvec3& v, Grid grid) {
+    void append_grid(const glm::dvec3& u, const glm::dvec3& v, RayGrid grid) {
         grid.u = std::min(rays_of(grid.u), most_);
         grid.v = std::min(rays_of(grid.v), most_);
         while (grid.start > 0 && (1 << grid.start) >= std::min(grid.u, grid.v))
@@ -174,21 +174,21 @@ private:
         append_count(out_, static_cast<uint64_t>(grid.start));
     }
 
-    void append_ball(const Grid& grid) {
+    void append_ball(const RayGrid& grid) {
         append_grid({2 * light_.radius, 0, 0}, {0, 2 * light_.radius, 0}, grid);
         out_ += " circular orient";
     }
 
     /// Cycles lets an area emit cos x (1 - tan x / tan s) / (1 - s / tan s) within s, half the
     /// spread. Here: one smooth cone, its tightness and strength fitted to that over the sphere.
-    Cone spread_cone() const {
+    SpotCone spread_cone() const {
         const double s = light_.spread / 2;
         if (!(s > 0) || s > kPi / 2 - 0.01)
             return {};
         constexpr int kSteps = 64;
         const double norm = s < 1e-2 ? 3 / (s * s) : 1 / (1 - s / std::tan(s));
         const double low = std::cos(s);
-        Cone best;
+        SpotCone best;
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i <= 40; ++i) {
             const double tightness = i * 0.2 / (s * s);
@@ -249,7 +249,7 @@ void append_light(std::string& out, const Light& light, const Bound& bound,
                             "has no finite place or direction, so it is not used"});
         return;
     }
-    Writer writer(out, light, sampling);
+    LightWriter writer(out, light, sampling);
     if (light.kind == LightKind::Sun)
         return writer.sun(color, bound);
     if (light.kind == LightKind::Point)

@@ -19,7 +19,7 @@ constexpr double kSharpest = 200;
 constexpr double kDarkest = 0.02;
 
 light::SurfaceReflection reflection_of(const Material& material) {
-    const Look look = look_of(material);
+    const SurfaceLook look = look_of(material);
     const Finish finish = finish_of(look);
     light::SurfaceReflection out;
     out.albedo = glm::clamp(material.base_color, 0.0, 1.0);

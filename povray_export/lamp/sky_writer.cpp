@@ -56,9 +56,9 @@ double largest_of(const glm::dvec3& color) {
 
 }  // namespace
 
-Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
-              Problems& problems) {
-    Sky sky;
+WrittenSky write_sky(const World& world, const SkySampling& sampling,
+                     const std::filesystem::path& folder, Problems& problems) {
+    WrittenSky sky;
     if (finite(world.color))
         sky.ambient = glm::max(world.color, glm::dvec3(0.0));
     if (!world.environment)
@@ -100,13 +100,13 @@ Sky write_sky(const World& world, const SkySampling& sampling, const std::filesy
     return sky;
 }
 
-std::string sky_sphere(const Sky& sky) {
+std::string sky_sphere(const WrittenSky& sky) {
     std::string out = "sky_sphere{" + sky.pigment + "emission rgb ";
     append_vector(out, sky.strength, 6);
     return out + "}\n\n";
 }
 
-std::string sky_ball(const Sky& sky, const glm::dvec3& eye) {
+std::string sky_ball(const WrittenSky& sky, const glm::dvec3& eye) {
     constexpr double kFar = 5e6;  // POV-Ray sees as far as 1e7
     std::string out = "sphere{0,1 hollow no_shadow no_radiosity texture{" + sky.pigment +
                       "finish{ambient 0 diffuse 0 emission rgb ";

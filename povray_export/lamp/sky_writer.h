@@ -16,7 +16,7 @@ struct SkySampling {
     bool shadows = true;  // false: they shine through everything
 };
 
-struct Sky {
+struct WrittenSky {
     glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
     std::vector<Light> lights;  // suns for the rest of an environment
     std::string pigment;        // pigment{...} of an environment's picture; "" without
@@ -29,13 +29,13 @@ struct Sky {
 /// Writes an environment's picture into `folder`/i when it is not there. One that cannot be decoded
 /// becomes a problem, and its world counts as its color. Without lights all of its light is
 /// uniform. Throws Error(Io).
-Sky write_sky(const World& world, const SkySampling& sampling, const std::filesystem::path& folder,
-              Problems& problems);
+WrittenSky write_sky(const World& world, const SkySampling& sampling,
+                     const std::filesystem::path& folder, Problems& problems);
 
 /// An environment's picture behind everything.
-std::string sky_sphere(const Sky& sky);
+std::string sky_sphere(const WrittenSky& sky);
 /// The same as a ball around the eye, for pictures with indirect light: gathering rays go through
 /// it and meet the background, as lights stand for most of the picture.
-std::string sky_ball(const Sky& sky, const glm::dvec3& eye);
+std::string sky_ball(const WrittenSky& sky, const glm::dvec3& eye);
 
 }  // namespace lodestone::povray

@@ -99,7 +99,7 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
         find_texels(std::ldexp(1.0, *options.texel));
     find_planes();
     bool corners = false;
-    for (Slot& slot : slots_) {
+    for (TexturedSlot& slot : slots_) {
         refraction_ = std::max(refraction_, refraction_of(slot.material));
         if (slot.colored || !slot.planes.empty())
             corners = true;
@@ -120,14 +120,15 @@ bool MeshTextures::is_glass(size_t triangle) const {
 }
 
 bool MeshTextures::is_clear_beside_glass() const {
-    return refraction_ > 0 && std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+    return refraction_ > 0 &&
+           std::any_of(slots_.begin(), slots_.end(), [](const TexturedSlot& slot) {
                const Material& material = slot.material;
                return material.alpha_mode == AlphaMode::Blend && !(refraction_of(material) > 0) &&
                       (material.alpha < 1 || material.alpha_texture);
            });
 }
 
-void MeshTextures::breathe(size_t i) const {
+void MeshTextures::check_job_sometimes(size_t i) const {
     if ((i & 0xffffu) == 0xffffu)
         job_.check();
 }
@@ -142,7 +143,7 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
         if (slot_at_[number] != kUnknown)
             continue;
         slot_at_[number] = static_cast<uint16_t>(slots_.size());
-        Slot slot;  // a slot without a material looks neutral
+        TexturedSlot slot;  // a slot without a material looks neutral
         if (number < representation.materials.size()) {
             const uint32_t index = representation.materials[number];
             if (index >= model.materials.size())
@@ -160,13 +161,13 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
 }
 
 void MeshTextures::find_ranges() {
-    for (Slot& slot : slots_) {
+    for (TexturedSlot& slot : slots_) {
         slot.surface.range.low = glm::dvec2(1e300);
         slot.surface.range.high = glm::dvec2(-1e300);
     }
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-        breathe(i);
-        Surface& surface = slots_[slot_at_[mesh_.slot(i)]].surface;
+        check_job_sometimes(i);
+        TexturedSurface& surface = slots_[slot_at_[mesh_.slot(i)]].surface;
         if (!surface.uvs)
             continue;
         for (int corner = 0; corner < 3; ++corner) {
@@ -182,7 +183,7 @@ void MeshTextures::find_texels(double metres) {
     constexpr int kLeast = -64;       // exponents of what a texture coordinate of 1 covers
     std::vector<std::array<double, 129>> areas(slots_.size());
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-        breathe(i);
+        check_job_sometimes(i);
         const size_t at = slot_at_[mesh_.slot(i)];
         const double covered = metres_of_uv(mesh_, i);
         const double area = glm::length(area_vector(mesh_, i));
@@ -204,7 +205,7 @@ void MeshTextures::find_texels(double metres) {
     }
 }
 
-size_t MeshTextures::add(const Slot& slot, PictureWriter& pictures) {
+size_t MeshTextures::add(const TexturedSlot& slot, PictureWriter& pictures) {
     std::string text = texture_text(slot.material, slot.surface, pictures);
     const auto [at, fresh] = known_.try_emplace(std::move(text), texts_.size());
     if (fresh)
@@ -213,12 +214,13 @@ size_t MeshTextures::add(const Slot& slot, PictureWriter& pictures) {
 }
 
 void MeshTextures::find_planes() {
-    if (std::none_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.bumped; }))
+    if (std::none_of(slots_.begin(), slots_.end(),
+                     [](const TexturedSlot& slot) { return slot.bumped; }))
         return;
     plane_of_.assign(mesh_.triangles.size(), uint8_t{kMostPlanes});
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-        breathe(i);
-        Slot& slot = slots_[slot_at_[mesh_.slot(i)]];
+        check_job_sometimes(i);
+        TexturedSlot& slot = slots_[slot_at_[mesh_.slot(i)]];
         if (!slot.bumped || plane_of(i, slot, plane_of_[i]))
             continue;
         slot.bumped = false;
@@ -232,7 +234,7 @@ void MeshTextures::find_planes() {
 }
 
 /// False: a plane too many. Triangles without an area, here or in the picture, have none.
-bool MeshTextures::plane_of(size_t triangle, Slot& slot, uint8_t& plane) const {
+bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane) const {
     const Triangle& t = mesh_.triangles[triangle];
     const glm::dvec3 at[] = {glm::dvec3(mesh_.positions[t.x]), glm::dvec3(mesh_.positions[t.y]),
                              glm::dvec3(mesh_.positions[t.z])};
@@ -284,21 +286,21 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
     std::vector<Key> keys(mesh_.colors.size());
     bool alpha = false;
     bool pictured = false;
-    for (const Slot& slot : slots_) {
+    for (const TexturedSlot& slot : slots_) {
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get()) {
             alpha = alpha || m->alpha_mode != AlphaMode::Opaque;
             pictured = pictured || (slot.colored && slot.surface.uvs && m->base_color_texture);
         }
     }
     for (size_t i = 0; i < keys.size(); ++i) {
-        breathe(i);
+        check_job_sometimes(i);
         keys[i] = key_of(mesh_.colors[i], alpha);
     }
     // First what 8 bits hold, then coarser until it fits.
     for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
         std::unordered_set<Key> distinct;
         for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
-            breathe(i);
+            check_job_sometimes(i);
             distinct.insert(rounded(keys[i], step));
         }
         if (distinct.size() > kMost)
@@ -325,15 +327,15 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
 
 void MeshTextures::find_corners(PictureWriter& pictures) {
     glm::dvec3 hue(-1.0);
-    const bool colored =
-        std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.colored; });
+    const bool colored = std::any_of(slots_.begin(), slots_.end(),
+                                     [](const TexturedSlot& slot) { return slot.colored; });
     const std::vector<Key> keys = colored ? color_keys(hue) : std::vector<Key>();
     std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * (kMostPlanes + 1));
     const auto text_of = [&](size_t at, size_t plane, Key key) {
         const auto [found, fresh] = texts[at * (kMostPlanes + 1) + plane].try_emplace(key, 0);
         if (!fresh)
             return found->second;
-        Slot slot = slots_[at];
+        TexturedSlot slot = slots_[at];
         if (plane < slot.planes.size()) {
             slot.surface.flat = true;
             slot.surface.to_uv = slot.planes[plane];
@@ -349,7 +351,7 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
     };
     corners_.resize(3 * mesh_.triangles.size());
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-        breathe(i);
+        check_job_sometimes(i);
         const size_t at = slot_at_[mesh_.slot(i)];
         const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[i];
         for (int corner = 0; corner < 3; ++corner)

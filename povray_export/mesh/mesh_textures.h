@@ -42,9 +42,9 @@ public:
     bool differ_in_triangles() const { return !corners_.empty(); }
 
 private:
-    struct Slot {
+    struct TexturedSlot {
         Material material;
-        Surface surface;
+        TexturedSurface surface;
         bool colored = false;
         bool bumped = false;
         std::vector<Affine> planes;  // to_uv of its flat parts, where it is bumped
@@ -55,15 +55,15 @@ private:
     void find_ranges();
     void find_texels(double metres);
     void find_planes();
-    bool plane_of(size_t triangle, Slot& slot, uint8_t& plane) const;
+    bool plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane) const;
     std::vector<uint64_t> color_keys(glm::dvec3& hue) const;
     void find_corners(PictureWriter& pictures);
-    size_t add(const Slot& slot, PictureWriter& pictures);
-    void breathe(size_t i) const;
+    size_t add(const TexturedSlot& slot, PictureWriter& pictures);
+    void check_job_sometimes(size_t i) const;
 
     const Mesh& mesh_;
     const Job& job_;
-    std::vector<Slot> slots_;
+    std::vector<TexturedSlot> slots_;
     std::vector<uint16_t> slot_at_;  // by slot of the mesh: where in slots_
     std::unordered_map<std::string, size_t> known_;
     std::vector<std::string> texts_;

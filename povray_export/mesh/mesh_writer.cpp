@@ -25,7 +25,7 @@ constexpr size_t kFew = 16;
 using Point = std::array<int64_t, 3>;
 
 /// Equal values stored once: number of every vertex's value, and one vertex for every value.
-struct Pool {
+struct ValuePool {
     std::vector<uint32_t> of_vertex;
     std::vector<uint32_t> vertices;
     size_t size() const { return vertices.size(); }
@@ -33,9 +33,9 @@ struct Pool {
 
 /// Numbers the vertices of `order` by equality, in order of first use.
 template <typename Key>
-Pool share(const std::vector<uint32_t>& order, size_t vertex_count, const Key& key_of) {
+ValuePool share(const std::vector<uint32_t>& order, size_t vertex_count, const Key& key_of) {
     constexpr uint32_t kFree = ~uint32_t{0};
-    Pool pool;
+    ValuePool pool;
     pool.of_vertex.assign(vertex_count, kFree);
     std::vector<uint32_t> table(std::bit_ceil(order.size() * 2 + 2), kFree);
     for (const uint32_t vertex : order) {
@@ -64,11 +64,12 @@ bool flat_on_lattice(const Point& a, const Point& b, const Point& c) {
 }
 
 /// Which triangles are written.
-enum class Written { All, Glass, Rest };
+enum class WrittenTriangles { All, Glass, Rest };
 
 class MeshText {
 public:
-    MeshText(const Mesh& mesh, const MeshTextures* textures, Written written, const Job& job)
+    MeshText(const Mesh& mesh, const MeshTextures* textures, WrittenTriangles written,
+             const Job& job)
         : mesh_(mesh), textures_(textures), written_(written), job_(job) {
         round_positions();
         keep_triangles();
@@ -110,8 +111,8 @@ public:
         if (has_uvs_ && explicit_uvs_)
             append_list(out, "uv_indices", kept_.size(),
                         [&](char* at, size_t i) { return write_face(at, uvs_, kept_[i]); });
-        const bool refracts =
-            textures_ != nullptr && textures_->refraction() > 0 && written_ != Written::Rest;
+        const bool refracts = textures_ != nullptr && textures_->refraction() > 0 &&
+                              written_ != WrittenTriangles::Rest;
         if (refracts)
             out += "inside_vector <0,0,1>\n";
         if (textures_ != nullptr && !list)
@@ -130,7 +131,7 @@ private:
     void round_positions() {
         Box3 box;
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-            breathe(i);
+            check_job_sometimes(i);
             for (int corner = 0; corner < 3; ++corner) {
                 const glm::dvec3 at(mesh_.positions[mesh_.triangles[i][corner]]);
                 if (!std::isfinite(at.x + at.y + at.z))
@@ -143,14 +144,14 @@ private:
             return;
         const glm::dvec3 size = box.size();
         const glm::dvec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
-        lattice_ = Lattice(kPositionPrecision * std::max({size.x, size.y, size.z}),
-                           std::max({far.x, far.y, far.z}));
+        lattice_ = DecimalLattice(kPositionPrecision * std::max({size.x, size.y, size.z}),
+                                  std::max({far.x, far.y, far.z}));
         narrow_ = true;  // no product of two differences leaves 64 bits
         for (int i = 0; i < 3; ++i)
             narrow_ = narrow_ && lattice_.round(box.high[i]) - lattice_.round(box.low[i]) < 1 << 30;
         points_.resize(mesh_.positions.size());
         for (size_t i = 0; i < points_.size(); ++i) {
-            breathe(i);
+            check_job_sometimes(i);
             const glm::dvec3 at(mesh_.positions[i]);
             // What no triangle uses may be anything, and is never written.
             if (glm::all(glm::lessThanEqual(glm::abs(at), far)))
@@ -162,9 +163,10 @@ private:
         std::vector<uint8_t> used(mesh_.positions.size(), 0);
         const bool normals = !mesh_.normals.empty();
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-            breathe(i);
+            check_job_sometimes(i);
             const Triangle& t = mesh_.triangles[i];
-            if (written_ != Written::All && textures_->is_glass(i) != (written_ == Written::Glass))
+            if (written_ != WrittenTriangles::All &&
+                textures_->is_glass(i) != (written_ == WrittenTriangles::Glass))
                 continue;
             if (narrow_ ? flat_on_lattice<int64_t>(points_[t.x], points_[t.y], points_[t.z])
                         : flat_on_lattice<__int128>(points_[t.x], points_[t.y], points_[t.z]))
@@ -198,7 +200,7 @@ private:
         if (smooth_) {
             normal_points_.resize(count);
             for (size_t i = 0; i < order_.size(); ++i) {
-                breathe(i);
+                check_job_sometimes(i);
                 normal_points_[order_[i]] = rounded_normal(order_[i]);
             }
         }
@@ -209,13 +211,13 @@ private:
                 const glm::vec2& uv = mesh_.uvs[vertex];
                 far = std::max({far, std::abs(double{uv.x}), std::abs(double{uv.y})});
             }
-            uv_lattice_ = Lattice(kUvPrecision, far);
+            uv_lattice_ = DecimalLattice(kUvPrecision, far);
             uv_points_.resize(count);
             for (const uint32_t vertex : order_)
                 uv_points_[vertex] = {uv_lattice_.round(mesh_.uvs[vertex].x),
                                       uv_lattice_.round(mesh_.uvs[vertex].y)};
         }
-        Pool position = share(order_, count, [&](uint32_t v) { return points[v]; });
+        ValuePool position = share(order_, count, [&](uint32_t v) { return points[v]; });
         job_.check();
         // Without seams (every position once, at least as many triangles as vertices) indices of
         // their own cost more numbers than any sharing of normals or uvs could save.
@@ -228,21 +230,21 @@ private:
                 uvs_ = positions_;
             return;
         }
-        const auto joined = [&](const Pool& a, const Pool& b) {
+        const auto joined = [&](const ValuePool& a, const ValuePool& b) {
             job_.check();
             return share(order_, count, [&](uint32_t v) {
                 return std::array<uint32_t, 2>{a.of_vertex[v], b.of_vertex[v]};
             });
         };
-        Pool normal;
-        Pool uv;
+        ValuePool normal;
+        ValuePool uv;
         if (smooth_)
             normal = share(order_, count, [&](uint32_t v) { return normal_points_[v]; });
         if (has_uvs_)
             uv = share(order_, count, [&](uint32_t v) { return uv_points_[v]; });
         // One index for position and normal, or one for all three, or one for each.
-        const Pool both = smooth_ ? joined(position, normal) : position;
-        const Pool all = has_uvs_ ? joined(both, uv) : both;
+        const ValuePool both = smooth_ ? joined(position, normal) : position;
+        const ValuePool all = has_uvs_ ? joined(both, uv) : both;
         const size_t indices = 3 * kept_.size();
         const size_t vertex = smooth_ ? 6 : 3;
         const size_t one = all.size() * (vertex + (has_uvs_ ? 2 : 0));
@@ -281,7 +283,7 @@ private:
         char block[4096];
         char* at = block;
         for (size_t i = 0; i < count; ++i) {
-            breathe(i);
+            check_job_sometimes(i);
             if (at > block + sizeof block - kMostOfItem) {
                 out.append(block, at);
                 at = block;
@@ -297,9 +299,9 @@ private:
     static constexpr size_t kMostOfItem = 256;
 
     template <size_t kCount>
-    static char* write_point(char* at, const Lattice& lattice,
+    static char* write_point(char* at, const DecimalLattice& lattice,
                              const std::array<int64_t, kCount>& point) {
-        static_assert(kCount * (Lattice::kMostCharacters + 1) + 2 < kMostOfItem);
+        static_assert(kCount * (DecimalLattice::kMostCharacters + 1) + 2 < kMostOfItem);
         char before = '<';
         for (const int64_t value : point) {
             *at++ = before;
@@ -310,7 +312,7 @@ private:
         return at;
     }
 
-    char* write_face(char* at, const Pool& pool, uint32_t triangle) const {
+    char* write_face(char* at, const ValuePool& pool, uint32_t triangle) const {
         const Triangle& t = mesh_.triangles[triangle];
         *at++ = '<';
         at = write_count(at, pool.of_vertex[t.x]);
@@ -337,18 +339,18 @@ private:
         return at;
     }
 
-    void breathe(size_t i) const {
+    void check_job_sometimes(size_t i) const {
         if ((i & 0xffffu) == 0xffffu)
             job_.check();
     }
 
     const Mesh& mesh_;
     const MeshTextures* textures_;
-    Written written_;
+    WrittenTriangles written_;
     const Job& job_;
-    Lattice lattice_{1, 1};
-    Lattice normal_lattice_{kNormalPrecision, 1};
-    Lattice uv_lattice_{kUvPrecision, 1};
+    DecimalLattice lattice_{1, 1};
+    DecimalLattice normal_lattice_{kNormalPrecision, 1};
+    DecimalLattice uv_lattice_{kUvPrecision, 1};
     std::vector<Point> points_;
     std::vector<Point> normal_points_;
     std::vector<std::array<int64_t, 2>> uv_points_;
@@ -359,9 +361,9 @@ private:
     bool has_uvs_ = false;
     bool explicit_normals_ = false;
     bool explicit_uvs_ = false;
-    Pool positions_;
-    Pool normals_;
-    Pool uvs_;
+    ValuePool positions_;
+    ValuePool normals_;
+    ValuePool uvs_;
 };
 
 }  // namespace
@@ -371,14 +373,14 @@ std::string mesh_text(const Mesh& mesh, const MeshTextures* textures, const std:
     std::string out(before);
     out += "#declare " + identifier + " = ";
     if (textures == nullptr || !textures->is_clear_beside_glass()) {
-        MeshText all(mesh, textures, Written::All, job);
+        MeshText all(mesh, textures, WrittenTriangles::All, job);
         if (all.empty())
             return "";
         all.append_to(out);
         return out;
     }
-    MeshText glass(mesh, textures, Written::Glass, job);
-    MeshText rest(mesh, textures, Written::Rest, job);
+    MeshText glass(mesh, textures, WrittenTriangles::Glass, job);
+    MeshText rest(mesh, textures, WrittenTriangles::Rest, job);
     if (glass.empty() && rest.empty())
         return "";
     const bool both = !glass.empty() && !rest.empty();  // a union of one is an error to POV-Ray

@@ -17,12 +17,12 @@
 namespace lodestone::povray {
 namespace {
 
-struct alignas(16) Stack {
+struct alignas(16) ChildStack {
     std::array<char, 65536> bytes;
 };
 
 /// What the child needs: all of it made by the parent, since the child may not allocate.
-struct Plan {
+struct SpawnPlan {
     const char* program = nullptr;
     char* const* arguments = nullptr;
     char* const* environment = nullptr;
@@ -63,7 +63,7 @@ int prepare_files(int output) {
 }
 
 /// Returns errno only when the program could not be started.
-int start(const Plan& plan) {
+int start(const SpawnPlan& plan) {
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
         return errno;
     if (getppid() != plan.parent)  // it died before we asked to be told
@@ -87,7 +87,7 @@ int start(const Plan& plan) {
 /// Runs in the child, on a stack of its own but in the parent's memory, while the parent's thread
 /// stands still: system calls only.
 int run_child(void* argument) {
-    Plan& plan = *static_cast<Plan*>(argument);
+    SpawnPlan& plan = *static_cast<SpawnPlan*>(argument);
     plan.error = start(plan);
     _exit(127);
 }
@@ -97,9 +97,9 @@ int run_child(void* argument) {
 pid_t spawn(const SpawnOptions& options) {
     const std::vector<char*> arguments = pointers(options.arguments);
     const std::vector<char*> environment = pointers(options.environment);
-    Plan plan{options.program.c_str(), arguments.data(), environment.data(),
-              options.folder.c_str(),  options.output,   getpid()};
-    const auto stack = std::make_unique<Stack>();
+    SpawnPlan plan{options.program.c_str(), arguments.data(), environment.data(),
+                   options.folder.c_str(),  options.output,   getpid()};
+    const auto stack = std::make_unique<ChildStack>();
 
     // As posix_spawn does it, which cannot ask for the death signal: sharing memory until exec
     // costs nothing and fails less often than fork() in a process of many gigabytes. No handler of

@@ -11,19 +11,19 @@ namespace lodestone::povray {
 namespace {
 
 /// A folder of our own, gone with what is in it when it is no longer needed.
-struct Folder {
-    Folder() {
+struct TemporaryFolder {
+    TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "lodestone-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
             fail(Status::Io, "cannot make a folder like '", name, "'");
         path = name;
     }
-    ~Folder() {
+    ~TemporaryFolder() {
         std::error_code error;
         std::filesystem::remove_all(path, error);
     }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     std::filesystem::path path;
 };
 
@@ -31,7 +31,7 @@ struct Folder {
 
 uint64_t empty_scene_bytes(const View& view, Antialiasing antialiasing, const RunOptions& like,
                            const Job& job) {
-    using Key = std::tuple<std::string, int, int, int, Output, Antialiasing>;
+    using Key = std::tuple<std::string, int, int, int, OutputFormat, Antialiasing>;
     static std::mutex mutex;
     static std::map<Key, uint64_t> known;
     const int width = like.width > 0 ? like.width : view.width;
@@ -44,7 +44,7 @@ uint64_t empty_scene_bytes(const View& view, Antialiasing antialiasing, const Ru
         if (at != known.end())
             return at->second;
     }
-    const Folder folder;
+    const TemporaryFolder folder;
     ExportOptions scene;
     scene.folder = folder.path;
     scene.antialiasing = antialiasing;
@@ -52,7 +52,7 @@ uint64_t empty_scene_bytes(const View& view, Antialiasing antialiasing, const Ru
     export_scene(Model{}, choose::Cut{}, view, scene, problems, job.part(0, 0));
     RunOptions options = like;
     options.folder = folder.path;
-    const uint64_t bytes = run(options, job).peak_bytes;
+    const uint64_t bytes = render_scene(options, job).peak_bytes;
     const std::lock_guard lock(mutex);
     return known[key] = bytes;
 }

@@ -47,13 +47,13 @@ bool spaced(const std::string& text) {
 
 }  // namespace
 
-Messages::Wrap Messages::wrap_of(const std::string& text) {
+PovrayMessages::LineWrap PovrayMessages::wrap_of(const std::string& text) {
     if (text.size() >= kConsoleWidth)
-        return Wrap::Word;
-    return text.size() + kLongestWord >= kConsoleWidth ? Wrap::Space : Wrap::No;
+        return LineWrap::Word;
+    return text.size() + kLongestWord >= kConsoleWidth ? LineWrap::Space : LineWrap::No;
 }
 
-void Messages::read(std::string_view piece) {
+void PovrayMessages::read(std::string_view piece) {
     for (const char c : piece) {
         if (c != '\r' && c != '\n') {
             if (line_.size() < kLongestLine)
@@ -65,16 +65,16 @@ void Messages::read(std::string_view piece) {
     }
 }
 
-void Messages::finish() {
+void PovrayMessages::finish() {
     line(line_);
     line_.clear();
     line("");
 }
 
-void Messages::line(const std::string& text) {
+void PovrayMessages::line(const std::string& text) {
     if (!message_.empty()) {
-        const bool continues =
-            !text.empty() && (wrapped_ == Wrap::Word || (wrapped_ == Wrap::Space && spaced(text)));
+        const bool continues = !text.empty() && (wrapped_ == LineWrap::Word ||
+                                                 (wrapped_ == LineWrap::Space && spaced(text)));
         if (continues && message_.size() < kLongestLine) {
             message_ += text;
             wrapped_ = wrap_of(text);
@@ -92,15 +92,15 @@ void Messages::line(const std::string& text) {
         const size_t with = text.find("with ");
         const double seconds =
             with == std::string::npos ? 0 : number_after(text.substr(with), "with ", 0.0);
-        if (std::isfinite(seconds) && time_ == Time::Parse)
+        if (std::isfinite(seconds) && time_ == TimedPhase::Parse)
             parse_cpu_s += seconds;
-        else if (std::isfinite(seconds) && time_ == Time::Trace)
+        else if (std::isfinite(seconds) && time_ == TimedPhase::Trace)
             trace_cpu_s += seconds;
-        time_ = Time::None;
+        time_ = TimedPhase::None;
     } else if (contains(text, "Parse Time:") || contains(text, "Bounding Time:")) {
-        time_ = Time::Parse;
+        time_ = TimedPhase::Parse;
     } else if (contains(text, "Trace Time:")) {
-        time_ = Time::Trace;
+        time_ = TimedPhase::Trace;
     } else if (text == "POV-Ray finished") {
         finished = true;
     } else if (trouble(text)) {
@@ -109,7 +109,7 @@ void Messages::line(const std::string& text) {
     }
 }
 
-void Messages::keep(const std::string& message) {
+void PovrayMessages::keep(const std::string& message) {
     text_ += message;
     text_ += '\n';
     if (text_.size() > kLongestText)
@@ -121,7 +121,7 @@ void Messages::keep(const std::string& message) {
         suspect_ = message;
 }
 
-std::string Messages::reason() const {
+std::string PovrayMessages::reason() const {
     if (!error_.empty())
         return error_;
     return suspect_.empty() ? "it gave no reason" : suspect_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Messages: what POV-Ray says while it runs, taken apart.
+// PovrayMessages: what POV-Ray says while it runs, taken apart.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace lodestone::povray {
 
 /// Reads POV-Ray's text piece by piece. Memory is bounded whatever it says.
-class Messages {
+class PovrayMessages {
 public:
     void read(std::string_view piece);
     /// Ends the last line.
@@ -28,18 +28,22 @@ public:
     std::string reason() const;
 
 private:
-    enum class Wrap { No, Space, Word };  // does the next line go on, if it begins with a space?
-    static Wrap wrap_of(const std::string& text);
+    enum class LineWrap {
+        No,
+        Space,
+        Word
+    };  // does the next line go on, if it begins with a space?
+    static LineWrap wrap_of(const std::string& text);
     void line(const std::string& text);
     void keep(const std::string& message);
 
     std::string line_;     // being read
     std::string message_;  // being continued
-    Wrap wrapped_ = Wrap::No;
+    LineWrap wrapped_ = LineWrap::No;
     std::string text_;
     std::string error_;    // the first that is certain
     std::string suspect_;  // the last other message
-    enum class Time { None, Parse, Trace } time_ = Time::None;
+    enum class TimedPhase { None, Parse, Trace } time_ = TimedPhase::None;
 };
 
 }  // namespace lodestone::povray

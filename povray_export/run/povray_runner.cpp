@@ -46,10 +46,10 @@ bool is_program(const std::string& path) {
 
 /// Ends with the output closed and the process reaped, whatever happens. Made, watched and
 /// destroyed on one thread: POV-Ray is killed when that thread ends.
-class Child {
+class PovrayProcess {
 public:
-    Child(const std::string& program, const std::filesystem::path& folder,
-          const std::vector<std::string>& arguments) {
+    PovrayProcess(const std::string& program, const std::filesystem::path& folder,
+                  const std::vector<std::string>& arguments) {
         int ends[2];
         if (pipe2(ends, O_CLOEXEC) != 0)
             fail(Status::Io, "cannot make a pipe for POV-Ray: ", reason(errno));
@@ -72,15 +72,15 @@ public:
         close(ends[1]);
     }
 
-    ~Child() {
+    ~PovrayProcess() {
         stop();
         close(output_);
     }
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
+    PovrayProcess(const PovrayProcess&) = delete;
+    PovrayProcess& operator=(const PovrayProcess&) = delete;
 
     /// Waits a tick for text; false once there can be no more.
-    void wait_for_text(Messages& messages) const {
+    void wait_for_text(PovrayMessages& messages) const {
         pollfd waiting{output_, POLLIN, 0};
         poll(&waiting, 1, kTickMs);
         // After the other end was closed poll returns at once: do not spin until the process ends.
@@ -89,7 +89,7 @@ public:
         read_text(messages);
     }
 
-    void read_text(Messages& messages) const {
+    void read_text(PovrayMessages& messages) const {
         char buffer[16384];
         for (int i = 0; i < 64; ++i) {  // a flood of text must not keep us from the job
             const ssize_t got = read(output_, buffer, sizeof buffer);
@@ -136,7 +136,7 @@ public:
         const pid_t group = process_;
         kill(-group, SIGTERM);
         const Clock::time_point asked = Clock::now();
-        Messages unheard;
+        PovrayMessages unheard;
         while (seconds_since(asked) < kGraceS) {
             read_text(unheard);  // or it would wait for us with a full pipe
             if (ended()) {
@@ -160,33 +160,33 @@ private:
 };
 
 /// Names of one run inside the folder; what is left under them when it ends is removed.
-struct Temporary {
-    explicit Temporary(const std::filesystem::path& folder, const char* extension) {
+struct TemporaryPicture {
+    explicit TemporaryPicture(const std::filesystem::path& folder, const char* extension) {
         static std::atomic<uint32_t> counter{0};
         const std::string stem = text("part-", getpid(), "-", counter++);
         name = stem + extension;
         picture = folder / name;
         state = folder / (stem + ".pov-state");
     }
-    ~Temporary() {
+    ~TemporaryPicture() {
         unlink(picture.c_str());
         unlink(state.c_str());
     }
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
+    TemporaryPicture(const TemporaryPicture&) = delete;
+    TemporaryPicture& operator=(const TemporaryPicture&) = delete;
 
     std::string name;
     std::filesystem::path picture;
     std::filesystem::path state;
 };
 
-const char* extension_of(Output output) {
+const char* extension_of(OutputFormat output) {
     switch (output) {
-        case Output::Exr:
+        case OutputFormat::Exr:
             return ".exr";
-        case Output::Png:
+        case OutputFormat::Png:
             return ".png";
-        case Output::Ppm:
+        case OutputFormat::Ppm:
             break;
     }
     return ".ppm";
@@ -197,13 +197,13 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
     std::vector<std::string> out = {program, "scene.ini", "+O" + output_name, "-D", "+V",
                                     "-P",    "-C"};
     switch (options.output) {
-        case Output::Exr:
+        case OutputFormat::Exr:
             out.emplace_back("+FE");
             break;
-        case Output::Png:
+        case OutputFormat::Png:
             out.emplace_back("+FN8");
             break;
-        case Output::Ppm:
+        case OutputFormat::Ppm:
             out.emplace_back("+FP16");
             out.emplace_back("File_Gamma=1");
             break;
@@ -217,14 +217,14 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
     return out;
 }
 
-void show_progress(const Messages& messages, const Job& job) {
+void show_progress(const PovrayMessages& messages, const Job& job) {
     if (messages.pixels == 0) {
         // How much there is to parse is not known: half of this part is a million tokens.
         const auto tokens = static_cast<double>(messages.parsed_tokens);
         job.progress(kParsePart * tokens / (tokens + 1e6));
         return;
     }
-    job.stage(Stage::Trace);
+    job.stage(JobStage::Trace);
     const double part =
         static_cast<double>(messages.pixels_done) / static_cast<double>(messages.pixels);
     job.progress(kParsePart + (1 - kParsePart) * part);
@@ -264,7 +264,7 @@ std::string find_program(const std::string& program) {
          "to the program");
 }
 
-RunReport run(const RunOptions& options, const Job& job) {
+RunReport render_scene(const RunOptions& options, const Job& job) {
     const char* extension = extension_of(options.output);
     const std::string name =
         options.output_name.empty() ? std::string("picture") + extension : options.output_name;
@@ -276,13 +276,13 @@ RunReport run(const RunOptions& options, const Job& job) {
         fail(Status::Io, "there is no exported scene in '", options.folder.string(), "'");
     const std::string program = find_program(options.program);
     job.check();
-    job.stage(Stage::Parse);
+    job.stage(JobStage::Parse);
 
     const Clock::time_point start = Clock::now();
-    const Temporary temporary(options.folder, extension);
-    Messages messages;
+    const TemporaryPicture temporary(options.folder, extension);
+    PovrayMessages messages;
     RunReport report;
-    Child child(program, options.folder, arguments_of(options, program, temporary.name));
+    PovrayProcess child(program, options.folder, arguments_of(options, program, temporary.name));
     do {
         if (job.cancelled()) {
             child.stop();

@@ -9,7 +9,7 @@
 
 namespace lodestone::povray {
 
-enum class Output : uint8_t {
+enum class OutputFormat : uint8_t {
     Exr = 0,  // linear, values above 1 kept
     Png = 1,  // 8 bits, sRGB
     Ppm = 2,  // 16 bits, linear: for programs without libraries
@@ -21,7 +21,7 @@ struct RunOptions {
     int width = 0;             // 0: as exported
     int height = 0;
     int threads = 0;  // 0: all
-    Output output = Output::Exr;
+    OutputFormat output = OutputFormat::Exr;
     std::string output_name = {};  // plain ASCII, in the folder; "": picture.exr, .png or .ppm
 };
 
@@ -43,6 +43,6 @@ std::string find_program(const std::string& program = "");
 /// POV-Ray's own sentence; Error(Cancelled), at most 1 s after the job was cancelled. However it
 /// ends, no process and no file of a broken run is left; killing this process kills POV-Ray, too.
 /// Safe from any thread, several at once.
-RunReport run(const RunOptions& options, const Job& job = {});
+RunReport render_scene(const RunOptions& options, const Job& job = {});
 
 }  // namespace lodestone::povray

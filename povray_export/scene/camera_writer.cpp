@@ -51,7 +51,7 @@ void check_view(const View& view) {
         fail(Status::InvalidArgument, "the camera '", camera.name, "' sees no volume");
 }
 
-bool blurred(const Camera& camera) {
+bool has_depth_blur(const Camera& camera) {
     return !camera.orthographic && camera.focus_distance > 0 && camera.aperture > 0;
 }
 
@@ -69,7 +69,7 @@ void append_camera(std::string& out, const Camera& camera, Antialiasing antialia
         append_vector(out, value, 15);
         out += '\n';
     }
-    if (blurred(camera))
+    if (has_depth_blur(camera))
         append_blur(out, camera, antialiasing);
     else if (camera.focus_distance > 0 && camera.aperture > 0)
         problems.push_back({camera.name, Severity::Warning, "depth_of_field",

@@ -15,7 +15,7 @@ void check_view(const View& view);
 
 /// Whether depth is blurred: then each pixel has many samples, spread over it, and antialiasing
 /// would only repeat all of them (measured: 3 times the time for the same edges).
-bool blurred(const Camera& camera);
+bool has_depth_blur(const Camera& camera);
 
 /// camera{...} with explicit vectors: no angles, no look_at, no flip. The blur of the depth is that
 /// of a thin lens, as Cycles'; orthographic cameras have none in POV-Ray, which becomes a problem.

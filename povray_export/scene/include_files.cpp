@@ -56,13 +56,13 @@ size_t IncludeFiles::add(const Representation& representation,
     return at->second;
 }
 
-void IncludeFiles::see(size_t index, double texel) {
+void IncludeFiles::note_texel(size_t index, double texel) {
     // Copies that are textured share a file for their nearest
     files_[index].texel = std::min(files_[index].texel, texel);
 }
 
 void IncludeFiles::name() {
-    for (Include& include : files_) {
+    for (IncludeFile& include : files_) {
         if (include.pictured)
             include.options.texel = exponent_of(include.texel);
         include.hash = file_hash(*include.representation, include.options);
@@ -70,7 +70,7 @@ void IncludeFiles::name() {
     }
 }
 
-bool IncludeFiles::pictured(const Include& include) const {
+bool IncludeFiles::pictured(const IncludeFile& include) const {
     if (!include.options.uvs || include.representation->summary.kind != Kind::Mesh)
         return false;
     for (const uint32_t material : include.representation->materials) {
@@ -82,7 +82,7 @@ bool IncludeFiles::pictured(const Include& include) const {
 
 void IncludeFiles::write(const Job& job) {
     uint64_t triangles = kTrianglesOfFile * files_.size();
-    for (const Include& include : files_)
+    for (const IncludeFile& include : files_)
         triangles += include.representation->summary.cost.triangles;
     std::optional<ThreadLimit> alone;
     if (triangles < kFewTriangles)
@@ -91,7 +91,7 @@ void IncludeFiles::write(const Job& job) {
     parallel_for(files_.size(), [&](size_t i) {
         job.check();
         const double start = thread_cpu_s();
-        Include& include = files_[i];
+        IncludeFile& include = files_[i];
         const std::filesystem::path path = folder_ / "r" / (hex16(include.hash) + ".inc");
         std::error_code error;
         const uintmax_t found = std::filesystem::file_size(path, error);
@@ -119,7 +119,7 @@ void IncludeFiles::write(const Job& job) {
 
 std::string IncludeFiles::statements() const {
     std::string out;
-    for (const Include& include : files_) {
+    for (const IncludeFile& include : files_) {
         if (include.drawn)
             out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
     }
@@ -127,7 +127,7 @@ std::string IncludeFiles::statements() const {
 }
 
 bool IncludeFiles::refracts() const {
-    for (const Include& include : files_) {
+    for (const IncludeFile& include : files_) {
         for (const uint32_t material : include.representation->materials) {
             if (material < model_.materials.size() && refraction_of(model_.materials[material]) > 0)
                 return true;

@@ -11,7 +11,7 @@
 
 namespace lodestone::povray {
 
-struct Include {
+struct IncludeFile {
     const Representation* representation = nullptr;
     Hash hash = 0;
     std::string identifier;
@@ -35,29 +35,29 @@ public:
     /// The index of a representation's file; copies share one.
     size_t add(const Representation& representation, const RepresentationOptions& options);
     /// What a texel may cover where one that is `pictured` is used, in metres of its own frame.
-    void see(size_t index, double texel);
+    void note_texel(size_t index, double texel);
     /// Their names, once all are added and seen.
     void name();
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).
     void write(const Job& job);
 
-    const Include& at(size_t index) const { return files_[index]; }
+    const IncludeFile& at(size_t index) const { return files_[index]; }
     size_t size() const { return files_.size(); }
     /// #include of each.
     std::string statements() const;
-    PictureFolder::Totals pictures() const { return pictures_.totals(); }
+    PictureFolder::PictureTotals pictures() const { return pictures_.totals(); }
     /// Whether light is bent by any.
     bool refracts() const;
 
 private:
-    bool pictured(const Include& include) const;
+    bool pictured(const IncludeFile& include) const;
 
     const Model& model_;
     std::filesystem::path folder_;
     bool smaller_;
     PictureFolder pictures_;
-    std::vector<Include> files_;
+    std::vector<IncludeFile> files_;
     std::unordered_map<Hash, size_t> known_;  // by file_hash without texel
 };
 

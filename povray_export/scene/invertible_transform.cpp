@@ -27,7 +27,8 @@ bool make_invertible(Affine& transform) {
     const double volume = std::abs(glm::determinant(transform.linear));
     if (std::isfinite(volume) && squares >= 1e-9 && volume > 1e-3 * squares * std::sqrt(squares))
         return true;
-    const Eigen eigen = eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
+    const SymmetricEigen eigen =
+        eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
     // The square's eigenvalues have lost half of the digits: only its axes are used.
     const glm::dvec3 along = transform.linear * eigen.axes[0];
     const glm::dvec3 normal = glm::cross(along, transform.linear * eigen.axes[1]);

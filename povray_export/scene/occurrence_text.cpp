@@ -7,7 +7,7 @@ namespace lodestone::povray {
 namespace {
 
 const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint32_t node) {
-    const choose::Node& here = cut.nodes[node];
+    const choose::CutNode& here = cut.nodes[node];
     if (here.parent == choose::kNoParent)
         return model.objects[here.object].name;
     const Object& group = model.objects[cut.nodes[here.parent].object];

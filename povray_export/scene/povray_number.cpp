@@ -147,7 +147,7 @@ void append_matrix(std::string& out, const Affine& transform) {
     out.append(buffer, at);
 }
 
-Lattice::Lattice(double precision, double largest) {
+DecimalLattice::DecimalLattice(double precision, double largest) {
     // Rounding to the nearest step errs by half a step at most.
     const double wanted = precision > 0 ? std::ceil(-std::log10(2 * precision)) : 300;
     const double possible = largest > 0 ? 14 - std::floor(std::log10(largest)) : 0;
@@ -161,14 +161,14 @@ Lattice::Lattice(double precision, double largest) {
     }
 }
 
-int64_t Lattice::round(double value) const {
+int64_t DecimalLattice::round(double value) const {
     const double steps = value * steps_;
     if (!(std::abs(steps) < 9e18))
         fail(Status::Internal, "a coordinate for POV-Ray is not finite");
     return static_cast<int64_t>(steps + (steps < 0 ? -0.5 : 0.5));
 }
 
-char* Lattice::write(char* at, int64_t value) const {
+char* DecimalLattice::write(char* at, int64_t value) const {
     if (value < 0)
         *at++ = '-';
     auto left = static_cast<uint64_t>(value);

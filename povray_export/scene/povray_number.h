@@ -24,11 +24,11 @@ void append_matrix(std::string& out, const Affine& transform);
 
 /// Decimal lattice on which coordinates are written: what is tested on the lattice (equal points,
 /// zero areas) is exactly what POV-Ray reads.
-class Lattice {
+class DecimalLattice {
 public:
     /// The coarsest decimal step that rounds by less than `precision`, but never so fine that
     /// `largest` needs more than 15 digits (a float holds 8).
-    Lattice(double precision, double largest);
+    DecimalLattice(double precision, double largest);
 
     /// Throws Error(Internal) for a value that is not finite.
     int64_t round(double value) const;

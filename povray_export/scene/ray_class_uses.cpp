@@ -12,7 +12,7 @@ std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
             if (there.at(own.node) != 0 || (of.rays == kShadowRays && own.soft && !softened))
                 continue;
             there[own.node] = own.alone ? 1 : 0;
-            const choose::Node& node = cut.nodes[own.node];
+            const choose::CutNode& node = cut.nodes[own.node];
             OwnUse use{own.node, own.lod, cut.world(node), 0, node.hidden, true};
             if (!own.alone) {
                 use.in_place = of.rays;
@@ -31,7 +31,7 @@ std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
     return out;
 }
 
-std::vector<uint8_t> left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays) {
+std::vector<uint8_t> nodes_left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays) {
     std::vector<RayMask> alone(cut.nodes.size(), 0);
     for (const choose::RayCut& of : rays) {
         for (const choose::RayChoice& own : of.own) {
@@ -39,10 +39,10 @@ std::vector<uint8_t> left_out(const choose::Cut& cut, std::span<const choose::Ra
                 alone.at(own.node) = 1;
         }
     }
-    return spread(cut, std::move(alone));
+    return replaced_ray_classes(cut, std::move(alone));
 }
 
-std::vector<RayMask> spread(const choose::Cut& cut, std::vector<RayMask> replaced) {
+std::vector<RayMask> replaced_ray_classes(const choose::Cut& cut, std::vector<RayMask> replaced) {
     for (size_t i = 0; i < replaced.size(); ++i) {
         if (cut.nodes[i].parent != choose::kNoParent)
             replaced[i] |= replaced[cut.nodes[i].parent];

@@ -23,10 +23,10 @@ std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
                              std::span<const choose::RayCut> rays, bool softened);
 
 /// For each node whether no ray meets it, nor anything below it, as something else stands for it.
-std::vector<uint8_t> left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays);
+std::vector<uint8_t> nodes_left_out(const choose::Cut& cut, std::span<const choose::RayCut> rays);
 
 /// For each node the classes that meet something else in its place: its own and those of groups
 /// above.
-std::vector<RayMask> spread(const choose::Cut& cut, std::vector<RayMask> replaced);
+std::vector<RayMask> replaced_ray_classes(const choose::Cut& cut, std::vector<RayMask> replaced);
 
 }  // namespace lodestone::povray

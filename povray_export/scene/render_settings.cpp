@@ -45,7 +45,7 @@ std::string render_settings(const View& view, const Shading& shading, Antialiasi
     // Else what is gathered depends on which thread comes first.
     if (shading.bounces > 0)
         out += "High_Reproducibility=On\n";
-    if (blurred(view.camera))
+    if (has_depth_blur(view.camera))
         return out + "Antialias=Off\n";
     switch (antialiasing) {
         case Antialiasing::Off:

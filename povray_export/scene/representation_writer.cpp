@@ -26,7 +26,7 @@ std::string solid_text(const Model& model, const Representation& representation,
                      model.materials.size());
             material = model.materials[index];
         }
-        out += '\n' + texture_text(material, Surface{}, pictures);
+        out += '\n' + texture_text(material, TexturedSurface{}, pictures);
         const double refraction = refraction_of(material);
         if (refraction > 0) {
             out += " interior{ior ";

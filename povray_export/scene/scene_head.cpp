@@ -6,7 +6,7 @@
 
 namespace lodestone::povray {
 
-std::string head_text(const SceneHead& head, const Shading& shading, const Sky& sky) {
+std::string head_text(const SceneHead& head, const Shading& shading, const WrittenSky& sky) {
     const bool indirect = shading.bounces > 0;
     std::string out = "// Lodestone " LODESTONE_VERSION ": a fixed cut at Pixel Error ";
     append_number(out, head.pixel_error, 6);

@@ -20,6 +20,6 @@ struct SceneHead {
 };
 
 /// `shading` is filled up; its bounces are those of light in this scene.
-std::string head_text(const SceneHead& head, const Shading& shading, const Sky& sky);
+std::string head_text(const SceneHead& head, const Shading& shading, const WrittenSky& sky);
 
 }  // namespace lodestone::povray

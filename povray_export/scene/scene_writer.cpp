@@ -35,7 +35,7 @@ bool environment(const Model& model, const choose::Cut& cut,
     if (holds_environment[cut.nodes[node].object] != 0)
         return true;
     for (uint32_t at = node; at != choose::kNoParent; at = cut.nodes[at].parent) {
-        if (model.objects[cut.nodes[at].object].role == Role::Environment)
+        if (model.objects[cut.nodes[at].object].role == ObjectRole::Environment)
             return true;
     }
     return false;
@@ -43,7 +43,7 @@ bool environment(const Model& model, const choose::Cut& cut,
 
 constexpr size_t kTypicalObject = 192;  // characters
 
-struct Use {
+struct OccurrenceUse {
     uint32_t node;
     uint32_t lod;
     size_t position;  // in cut.chosen
@@ -91,7 +91,7 @@ public:
 
     ExportReport write() {
         const double start = thread_cpu_s();
-        job_.stage(Stage::Export);
+        job_.stage(JobStage::Export);
         check_view(view_);
         if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
             fail(Status::InvalidArgument, options_.colors.size(), " colors for ",
@@ -115,7 +115,7 @@ public:
                    render_settings(view_, shading_, options_.antialiasing, transparent()));
         ExportReport report = report_;
         for (size_t i = 0; i < includes_.size(); ++i) {
-            const Include& include = includes_.at(i);
+            const IncludeFile& include = includes_.at(i);
             report.cpu_s += include.cpu_s;
             if (!include.drawn)
                 continue;
@@ -124,7 +124,7 @@ public:
             ++report.representations;
             report.written += include.written ? 1u : 0u;
         }
-        const PictureFolder::Totals pictures = includes_.pictures();
+        const PictureFolder::PictureTotals pictures = includes_.pictures();
         report.bytes += pictures.bytes;
         report.files += pictures.files;
         report.written += pictures.written;
@@ -164,12 +164,12 @@ private:
     /// Hides from classes what they meet something else in place of, which must be there.
     void hide_replaced() {
         std::vector<RayMask> replaced(cut_.nodes.size(), 0);
-        for (const Use& use : uses_) {
+        for (const OccurrenceUse& use : uses_) {
             if (includes_.at(use.file).drawn)
                 replaced[use.node] |= use.in_place;
         }
-        replaced = spread(cut_, std::move(replaced));
-        for (Use& use : uses_) {
+        replaced = replaced_ray_classes(cut_, std::move(replaced));
+        for (OccurrenceUse& use : uses_) {
             if (use.in_place == 0)
                 use.hidden |= replaced[use.node];
         }
@@ -182,8 +182,8 @@ private:
     }
 
     /// Of a representation of its node, in its file.
-    void add_use(Use use, bool textures) {
-        const choose::Node& node = cut_.nodes[use.node];
+    void add_use(OccurrenceUse use, bool textures) {
+        const choose::CutNode& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
         if (!make_invertible(use.world)) {  // of a line or a point nothing is seen anyway
@@ -195,18 +195,18 @@ private:
         use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt});
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
-            includes_.see(use.file, texel_of(node, representation, use.world));
+            includes_.note_texel(use.file, texel_of(node, representation, use.world));
     }
 
     void collect() {
         const std::vector<uint8_t> holds_environment =
             options_.covered_only ? with_environment(model_) : std::vector<uint8_t>();
-        const std::vector<uint8_t> nobody = left_out(cut_, rays());
+        const std::vector<uint8_t> nobody = nodes_left_out(cut_, rays());
         for (size_t position = 0; position < cut_.chosen.size(); ++position) {
             const uint32_t index = cut_.chosen[position];
             if ((uses_.size() & 1023u) == 0)
                 job_.check();
-            const choose::Node& node = cut_.nodes.at(index);
+            const choose::CutNode& node = cut_.nodes.at(index);
             const Object& object = model_.objects.at(node.object);
             const Representation& representation = object.representations.at(node.lod);
             if (representation.summary.kind == Kind::Assembly)
@@ -231,7 +231,7 @@ private:
     }
 
     /// What a texel may cover of one occurrence, in metres of its own frame.
-    double texel_of(const choose::Node& node, const Representation& representation,
+    double texel_of(const choose::CutNode& node, const Representation& representation,
                     const Affine& world) const {
         const Bound bound = transformed(representation.summary.bound, world);
         const double z = distance(bound, view_.camera.position);
@@ -242,7 +242,7 @@ private:
     /// Once for what several occurrences show.
     void name_problems() {
         std::vector<uint8_t> named(includes_.size(), 0);
-        for (const Use& use : uses_) {
+        for (const OccurrenceUse& use : uses_) {
             if (!includes_.at(use.file).bumps_left_out || named[use.file]++ != 0)
                 continue;
             problems_.push_back({called(use.node), Severity::Warning, "bump_not_flat",
@@ -270,7 +270,7 @@ private:
         constexpr int kFewest = 5;
         const bool thorough = options_.antialiasing == Antialiasing::Reference;
         int rays = shading_.area_samples;
-        if (!thorough && blurred(view_.camera))
+        if (!thorough && has_depth_blur(view_.camera))
             rays = std::max(std::min(rays, kFewest), (rays - 1) / 2 + 1);
         return {rays, thorough};
     }
@@ -279,7 +279,7 @@ private:
     }
 
     /// Lights are chosen by what the camera sees, as if all rays met that.
-    RayMask hidden_in_plan(const Use& use) const {
+    RayMask hidden_in_plan(const OccurrenceUse& use) const {
         const RayMask own = cut_.nodes[use.node].hidden;
         if (use.in_place != 0)
             return kAllRays;
@@ -291,13 +291,13 @@ private:
     light::LightPlan light_plan(const std::vector<Bound>& occluders) {
         const double error = options_.light_error.value_or(view_.pixel_error);
         report_.lamps = static_cast<uint64_t>(
-            std::count_if(model_.lights.begin(), model_.lights.end(), light::lamp));
+            std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
         report_.lights_each = static_cast<double>(report_.lamps);
         if (!lit() || !(error > 0) || report_.lamps < light::kFewLamps)
             return {};
-        std::vector<light::Lit> drawn;
+        std::vector<light::DrawnThing> drawn;
         drawn.reserve(occluders.size());
-        for (const Use& use : uses_) {
+        for (const OccurrenceUse& use : uses_) {
             if (includes_.at(use.file).drawn)
                 drawn.push_back(
                     {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
@@ -313,11 +313,11 @@ private:
     std::string grouped_objects(const light::LightPlan& plan,
                                 const std::vector<std::string>& lights, double times) {
         std::string out;
-        std::vector<const Use*> drawn;
+        std::vector<const OccurrenceUse*> drawn;
         drawn.reserve(uses_.size());
         if (plan.empty())
             out.reserve(uses_.size() * kTypicalObject);
-        for (const Use& use : uses_) {
+        for (const OccurrenceUse& use : uses_) {
             if (!includes_.at(use.file).drawn)
                 continue;
             drawn.push_back(&use);
@@ -327,13 +327,13 @@ private:
         }
         report_.occurrences = drawn.size();
         std::vector<std::string> groups(plan.groups.size());
-        for (const light::Piece& piece : plan.pieces)
+        for (const light::LitPiece& piece : plan.pieces)
             append_object(groups[piece.group], *drawn[piece.drawn], times, piece.within);
         return plan.empty() ? out : grouped_text(plan, lights, groups);
     }
 
     /// What of it is `within` a box (world frame).
-    void append_object(std::string& out, const Use& use, double times,
+    void append_object(std::string& out, const OccurrenceUse& use, double times,
                        const std::optional<Box3>& within = {}) const {
         out += "object{";
         out += includes_.at(use.file).identifier;
@@ -368,10 +368,10 @@ private:
     std::string scene() {
         Bound bound;
         std::vector<Bound> occluders;
-        for (const Use& use : uses_) {
+        for (const OccurrenceUse& use : uses_) {
             if (!includes_.at(use.file).drawn)
                 continue;
-            const Summary& summary = includes_.at(use.file).representation->summary;
+            const RepresentationSummary& summary = includes_.at(use.file).representation->summary;
             occluders.push_back(transformed(summary.bound, use.world));
             bound = merged(bound, occluders.back());
         }
@@ -390,7 +390,7 @@ private:
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (const Light& light : model_.lights) {
-                if (plan.empty() || !light::lamp(light))
+                if (plan.empty() || !light::is_lamp(light))
                     scene_lights.append(out, light);
             }
             if (!plan.empty()) {
@@ -420,9 +420,9 @@ private:
     const Job& job_;
     const Shading shading_;
     IncludeFiles includes_;
-    std::vector<Use> uses_;
+    std::vector<OccurrenceUse> uses_;
     ExportReport report_;
-    Sky sky_;
+    WrittenSky sky_;
 };
 
 }  // namespace

@@ -27,11 +27,11 @@ int sky_lights_of(Antialiasing antialiasing) {
     return 64;
 }
 
-struct Gathering {
+struct GatheringQuality {
     int rays;
     double error;
 };
-Gathering gathering_of(Antialiasing antialiasing) {
+GatheringQuality gathering_of(Antialiasing antialiasing) {
     switch (antialiasing) {
         case Antialiasing::Off:
             return {60, 1};
@@ -63,7 +63,7 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
     out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
                                              : std::clamp(shading.sky_lights, 0, kMostSkyLights);
     out.shadow_error = shading.shadow_error > 0 ? shading.shadow_error : pixel_error;
-    const Gathering gathering = gathering_of(antialiasing);
+    const GatheringQuality gathering = gathering_of(antialiasing);
     out.bounces = std::clamp(shading.bounces, 0, kMostHandings);
     out.bounce_rays =
         shading.bounce_rays > 0 ? std::min(shading.bounce_rays, kMostBounceRays) : gathering.rays;

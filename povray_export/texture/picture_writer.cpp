@@ -46,16 +46,19 @@ int png_color_type(const std::string& bytes) {
 }
 
 /// POV-Ray may read the picture's own file: it shows the texture's very values.
-bool usable_as_is(const Texture& texture, Content content) {
+bool usable_as_is(const Texture& texture, PigmentContent content) {
     const Picture& picture = *texture.picture;
-    if (content == Content::Height || !plain(texture) || picture.format == PictureFormat::Exr)
+    if (content == PigmentContent::Height || !plain(texture) ||
+        picture.format == PictureFormat::Exr)
         return false;
     const bool png = picture.format == PictureFormat::Png;
     const int type = png ? png_color_type(picture.bytes) : -1;
-    if (content == Content::Color || content == Content::Filter)  // alpha would make holes
-        return texture.channel == Channel::Color && (!png || type == 0 || type == 2 || type == 3);
+    if (content == PigmentContent::Color ||
+        content == PigmentContent::Filter)  // alpha would make holes
+        return texture.channel == TextureChannel::Color &&
+               (!png || type == 0 || type == 2 || type == 3);
     // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
-    return texture.channel != Channel::Alpha && type == 0;
+    return texture.channel != TextureChannel::Alpha && type == 0;
 }
 
 int halved(int side, int halvings) {
@@ -95,8 +98,8 @@ image::Image halved(const image::Image& from, int halvings) {
     return to;
 }
 
-std::string baked(const Texture& texture, Content content, int halvings) {
-    if (content == Content::Height)
+std::string baked(const Texture& texture, PigmentContent content, int halvings) {
+    if (content == PigmentContent::Height)
         return png_of(*height_map(texture));
     image::Image from = image::decoded(*texture.picture);
     image::Image to;
@@ -106,7 +109,7 @@ std::string baked(const Texture& texture, Content content, int halvings) {
     for (size_t i = 0; i < from.pixels.size(); i += 4) {
         const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
                                from.pixels[i + 3]);
-        if (content != Content::Number) {
+        if (content != PigmentContent::Number) {
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
                 to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
@@ -120,7 +123,7 @@ std::string baked(const Texture& texture, Content content, int halvings) {
     from.pixels.clear();
     if (halvings > 0)
         to = halved(to, halvings);
-    if (content != Content::Number) {
+    if (content != PigmentContent::Number) {
         for (size_t i = 0; i < to.pixels.size(); ++i) {
             if (i % 4 != 3)
                 to.pixels[i] = image::encode_srgb(to.pixels[i]);
@@ -201,7 +204,7 @@ std::string mapping(const Texture& texture) {
 }  // namespace
 
 int halvings_of(const Texture& texture, double texel) {
-    if (!(texel > 0) || texture.interpolation != Interpolation::Linear)
+    if (!(texel > 0) || texture.interpolation != TextureInterpolation::Linear)
         return 0;
     const std::array<double, 6>& m = texture.to_picture;
     const double most = std::min(texel * std::hypot(m[0], m[1]) * texture.picture->width,
@@ -213,16 +216,16 @@ int halvings_of(const Texture& texture, double texel) {
     return halvings;
 }
 
-std::string PictureWriter::file_of(const Texture& texture, Content content, int halvings) {
+std::string PictureWriter::file_of(const Texture& texture, PigmentContent content, int halvings) {
     const Picture& picture = *texture.picture;
     if (picture.bytes.empty())
         fail(Status::Internal, "the picture '", picture.name, "' is not resident");
-    File file{texture, content, halvings == 0 && usable_as_is(texture, content), halvings};
+    PictureFile file{texture, content, halvings == 0 && usable_as_is(texture, content), halvings};
     Hasher hasher;
     hasher.value(picture.hash);
     if (!file.as_is) {
         hasher.value(kBakeVersion)
-            .value(content == Content::Filter ? Content::Color : content)
+            .value(content == PigmentContent::Filter ? PigmentContent::Color : content)
             .value(texture.channel);
         if (halvings > 0)
             hasher.value(halvings);
@@ -235,40 +238,43 @@ std::string PictureWriter::file_of(const Texture& texture, Content content, int 
     return name;
 }
 
-std::string PictureWriter::file_reference(const Texture& texture, Content content, int halvings) {
+std::string PictureWriter::file_reference(const Texture& texture, PigmentContent content,
+                                          int halvings) {
     const std::string name = file_of(texture, content, halvings);
-    const File& file = files_.at(name);
+    const PictureFile& file = files_.at(name);
     const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
-    const bool encoded = file.as_is ? texture.picture->space == ColorSpace::Srgb
-                                    : content == Content::Color || content == Content::Filter;
+    const bool encoded =
+        file.as_is ? texture.picture->space == ColorSpace::Srgb
+                   : content == PigmentContent::Color || content == PigmentContent::Filter;
     return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
 }
 
-std::string PictureWriter::pigment(const Texture& texture, Content content, const UvRange& range) {
-    const int halvings = content == Content::Height ? 0 : halvings_of(texture, range.texel);
+std::string PictureWriter::pigment(const Texture& texture, PigmentContent content,
+                                   const UvRange& range) {
+    const int halvings = content == PigmentContent::Height ? 0 : halvings_of(texture, range.texel);
     const std::string reference = file_reference(texture, content, halvings);
-    const bool repeats = texture.extension == Extension::Repeat;
+    const bool repeats = texture.extension == TextureExtension::Repeat;
     // `once` keeps the interpolation at a border from reaching over to the opposite one.
     const std::string image =
         "image_map{" + reference +
-        (texture.interpolation == Interpolation::Linear ? " interpolate 2" : "") +
-        (content == Content::Filter ? " filter all 1" : "") + (repeats ? "}" : " once}");
+        (texture.interpolation == TextureInterpolation::Linear ? " interpolate 2" : "") +
+        (content == PigmentContent::Filter ? " filter all 1" : "") + (repeats ? "}" : " once}");
     const std::string identifier = "LDS_I_" + hex16(Hasher().text(image).result());
     declared_[identifier] = image;
     std::string out = identifier;
     if (!repeats && leaves(texture, range)) {
         switch (texture.extension) {
-            case Extension::Extend:
+            case TextureExtension::Extend:
                 out = extended(extended(out, 'x', halved(texture.picture->width, halvings)), 'y',
                                halved(texture.picture->height, halvings));
                 break;
-            case Extension::Clip:
+            case TextureExtension::Clip:
                 out = clipped(out);
                 break;
-            case Extension::Mirror:
+            case TextureExtension::Mirror:
                 out += " warp{repeat x flip x} warp{repeat y flip y}";
                 break;
-            case Extension::Repeat:
+            case TextureExtension::Repeat:
                 break;
         }
     }
@@ -327,8 +333,8 @@ bool PictureFolder::found(const std::vector<std::string>& names) {
     return true;
 }
 
-PictureFolder::Totals PictureFolder::totals() const {
-    Totals totals;
+PictureFolder::PictureTotals PictureFolder::totals() const {
+    PictureTotals totals;
     for (const auto& [name, written] : names_) {
         std::error_code error;
         const uintmax_t bytes = std::filesystem::file_size(folder_ / name, error);

@@ -15,7 +15,7 @@
 namespace lodestone::povray {
 
 /// What of a texture a pigment shows.
-enum class Content : uint8_t {
+enum class PigmentContent : uint8_t {
     Color = 0,   // its color; transparency is not in it
     Number = 1,  // its number as gray, clamped to 0...1
     Filter = 2,  // its color, of all that goes through it
@@ -41,12 +41,12 @@ public:
     /// Counts files that an old text names; false when one is missing.
     bool found(const std::vector<std::string>& names);
 
-    struct Totals {
+    struct PictureTotals {
         uint64_t files = 0;
         uint64_t bytes = 0;
         uint64_t written = 0;
     };
-    Totals totals() const;  // when no thread adds any more
+    PictureTotals totals() const;  // when no thread adds any more
 
 private:
     std::filesystem::path folder_;
@@ -59,11 +59,11 @@ class PictureWriter {
 public:
     /// The inside of pigment{...}: a function of texture coordinates, so it must stand below a
     /// uv_mapping. Throws Error(Internal) for a picture that is not resident.
-    std::string pigment(const Texture& texture, Content content, const UvRange& range);
+    std::string pigment(const Texture& texture, PigmentContent content, const UvRange& range);
 
     /// `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often. Throws as
     /// above.
-    std::string file_reference(const Texture& texture, Content content, int halvings = 0);
+    std::string file_reference(const Texture& texture, PigmentContent content, int halvings = 0);
 
     /// Comments that name all files, then a guarded declaration of every image, so that POV-Ray
     /// loads one that several representations show once; "" when there is none.
@@ -74,16 +74,16 @@ public:
     void write(PictureFolder& folder) const;
 
 private:
-    struct File {
+    struct PictureFile {
         Texture texture;
-        Content content = Content::Color;
+        PigmentContent content = PigmentContent::Color;
         bool as_is = false;  // the picture's own bytes
         int halvings = 0;
     };
 
-    std::string file_of(const Texture& texture, Content content, int halvings);
+    std::string file_of(const Texture& texture, PigmentContent content, int halvings);
 
-    std::map<std::string, File> files_;            // by name
+    std::map<std::string, PictureFile> files_;     // by name
     std::map<std::string, std::string> declared_;  // identifier: inside of the pigment
 };
 

@@ -28,7 +28,7 @@ void append_named(std::string& out, const char* name, double value) {
 /// without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky` are what
 /// comes back from a uniform sky of 1, between the mean of a sphere and what faces the eye. Entries
 /// below .05 repeat it: there Cycles without indirect light shows no sun.
-struct Row {
+struct FinishRow {
     double roughness;
     double log_exponent;
     double highlight;
@@ -40,7 +40,7 @@ struct Row {
     double metal_sky;
 };
 
-const Row kRows[] = {
+const FinishRow kRows[] = {
     {0.00, std::log(16440), 0.0350, 0.0488, 3.0, 0.0004, std::log(16440), 0.150, 1.000},
     {0.05, std::log(8000), 0.0300, 0.0465, 3.0, 0.0008, std::log(7483), 0.176, 1.000},
     {0.10, std::log(2400), 0.0281, 0.0465, 3.0, 0.0033, std::log(706), 0.226, 0.998},
@@ -82,20 +82,20 @@ double between(const Row_ (&rows)[kCount], double roughness, const Row_*& low, c
     return std::clamp((roughness - low->roughness) / (high->roughness - low->roughness), 0.0, 1.0);
 }
 
-Row row_of(double roughness) {
-    const Row* a = nullptr;
-    const Row* b = nullptr;
+FinishRow row_of(double roughness) {
+    const FinishRow* a = nullptr;
+    const FinishRow* b = nullptr;
     const double t = between(kRows, roughness, a, b);
-    const auto mixed = [&](double Row::*value) { return std::lerp(a->*value, b->*value, t); };
+    const auto mixed = [&](double FinishRow::*value) { return std::lerp(a->*value, b->*value, t); };
     return {roughness,
-            mixed(&Row::log_exponent),
-            mixed(&Row::highlight),
-            mixed(&Row::sky),
-            mixed(&Row::metal_brilliance),
-            mixed(&Row::metal_diffuse),
-            mixed(&Row::metal_log_exponent),
-            mixed(&Row::metal_highlight),
-            mixed(&Row::metal_sky)};
+            mixed(&FinishRow::log_exponent),
+            mixed(&FinishRow::highlight),
+            mixed(&FinishRow::sky),
+            mixed(&FinishRow::metal_brilliance),
+            mixed(&FinishRow::metal_diffuse),
+            mixed(&FinishRow::metal_log_exponent),
+            mixed(&FinishRow::metal_highlight),
+            mixed(&FinishRow::metal_sky)};
 }
 
 CoatRow coat_of(double roughness) {
@@ -131,8 +131,8 @@ glm::dvec3 from_srgb(const glm::dvec3& color) {
 
 }  // namespace
 
-Look look_of(const Material& material) {
-    Look look;
+SurfaceLook look_of(const Material& material) {
+    SurfaceLook look;
     look.roughness = clamped(material.roughness, 0, 1, 0.5);
     look.metallic = clamped(material.metallic, 0, 1, 0);
     look.specular = clamped(material.specular, 0, 1, 0.5);
@@ -141,9 +141,9 @@ Look look_of(const Material& material) {
     return look;
 }
 
-Finish finish_of(const Look& look) {
+Finish finish_of(const SurfaceLook& look) {
     const double m = look.metallic;
-    const Row row = row_of(look.roughness);
+    const FinishRow row = row_of(look.roughness);
     const double dielectric = (1 - m) * look.specular / 0.5;  // of the table's
     const double sharp = coat_sharpness(look.roughness);
     const double metal_sharp = metal_sharpness(look.roughness);
@@ -173,7 +173,7 @@ Finish finish_of(const Look& look) {
     return finish;
 }
 
-double white_sky(const Look& look) {
+double white_sky(const SurfaceLook& look) {
     const double dielectric = (1 - look.metallic) * look.specular / 0.5;
     return dielectric * (1 - coat_sharpness(look.roughness)) * row_of(look.roughness).sky +
            look.clearcoat * (1 - coat_sharpness(look.clearcoat_roughness)) *
@@ -212,8 +212,8 @@ void append_finish(std::string& out, const Finish& finish, double light,
     out += '}';
 }
 
-void append_glass_finish(std::string& out, const Look& look) {
-    Look clear = look;
+void append_glass_finish(std::string& out, const SurfaceLook& look) {
+    SurfaceLook clear = look;
     clear.metallic = 0;
     const Finish finish = finish_of(clear);
     append_named(out, "finish{ambient 0 emission 0 diffuse 0 specular albedo ", finish.specular);

@@ -27,23 +27,23 @@ struct Finish {
 };
 
 /// Numbers of a material in their ranges, whatever was given.
-struct Look {
+struct SurfaceLook {
     double roughness = 0.5;
     double metallic = 0;
     double specular = 0.5;
     double clearcoat = 0;
     double clearcoat_roughness = 0.03;
 };
-Look look_of(const Material& material);
+SurfaceLook look_of(const Material& material);
 
 /// Found by fitting: tests/bench/fit_finish.py. What is smooth mirrors its surroundings (traced);
 /// what is rough answers the sky with `ambient`, which does not have the white part: that is
 /// white_sky().
-Finish finish_of(const Look& look);
+Finish finish_of(const SurfaceLook& look);
 
 /// Radiance that a uniform sky of 1 comes back with from what is not metal, whatever the base
 /// color: what the rough surface and a rough clear coat reflect.
-double white_sky(const Look& look);
+double white_sky(const SurfaceLook& look);
 
 /// finish{...}, every value written, because POV-Ray's defaults (ambient .1, diffuse .6) would leak
 /// in. `light` scales all of it; emission (times the pigment) comes on top.
@@ -51,7 +51,7 @@ void append_finish(std::string& out, const Finish& finish, double light,
                    const glm::dvec3& emission);
 
 /// Of a clear surface: it mirrors what Fresnel's equations say, and shows the highlight of that.
-void append_glass_finish(std::string& out, const Look& look);
+void append_glass_finish(std::string& out, const SurfaceLook& look);
 
 /// Shows its pigment as it is.
 void append_flat_texture(std::string& out, const glm::dvec3& color);

@@ -47,7 +47,7 @@ using Body = std::string;
 
 class TextureText {
 public:
-    TextureText(const Surface& surface, PictureWriter& pictures)
+    TextureText(const TexturedSurface& surface, PictureWriter& pictures)
         : surface_(surface), pictures_(pictures) {}
 
     Body mixed(const Material& material) {
@@ -65,7 +65,7 @@ private:
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
 
-    std::string pigment(const Texture& texture, Content content) {
+    std::string pigment(const Texture& texture, PigmentContent content) {
         return "uv_mapping " + pictures_.pigment(texture, content, surface_.range);
     }
 
@@ -79,7 +79,7 @@ private:
         const bool both = shown(material.bump_texture) && shown(material.normal_texture);
         if (shown(material.bump_texture) && std::isfinite(material.bump_distance) &&
             material.bump_distance != 0)
-            bump = relief(material.bump_texture, Content::Number,
+            bump = relief(material.bump_texture, PigmentContent::Number,
                           std::clamp(material.bump_distance, -1e6, 1e6) * (both ? 2 : 1), 1);
         if (shown(material.normal_texture) && std::isfinite(material.normal_strength)) {
             const Texture& texture = material.normal_texture;
@@ -87,7 +87,7 @@ private:
             const glm::dvec2 size = picture_size(texture);
             // Of a texel; where it is no square its slopes are true on average.
             const double wide = std::sqrt(size.x / heights->width * size.y / heights->height);
-            map = relief(texture, Content::Height,
+            map = relief(texture, PigmentContent::Height,
                          std::clamp(material.normal_strength, 0.0, 10.0) * heights->range * wide *
                              (both ? 2 : 1),
                          std::max(texture.picture->width / heights->width, 1));
@@ -108,7 +108,7 @@ private:
     }
 
     /// `height`: metres of white; `texels`: of the picture, that one of the pattern covers.
-    std::string relief(const Texture& texture, Content content, double height, int texels) {
+    std::string relief(const Texture& texture, PigmentContent content, double height, int texels) {
         const glm::dvec2 size = picture_size(texture);
         const double texel =
             std::min(size.x / texture.picture->width, size.y / texture.picture->height);
@@ -135,7 +135,7 @@ private:
 
     /// By the number of a texture.
     Body blended(const Texture& texture, const Entries& entries) {
-        return "pigment_pattern{" + pigment(texture, Content::Number) + '}' + map(entries);
+        return "pigment_pattern{" + pigment(texture, PigmentContent::Number) + '}' + map(entries);
     }
 
     /// (1 - second) of a and second of b.
@@ -173,7 +173,7 @@ private:
     }
 
     Body rough(const Material& material) {
-        Look look = look_of(material);
+        SurfaceLook look = look_of(material);
         if (!shown(material.roughness_texture))
             return metal(material, look);
         Entries entries;
@@ -184,7 +184,7 @@ private:
         return blended(material.roughness_texture, entries);
     }
 
-    Body metal(const Material& material, Look look) {
+    Body metal(const Material& material, SurfaceLook look) {
         if (!shown(material.metallic_texture))
             return lit(material, look);
         look.metallic = 0;
@@ -193,7 +193,7 @@ private:
         return blended(material.metallic_texture, {{0, dielectric}, {1, lit(material, look)}});
     }
 
-    Body lit(const Material& material, const Look& look) {
+    Body lit(const Material& material, const SurfaceLook& look) {
         const double through = share(material.transmission, 0) * (1 - look.metallic);
         if (through <= 0)
             return solid(material, look);
@@ -202,10 +202,10 @@ private:
 
     /// Filters by the base color where light enters and where it leaves; the index of refraction is
     /// the object's. Other than in a path tracer without caustics its shadow is bright.
-    Body glass(const Material& material, const Look& look) {
+    Body glass(const Material& material, const SurfaceLook& look) {
         Body out = "pigment{";
         if (shown(material.base_color_texture)) {
-            out += pigment(material.base_color_texture, Content::Filter);
+            out += pigment(material.base_color_texture, PigmentContent::Filter);
         } else {
             out += "rgbf <";
             for (int i = 0; i < 3; ++i) {
@@ -220,7 +220,7 @@ private:
         return out;
     }
 
-    Body solid(const Material& material, const Look& look) {
+    Body solid(const Material& material, const SurfaceLook& look) {
         glm::dvec3 base;
         glm::dvec3 emission;
         glm::dvec3 paint(1.0);
@@ -254,7 +254,7 @@ private:
             if (painted > 0)
                 texture.offset *= paint / painted;
             texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
-            body += pigment(texture, Content::Color);
+            body += pigment(texture, PigmentContent::Color);
         } else {
             glm::dvec3 color = base * paint;
             for (int i = 0; i < 3; ++i) {
@@ -290,18 +290,18 @@ private:
             std::max({most.x, most.y, most.z, 1e-9}) * brightest_of(*texture.picture);
         texture.scale /= brightest;
         texture.offset /= brightest;
-        Body out = "pigment{" + pigment(texture, Content::Color) + "} ";
+        Body out = "pigment{" + pigment(texture, PigmentContent::Color) + "} ";
         append_finish(out, Finish{}, 0, glm::dvec3(light * brightest));
         return out;
     }
 
-    const Surface& surface_;
+    const TexturedSurface& surface_;
     PictureWriter& pictures_;
 };
 
 }  // namespace
 
-std::string texture_text(const Material& material, const Surface& surface,
+std::string texture_text(const Material& material, const TexturedSurface& surface,
                          PictureWriter& pictures) {
     return "texture{" + TextureText(surface, pictures).mixed(material) + '}';
 }

@@ -13,7 +13,7 @@
 namespace lodestone::povray {
 
 /// What of a surface its texture's text depends on.
-struct Surface {
+struct TexturedSurface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
     glm::dvec4 color{1.0};  // of its vertices, linear; counts where the material uses it
@@ -25,7 +25,8 @@ struct Surface {
 /// whole textures, which is what they mean; base color, emission and the white reflection of the
 /// sky are averaged at two or three times their strength where one pigment cannot be all of them.
 /// Values out of range are clamped, so that any material gives text that POV-Ray reads.
-std::string texture_text(const Material& material, const Surface& surface, PictureWriter& pictures);
+std::string texture_text(const Material& material, const TexturedSurface& surface,
+                         PictureWriter& pictures);
 
 /// Whether it shows more of a flat surface.
 bool bumpy(const Material& material);

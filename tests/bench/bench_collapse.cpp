@@ -142,7 +142,7 @@ int main(int count, char** words) {
             simplify::SimplifyOptions options;
             if (mode == "best")
                 options.mode = simplify::SimplifyMode::Best;
-            const Mesh out = mode == "cluster" ? simplify::cluster(mesh, target)
+            const Mesh out = mode == "cluster" ? simplify::cluster_vertices(mesh, target)
                                                : simplify::simplify_mesh(mesh, target, options);
             const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
             std::printf(

@@ -91,9 +91,9 @@ void print_times(int runs, double unit, const Run& run) {
 
 /// A walk of equal steps, a cut that goes along and a whole one in turns. Steps of 0 turn the
 /// camera.
-void bench_steps(const std::shared_ptr<const choose::Table>& table, View view, double metres,
+void bench_steps(const std::shared_ptr<const choose::ChoiceTable>& table, View view, double metres,
                  const char* what, const char* how, bool lenses_move = false) {
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     stepper.step(view, cut);
     std::vector<double> steps;
@@ -118,10 +118,10 @@ void bench_steps(const std::shared_ptr<const choose::Table>& table, View view, d
             const double start = cpu_seconds();
             stepper.step(view, cut);
             const double middle = cpu_seconds();
-            const size_t chosen = choose::choose(*table, view).chosen.size();
+            const size_t chosen = choose::choose_cut(*table, view).chosen.size();
             whole_s += cpu_seconds() - middle;
             step_s += middle - start;
-            looked += static_cast<double>(stepper.looked_at());
+            looked += static_cast<double>(stepper.decided_nodes());
             if (chosen != cut.chosen.size()) {
                 std::printf("wrong: %zu chosen, not %zu\n", cut.chosen.size(), chosen);
                 std::exit(1);
@@ -148,24 +148,24 @@ void bench(const char* what, int own) {
     std::vector<ObjectIndex> shared(kDepth + 1, kNoObject);
     model.root = plain(model, house, kDepth, own, shared);
     summarize_assemblies(model, bottom_up(model));
-    const auto kept =
-        std::make_shared<const choose::Table>(choose::Table::whole(model, model.root, kAllKinds));
-    const choose::Table& table = *kept;
+    const auto kept = std::make_shared<const choose::ChoiceTable>(
+        choose::ChoiceTable::whole(model, model.root, kAllKinds));
+    const choose::ChoiceTable& table = *kept;
     double fine = 0;
     double coarse = 1000;
     for (int i = 0; i < 40; ++i) {
         const double middle = (fine + coarse) / 2;
-        const size_t chosen = choose::choose(table, view_of(middle)).chosen.size();
+        const size_t chosen = choose::choose_cut(table, view_of(middle)).chosen.size();
         (chosen > kWanted ? fine : coarse) = middle;
     }
     View view = view_of(coarse);
     const auto row = [&](const char* how) {
-        const choose::Cut cut = choose::choose(table, view);
+        const choose::Cut cut = choose::choose_cut(table, view);
         const double visits = static_cast<double>(cut.nodes.size());
         std::printf("| %s, %s | %zu | %zu | %zu |", what, how, model.objects.size(),
                     cut.nodes.size(), cut.chosen.size());
         for (const double unit : {1e9 / visits, 1e3})
-            print_times(kCuts, unit, [&] { choose::choose(table, view); });
+            print_times(kCuts, unit, [&] { choose::choose_cut(table, view); });
         std::printf("\n");
     };
     row("plain");
@@ -176,13 +176,13 @@ void bench(const char* what, int own) {
     view.modifiers.lenses = {lens};
     row("one lens");
     view.modifiers.lenses.clear();
-    const choose::Cut cut = choose::choose(table, view);
+    const choose::Cut cut = choose::choose_cut(table, view);
     std::printf("| %s, table | %zu | | | |", what, model.objects.size());
-    print_times(5, 1e3, [&] { choose::Table::whole(model, model.root, kAllKinds); });
+    print_times(5, 1e3, [&] { choose::ChoiceTable::whole(model, model.root, kAllKinds); });
     std::printf("\n| %s, budget | %zu | | %zu | |", what, model.objects.size(), cut.chosen.size());
     View fine_view = view;
     fine_view.pixel_error = 0;
-    print_times(5, 1e3, [&] { choose::choose_within(table, fine_view, {0, cut.bytes}); });
+    print_times(5, 1e3, [&] { choose::fit_cut_to_budget(table, fine_view, {0, cut.bytes}); });
     std::printf("\n");
     for (const double metres : {0.0, 0.1, 1.0, 10.0, 100.0})
         bench_steps(kept, view, metres, what, "plain");

@@ -48,11 +48,11 @@ constexpr double kMerged = 0.5;  // of its parent's area: then a cluster is diss
 
 /// Greedy agglomerative clustering: always the two clusters whose common bound is smallest; a
 /// cluster nearly as large as the one around it is dissolved, for a binary tree has too many.
-group::Tree agglomerate(std::span<const group::Item> items) {
+group::GroupingTree agglomerate(std::span<const group::GroupingItem> items) {
     const size_t count = items.size();
     if (count <= 2)
         return group::flat_tree(count);
-    group::Tree tree;
+    group::GroupingTree tree;
     tree.item_count = count;
     tree.nodes.resize(count);
     std::vector<Box3> boxes;
@@ -129,7 +129,7 @@ Model read(const std::string& path) {
     store.load_pictures(model);
     for (const ObjectIndex index : bottom_up(model)) {
         if (model.objects[index].group())
-            group::dissolve_made(model, index);
+            group::dissolve_made_groups(model, index);
     }
     return model;
 }
@@ -206,18 +206,18 @@ double drawn_by(const Representation& representation) {
 }
 
 void add_cut(Result& result, const Model& model, const View& view) {
-    const choose::Cut cut = choose::choose(model, view);
+    const choose::Cut cut = choose::choose_cut(model, view);
     result.triangles += static_cast<double>(cut.triangles);
     result.occurrences += static_cast<double>(cut.chosen.size());
     result.bytes += static_cast<double>(cut.bytes);
     for (const uint32_t index : cut.chosen) {
-        const choose::Node& node = cut.nodes[index];
+        const choose::CutNode& node = cut.nodes[index];
         result.drawn += drawn_by(model.objects[node.object].representations[node.lod]);
     }
 }
 
 void add_used(Result& result, const Model& model, size_t made, const View& view) {
-    const choose::Cut cut = choose::choose(model, view);
+    const choose::Cut cut = choose::choose_cut(model, view);
     for (const uint32_t index : cut.chosen) {
         if (cut.nodes[index].object >= made)
             result.used.insert(cut.nodes[index].object);
@@ -231,9 +231,9 @@ double floor_of(Model model, bool away) {
     model.objects[model.root].representations.resize(1);
     double drawn = 0;
     for (const View& view : views) {
-        const choose::Cut cut = choose::choose(model, view);
+        const choose::Cut cut = choose::choose_cut(model, view);
         for (const uint32_t index : cut.chosen) {
-            const choose::Node& node = cut.nodes[index];
+            const choose::CutNode& node = cut.nodes[index];
             const Object& object = model.objects[node.object];
             if (node.lod + 1 < object.representations.size())
                 drawn += drawn_by(object.representations[node.lod]);
@@ -266,14 +266,14 @@ void by_insertion(Model& model, const std::vector<ObjectIndex>& flat) {
 }
 
 void by_agglomeration(Model& model, const std::vector<ObjectIndex>& flat) {
-    const std::vector<group::Traits> traits = group::traits_of(model, flat, {});
+    const std::vector<group::ObjectTraits> traits = group::traits_of(model, flat, {});
     for (const ObjectIndex index : flat) {
-        const group::Sorted sorted = group::sorted_children(model, index, traits);
-        std::vector<group::Tree> trees;
-        for (const std::vector<group::Item>& items : sorted.items)
+        const group::SortedChildren sorted = group::sorted_children(model, index, traits);
+        std::vector<group::GroupingTree> trees;
+        for (const std::vector<group::GroupingItem>& items : sorted.items)
             trees.push_back(items.size() > group::kLeastChildren ? agglomerate(items)
                                                                  : group::flat_tree(items.size()));
-        group::apply(model, index, sorted, trees);
+        group::apply_grouping(model, index, sorted, trees);
     }
 }
 
@@ -283,7 +283,7 @@ void by_octree(Model& model, const std::vector<ObjectIndex>& flat) {
 }
 
 Result measure(const Model& read, const std::string& store, const Way& way,
-               const hierarchy::Settings& settings, bool away, double* floor = nullptr) {
+               const hierarchy::BuildSettings& settings, bool away, double* floor = nullptr) {
     namespace fs = std::filesystem;
     Result result;
     Model model = read;
@@ -330,14 +330,14 @@ void print(const std::string& scene, const char* way, const Result& r, const Res
 
 /// Structuring alone: 10,000 boxes in 100 heaps, minimum / median / maximum of five runs.
 void print_times() {
-    std::vector<group::Item> items;
+    std::vector<group::GroupingItem> items;
     for (uint64_t i = 0; i < 10000; ++i) {
-        Random random(1, i);
+        PcgRandom random(1, i);
         const uint64_t number = i / 100;
         const auto heap = static_cast<double>(number);
         const glm::dvec3 at(1000 * heap + 20 * random.uniform(), 20 * random.uniform(),
                             20 * random.uniform());
-        group::Item item;
+        group::GroupingItem item;
         item.box = {at - 0.5, at + 0.5};
         items.push_back(item);
     }
@@ -346,7 +346,7 @@ void print_times() {
     for (int round = 0; round < 5; ++round) {
         const double cpu_before = cpu_seconds();
         const double wall_before = wall_seconds();
-        group::insert_all(items, {}, {});
+        group::group_by_insertion(items, {}, {});
         cpu.push_back(cpu_seconds() - cpu_before);
         wall.push_back(wall_seconds() - wall_before);
     }
@@ -358,8 +358,8 @@ void print_times() {
 
 /// Builds levels of the leaves with little sampling, for scenes that are flattened: thousands of
 /// groups are compared with each other, not with what is shipped.
-hierarchy::Settings quick_settings() {
-    hierarchy::Settings settings;
+hierarchy::BuildSettings quick_settings() {
+    hierarchy::BuildSettings settings;
     settings.rays = 1024;
     settings.samples = 512;
     settings.group_triangles = 10000;
@@ -370,7 +370,7 @@ void compare(const std::string& path, size_t flat, bool away) {
     namespace fs = std::filesystem;
     std::string scene = fs::path(path).filename();
     Model model = read(path);
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     const fs::path base = fs::temp_directory_path() / text("lodestone_leaves_", getpid());
     fs::remove_all(base);
     if (flat > 0) {

@@ -34,7 +34,7 @@ std::string name_of(const std::string& path) {
     return path.substr(slash, path.rfind('.') - slash);
 }
 
-double visible_area(const Mesh& mesh, const ray::Scene& scene, measure::Casting casting) {
+double visible_area(const Mesh& mesh, const ray::MeshScene& scene, measure::CastMethod casting) {
     measure::VisibleOptions options;
     options.relative_error = 0.001;
     options.most_rays = uint64_t{1} << 25u;
@@ -45,9 +45,9 @@ double visible_area(const Mesh& mesh, const ray::Scene& scene, measure::Casting 
 
 void shape(const std::string& path, int seeds, double error) {
     const Mesh mesh = mesh_of(path);
-    const ray::Scene scene(mesh);
-    const double lines = visible_area(mesh, scene, measure::Casting::FromBound);
-    const double truth = visible_area(mesh, scene, measure::Casting::Best);
+    const ray::MeshScene scene(mesh);
+    const double lines = visible_area(mesh, scene, measure::CastMethod::FromBound);
+    const double truth = visible_area(mesh, scene, measure::CastMethod::Best);
     measure::VisibleOptions options;
     options.relative_error = error;
     int inside = 0;
@@ -58,7 +58,8 @@ void shape(const std::string& path, int seeds, double error) {
     for (int seed = 1; seed <= seeds; ++seed) {
         options.seed = static_cast<uint64_t>(seed);
         const double start = cpu_seconds();
-        const measure::Visible out = measure::measure_visible(mesh, scene, nullptr, options);
+        const measure::VisibleAttributes out =
+            measure::measure_visible(mesh, scene, nullptr, options);
         cpu += cpu_seconds() - start;
         rays += out.attributes.rays + out.pilot_rays;
         const double off = out.attributes.visible_area / truth - 1;
@@ -68,7 +69,7 @@ void shape(const std::string& path, int seeds, double error) {
     }
     const double bias = sum / seeds;
     const double half_width = 1.96 * std::sqrt(std::max(squares / seeds - bias * bias, 0.0));
-    const measure::VisibleSampler sampler(mesh, scene, 1, measure::Casting::Best, error);
+    const measure::VisibleSampler sampler(mesh, scene, 1, measure::CastMethod::Best, error);
     std::printf(
         "{\"shape\": \"%s\", \"triangles\": %zu, \"seeds\": %d, \"rays\": %.0f, \"cpu_ms\": "
         "%.4f, \"inside\": %d, \"bias\": %.5f, \"half_width\": %.5f, \"area\": %.9g, "
@@ -81,11 +82,11 @@ void shape(const std::string& path, int seeds, double error) {
 }
 
 /// Points of the surface in its order, each moved by up to a hundredth of its radius.
-std::vector<glm::dvec3> points_near(const Mesh& mesh, const ray::Scene& scene) {
+std::vector<glm::dvec3> points_near(const Mesh& mesh, const ray::MeshScene& scene) {
     std::vector<measure::SurfaceSample> samples;
     measure::add_area_samples(mesh, scene, 100000, 1, samples);
     const double far = 0.01 * measure::radius_of(mesh);
-    Random random(7);
+    PcgRandom random(7);
     std::vector<glm::dvec3> points;
     for (const measure::SurfaceSample& sample : samples) {
         const glm::dvec3 arm(random.uniform() - 0.5, random.uniform() - 0.5,
@@ -98,7 +99,7 @@ std::vector<glm::dvec3> points_near(const Mesh& mesh, const ray::Scene& scene) {
 void closest(const std::string& path, int rounds) {
     const Mesh mesh = mesh_of(path);
     const double start = cpu_seconds();
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
     (void)scene.closest_point({});
     const double build = cpu_seconds() - start;
     const std::vector<glm::dvec3> points = points_near(mesh, scene);
@@ -109,7 +110,7 @@ void closest(const std::string& path, int rounds) {
             uint32_t last = ray::kNoTriangle;
             const double begin = cpu_seconds();
             for (const glm::dvec3& point : points) {
-                const ray::Closest found =
+                const ray::ClosestPoint found =
                     scene.closest_point(point, std::numeric_limits<double>::infinity(),
                                         hinted ? last : ray::kNoTriangle);
                 last = found.triangle;
@@ -143,7 +144,8 @@ void error(const std::string& finest_path, const std::string& level_path, int se
         if (samples > 0)
             options.samples = options.most_vertices = samples;
         options.seed = static_cast<uint64_t>(seed);
-        const measure::Deviation out = measure::DeviationReference(finest, options).of(level);
+        const measure::SurfaceDeviation out =
+            measure::DeviationReference(finest, options).of(level);
         errors.push_back(out.error);
         most = std::max(most, out.max);
     }

@@ -44,7 +44,7 @@ glm::dvec3 direction(int number) {
 
 /// One bit a pixel of all views of a square around the bound.
 std::vector<bool> silhouettes(const Mesh& mesh, const Bound& bound) {
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     std::vector<bool> out;
     for (int view = 0; view < kViews; ++view) {
         const glm::dvec3 back = direction(view);
@@ -126,12 +126,12 @@ void measure_again(Found& found, const std::string& name, const Mesh& drawn, dou
     const bool clear = opacity < 1;
     const std::vector<Material> materials{solids::clear_material({}, opacity)};
     image::TexelCache texels;
-    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
-    const ray::Scene scene(drawn, skin);
+    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
+    const ray::MeshScene scene(drawn, skin);
     // Of a flock one in twenty lines finds anything, and all that leave its surface. But what hides
     // nothing of itself would be measured without rays.
     if (measure::VisibleSampler(drawn, scene, options.seed).shows_all())
-        options.casting = measure::Casting::FromBound;
+        options.casting = measure::CastMethod::FromBound;
     const std::array<double, 3> off =
         misses(measure::measure_visible(drawn, scene, skin, options).attributes, truth, clear);
     found[name + " area off"] = off[0];
@@ -141,7 +141,7 @@ void measure_again(Found& found, const std::string& name, const Mesh& drawn, dou
 
 /// Single solids, of the attributes that a build finds: as they are matched, and as they stand.
 void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const Attributes& truth) {
-    const hierarchy::Settings settings;
+    const hierarchy::BuildSettings settings;
     measure::VisibleOptions options;
     options.rays = settings.rays;
     options.seed = settings.seed;
@@ -166,8 +166,8 @@ void measure_solids(Found& found, const Mesh& mesh, const Bound& bound, const At
     const auto solid = [&](const std::string& name, bool box, const Primitive& fitted) {
         add(name, box, solids::settled(fitted, wanted, sure), 1);
     };
-    const auto clear = [&](const std::string& name, bool box, const solids::Clear& fitted) {
-        const solids::Clear now = solids::settled(fitted, wanted, surer);
+    const auto clear = [&](const std::string& name, bool box, const solids::ClearSolid& fitted) {
+        const solids::ClearSolid now = solids::settled(fitted, wanted, surer);
         add(name, box, now.primitive, now.opacity);
     };
     const double radius = std::sqrt(wanted.visible_area / (4 * std::numbers::pi));
@@ -234,7 +234,8 @@ void compare_shape(const std::filesystem::path& path, bool last) {
     options.seed = 98;
     const Attributes known = measure::measure_visible(mesh, {}, options).attributes;
     measure_solids(found, mesh, bound, known);
-    for (const solids::Clustered& level : solids::composites(mesh, nullptr, attributes, {})) {
+    for (const solids::ClusteredComposite& level :
+         solids::composites(mesh, nullptr, attributes, {})) {
         const size_t count = level.composite.solids.size();
         const Mesh solid = tessellate(level.composite, 3);
         const std::string name = "composite " + std::to_string(count);

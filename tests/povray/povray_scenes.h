@@ -189,7 +189,7 @@ inline Image read_ppm(const std::filesystem::path& path) {
 
 inline ExportReport write(const Model& model, const View& view, const ExportOptions& options,
                           Problems& problems) {
-    const choose::Cut cut = choose::choose(model, view);
+    const choose::Cut cut = choose::choose_cut(model, view);
     return export_scene(model, cut, view, options, problems);
 }
 
@@ -201,9 +201,9 @@ inline Image render(const Model& model, const View& view, ExportOptions options,
     EXPECT_TRUE(problems.empty());
     RunOptions how;
     how.folder = options.folder;
-    how.output = Output::Ppm;
+    how.output = OutputFormat::Ppm;
     how.threads = 1;
-    const RunReport done = run(how);
+    const RunReport done = render_scene(how);
     if (report != nullptr)
         *report = done;
     return read_ppm(done.picture);

@@ -70,7 +70,7 @@ TEST(PovrayCamera, OrthographicBlurIsNamed) {
 TEST(PovrayCamera, ABorderIsTheOnlyPartDrawn) {
     View view = scenes::above(64, 36);
     EXPECT_FALSE(has(ini_of(view), "Start_Column"));
-    view.border = Border{16, 9, 32, 18};
+    view.border = RenderBorder{16, 9, 32, 18};
     const std::string ini = ini_of(view);
     for (const char* line :
          {"Start_Column=17\n", "End_Column=48\n", "Start_Row=10\n", "End_Row=27\n"})

@@ -19,7 +19,7 @@ TEST(PovrayLooseParts, ThePictureIsTheSameBitByBit) {
     Mesh town;
     for (uint64_t i = 0; i < 60; ++i) {
         const auto step = [&](uint64_t number, double most) {  // whole centimetres: on any lattice
-            return std::floor(100 * most * Random(number, i).uniform()) / 100;
+            return std::floor(100 * most * PcgRandom(number, i).uniform()) / 100;
         };
         // No two roofs are equally high: which of two faces in one plane is seen is by chance.
         const double roof = 0.3 + 0.02 * static_cast<double>(i);

@@ -56,13 +56,13 @@ scenes::Image drawn(double size, const std::string& name, bool shadow = true) {
     return scenes::render(builder.finish(), view, options);
 }
 
-struct Difference {
+struct ImageDifference {
     double mean = 0;
     double worst = 0;
 };
 
-Difference difference(const scenes::Image& a, const scenes::Image& b) {
-    Difference out;
+ImageDifference difference(const scenes::Image& a, const scenes::Image& b) {
+    ImageDifference out;
     for (int y = 0; y < a.height; ++y) {
         for (int x = 0; x < a.width; ++x) {
             const glm::dvec3 off = glm::abs(a.at(x, y) - b.at(x, y));
@@ -103,7 +103,7 @@ TEST(PovrayRenderMagnification, ASceneOfATenthOfAMillimetreLooksLikeOneOfAMetre)
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
     const scenes::Image large = drawn(1, "metre");
-    const Difference found = difference(large, drawn(1e-4, "grain"));
+    const ImageDifference found = difference(large, drawn(1e-4, "grain"));
     EXPECT_LE(found.mean, 0.0005);
     EXPECT_LE(found.worst, 0.1);  // of single pixels at the edges of shadows
     EXPECT_GE(difference(large, drawn(1, "shadowless", false)).worst, 0.1);

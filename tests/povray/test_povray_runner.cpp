@@ -105,7 +105,7 @@ TEST(PovrayRunner, MessagesAreTakenApartHoweverTheyArrive) {
         "  Trace Time:       0 hours  0 minutes  1 seconds (1.000 seconds)\n"
         "              using 2 thread(s) with 3.500 CPU-seconds total\nRender failed";
     for (const size_t step : {said.size(), size_t{1}, size_t{7}}) {
-        Messages messages;
+        PovrayMessages messages;
         for (size_t at = 0; at < said.size(); at += step)
             messages.read(std::string_view(said).substr(at, step));
         messages.finish();
@@ -119,7 +119,7 @@ TEST(PovrayRunner, MessagesAreTakenApartHoweverTheyArrive) {
         EXPECT_NE(messages.text().find("even after trying"), std::string::npos);
         EXPECT_EQ(messages.text().find("configuration"), std::string::npos);
     }
-    Messages flood;
+    PovrayMessages flood;
     for (int i = 0; i < 2000; ++i)
         flood.read("File 'x' line 1: Parse Warning: Normal vector in mesh2 cannot be zero\n");
     flood.finish();
@@ -129,18 +129,20 @@ TEST(PovrayRunner, MessagesAreTakenApartHoweverTheyArrive) {
 
 TEST(PovrayRunner, AMissingProgramSaysWhatToInstallOrSet) {
     const auto folder = scene_with("missing", kSphere);
-    const Error error = error_of([&] { run({.folder = folder, .program = "no-such-povray"}); });
+    const Error error =
+        error_of([&] { render_scene({.folder = folder, .program = "no-such-povray"}); });
     EXPECT_EQ(error.status, Status::PovrayMissing);
     EXPECT_TRUE(says(error, "no-such-povray"));
     EXPECT_TRUE(says(error, "install"));
     EXPECT_TRUE(says(error, "LODESTONE_POVRAY"));
-    EXPECT_EQ(error_of([&] { run({.folder = folder, .program = folder.string()}); }).status,
-              Status::PovrayMissing);
+    EXPECT_EQ(
+        error_of([&] { render_scene({.folder = folder, .program = folder.string()}); }).status,
+        Status::PovrayMissing);
 
     const char* before = std::getenv("LODESTONE_POVRAY");
     const std::string kept = before != nullptr ? before : "";
     setenv("LODESTONE_POVRAY", "/nowhere/povray", 1);
-    const Error set = error_of([&] { run({.folder = folder}); });
+    const Error set = error_of([&] { render_scene({.folder = folder}); });
     if (before != nullptr)
         setenv("LODESTONE_POVRAY", kept.c_str(), 1);
     else
@@ -153,11 +155,12 @@ TEST(PovrayRunner, AMissingProgramSaysWhatToInstallOrSet) {
 TEST(PovrayRunner, CallersMistakesAreNamed) {
     const auto folder = scene_with("mistakes", kSphere);
     for (const char* name : {"../x.png", "a b.png", "/x.png", "r/x.png", "x;y.png"}) {
-        const Error error = error_of([&] { run({.folder = folder, .output_name = name}); });
+        const Error error =
+            error_of([&] { render_scene({.folder = folder, .output_name = name}); });
         EXPECT_EQ(error.status, Status::InvalidArgument) << name;
         EXPECT_TRUE(says(error, name));
     }
-    EXPECT_EQ(error_of([&] { run({.folder = folder / "nowhere"}); }).status, Status::Io);
+    EXPECT_EQ(error_of([&] { render_scene({.folder = folder / "nowhere"}); }).status, Status::Io);
 }
 
 TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
@@ -165,7 +168,7 @@ TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
     std::ofstream(folder / "picture.exr") << "old";
     const auto with = [&](const std::string& body) {
         const std::string program = script(folder, body);
-        return error_of([&] { run({.folder = folder, .program = program}); });
+        return error_of([&] { render_scene({.folder = folder, .program = program}); });
     };
     EXPECT_EQ(with("exit 0\n").status, Status::PovrayFailed);
     EXPECT_TRUE(says(with("exit 0\n"), "without a picture"));
@@ -185,7 +188,7 @@ TEST(PovrayRunner, TheChildGetsACleanEnvironmentAndNoFilesOfOurs) {
     const int leak = open("/dev/null", 0);  // not close-on-exec, as a host program's may be
     ASSERT_GE(leak, 3);
     std::signal(SIGPIPE, SIG_IGN);
-    EXPECT_EQ(error_of([&] { run({.folder = folder, .program = program}); }).status,
+    EXPECT_EQ(error_of([&] { render_scene({.folder = folder, .program = program}); }).status,
               Status::PovrayFailed);
     std::signal(SIGPIPE, SIG_DFL);
     close(leak);
@@ -208,13 +211,14 @@ TEST(PovrayRunner, AStubbornProgramIsStoppedWithinASecond) {
     volatile double fraction = 0;
     std::chrono::steady_clock::time_point asked;
     std::thread killer([&] {
-        for (int i = 0; i < 500 && stage != static_cast<int32_t>(Stage::Trace); ++i)
+        for (int i = 0; i < 500 && stage != static_cast<int32_t>(JobStage::Trace); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         asked = std::chrono::steady_clock::now();
         cancel = 1;
     });
-    const Error error = error_of(
-        [&] { run({.folder = folder, .program = program}, Job(&cancel, &stage, &fraction)); });
+    const Error error = error_of([&] {
+        render_scene({.folder = folder, .program = program}, Job(&cancel, &stage, &fraction));
+    });
     const double took =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     killer.join();
@@ -233,7 +237,7 @@ TEST(PovrayRunner, KillingTheHostKillsTheProgram) {
     const std::string program = script(folder, "echo $$ > child; exec sleep 100\n");
     const pid_t host = fork();
     if (host == 0) {
-        error_of([&] { run({.folder = folder, .program = program}); });
+        error_of([&] { render_scene({.folder = folder, .program = program}); });
         _exit(0);
     }
     for (int i = 0; i < 500 && read_text(folder / "child").empty(); ++i)
@@ -255,8 +259,8 @@ TEST(PovrayRunner, APictureAppearsWithItsReport) {
     volatile int32_t stage = 0;
     volatile double fraction = 0;
     RunOptions options{.folder = folder, .width = 40, .height = 20, .threads = 1};
-    options.output = Output::Ppm;
-    const RunReport report = run(options, Job(&cancel, &stage, &fraction));
+    options.output = OutputFormat::Ppm;
+    const RunReport report = render_scene(options, Job(&cancel, &stage, &fraction));
     EXPECT_EQ(report.exit_code, 0);
     EXPECT_EQ(report.picture, folder / "picture.ppm");
     EXPECT_EQ(scenes::read_ppm(report.picture).width, 40);
@@ -264,15 +268,15 @@ TEST(PovrayRunner, APictureAppearsWithItsReport) {
     EXPECT_GT(report.peak_bytes, 4u << 20u);
     EXPECT_LT(report.peak_bytes, 200u << 20u);
     EXPECT_GT(report.wall_s, 0);
-    EXPECT_EQ(stage, static_cast<int32_t>(Stage::Trace));
+    EXPECT_EQ(stage, static_cast<int32_t>(JobStage::Trace));
     EXPECT_DOUBLE_EQ(fraction, 1);
     EXPECT_EQ(files_in(folder), 3u);
-    options.output = Output::Exr;
+    options.output = OutputFormat::Exr;
     options.output_name = "a.exr";
-    EXPECT_EQ(read_file(run(options).picture).substr(0, 4), "\x76\x2f\x31\x01");
-    options.output = Output::Png;
+    EXPECT_EQ(read_file(render_scene(options).picture).substr(0, 4), "\x76\x2f\x31\x01");
+    options.output = OutputFormat::Png;
     options.output_name = "a.png";
-    EXPECT_EQ(read_file(run(options).picture).substr(1, 3), "PNG");
+    EXPECT_EQ(read_file(render_scene(options).picture).substr(1, 3), "PNG");
     EXPECT_EQ(files_in(folder), 5u);
 }
 
@@ -282,7 +286,7 @@ TEST(PovrayRunner, AFailingSceneGivesPovraysOwnSentence) {
     const auto folder = scene_with("failing", "#include \"r/0123456789abcdef.inc\"\n");
     std::ofstream(folder / "r/0123456789abcdef.inc") << "#declare X =\nmesh2{ nothing }\n";
     std::ofstream(folder / "picture.exr") << "old";
-    const Error error = error_of([&] { run({.folder = folder}); });
+    const Error error = error_of([&] { render_scene({.folder = folder}); });
     EXPECT_EQ(error.status, Status::PovrayFailed);
     EXPECT_TRUE(says(error, "File 'r/0123456789abcdef.inc' line 2: Parse Error:")) << error.what();
     EXPECT_EQ(read_file(folder / "picture.exr"), "old");
@@ -298,19 +302,19 @@ TEST(PovrayRunner, CancellingEndsPovrayWithinASecond) {
     volatile double fraction = 0;
     std::chrono::steady_clock::time_point asked;
     std::thread killer([&] {
-        for (int i = 0; i < 500 && stage != static_cast<int32_t>(Stage::Trace); ++i)
+        for (int i = 0; i < 500 && stage != static_cast<int32_t>(JobStage::Trace); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         asked = std::chrono::steady_clock::now();
         cancel = 1;
     });
-    const Error error =
-        error_of([&] { run({.folder = folder, .threads = 2}, Job(&cancel, &stage, &fraction)); });
+    const Error error = error_of(
+        [&] { render_scene({.folder = folder, .threads = 2}, Job(&cancel, &stage, &fraction)); });
     const double took =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     killer.join();
     EXPECT_EQ(error.status, Status::Cancelled);
     EXPECT_LT(took, 1);
-    EXPECT_EQ(stage, static_cast<int32_t>(Stage::Trace));
+    EXPECT_EQ(stage, static_cast<int32_t>(JobStage::Trace));
     EXPECT_EQ(files_in(folder), 2u);
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
@@ -337,7 +341,7 @@ TEST(PovrayRunner, AnEmptySceneIsMeasuredOnceAndIsTheLeast) {
     Problems problems;
     scenes::write(builder.finish(), view, options, problems);
     like.folder = options.folder;
-    const RunReport report = run(like);
+    const RunReport report = render_scene(like);
     const double each =
         (static_cast<double>(report.peak_bytes) - static_cast<double>(empty)) / (2 * 224 * 224);
     EXPECT_GT(each, 150);

@@ -65,7 +65,7 @@ struct Floating {
               bool draw = true) {
         view.modifiers.ray_classes = rays;
         const Model& model = builder.finish();
-        const choose::Cut cut = choose::choose(model, view);
+        const choose::Cut cut = choose::choose_cut(model, view);
         const auto met = choose::choose_rays(model, view, cut, choose::shape_of);
         Made made;
         for (const choose::RayCut& own : met)
@@ -82,9 +82,9 @@ struct Floating {
             return made;
         RunOptions run_how;
         run_how.folder = options.folder;
-        run_how.output = Output::Ppm;
+        run_how.output = OutputFormat::Ppm;
         run_how.threads = 1;
-        const RunReport report = run(run_how);
+        const RunReport report = render_scene(run_how);
         EXPECT_EQ(report.messages, "");
         made.image = scenes::read_ppm(report.picture);
         return made;
@@ -147,9 +147,9 @@ TEST(RayClasses, AShadowOfItsOwnDarkensTheGroundAndNotItsBall) {
     RunOptions how;
     how.folder = own_scratch() / "shadow_on";
     write_file(how.folder / "scene.pov", bare);
-    how.output = Output::Ppm;
+    how.output = OutputFormat::Ppm;
     how.threads = 1;
-    EXPECT_GT(differing(off.image, scenes::read_ppm(run(how).picture), 40), 60u);
+    EXPECT_GT(differing(off.image, scenes::read_ppm(render_scene(how).picture), 40), 60u);
 }
 
 TEST(RayClasses, FlagsAreNeverUnderAnythingThatLosesThem) {

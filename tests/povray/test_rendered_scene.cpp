@@ -128,7 +128,7 @@ TEST(PovrayRender, TheSkyWasGoneFromBlackPlasticsAndTintedBySaturatedOnes) {
     Material pictured = black;  // black over all of the patch, its mean is not
     pictured.base_color_texture.picture =
         scenes::picture(2, {{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {.8, 0, 0, 1}});
-    pictured.base_color_texture.interpolation = Interpolation::Closest;
+    pictured.base_color_texture.interpolation = TextureInterpolation::Closest;
     pictured.base_color = {0.2, 0, 0};
     Material glowing = black;
     glowing.emission = {0, 0.3, 0};

@@ -43,24 +43,24 @@ std::string include_text(const Model& model, ObjectIndex object,
                                pictures, {});
 }
 
-std::string number(const Lattice& lattice, double value) {
-    char text[Lattice::kMostCharacters];
+std::string number(const DecimalLattice& lattice, double value) {
+    char text[DecimalLattice::kMostCharacters];
     return {text, lattice.write(text, lattice.round(value))};
 }
 
 }  // namespace
 
 TEST(PovrayWriter, NumbersAreShortAndExactToTheStep) {
-    const Lattice metre(1e-6, 100);
+    const DecimalLattice metre(1e-6, 100);
     EXPECT_EQ(number(metre, 0), "0");
     EXPECT_EQ(number(metre, 0.5), ".5");
     EXPECT_EQ(number(metre, -12.25), "-12.25");
     EXPECT_EQ(number(metre, -0.000002), "-.000002");
     EXPECT_EQ(number(metre, 1.0000004), "1");
     EXPECT_EQ(number(metre, 100), "100");
-    EXPECT_EQ(number(Lattice(1e-7, 1), 0.1000001), ".1000001");
-    EXPECT_EQ(number(Lattice(1, 99), -7), "-7");
-    const Lattice fine(0, 1e-1);
+    EXPECT_EQ(number(DecimalLattice(1e-7, 1), 0.1000001), ".1000001");
+    EXPECT_EQ(number(DecimalLattice(1, 99), -7), "-7");
+    const DecimalLattice fine(0, 1e-1);
     EXPECT_EQ(number(fine, 0.100000000000003), ".100000000000003");
     for (const uint64_t count : {0u, 9u, 10u, 99u, 100u, 101u, 65535u, 999999u, 4294967295u}) {
         char text[20];
@@ -68,10 +68,10 @@ TEST(PovrayWriter, NumbersAreShortAndExactToTheStep) {
     }
     char most[20];
     EXPECT_EQ(std::string(most, write_count(most, ~uint64_t{0})), "18446744073709551615");
-    EXPECT_EQ(std::stod(number(Lattice(1e24, 3e38), 3e38)), 3e38);
-    EXPECT_NEAR(std::stod(number(Lattice(1e-46, 1e-40), 1e-40)), 1e-40, 1e-46);
+    EXPECT_EQ(std::stod(number(DecimalLattice(1e24, 3e38), 3e38)), 3e38);
+    EXPECT_NEAR(std::stod(number(DecimalLattice(1e-46, 1e-40), 1e-40)), 1e-40, 1e-46);
     for (const double size : {1e-3, 0.7, 1.0, 2.0, 5.0, 900.0, 1e7}) {
-        const Lattice lattice(size * 1e-6, size);
+        const DecimalLattice lattice(size * 1e-6, size);
         for (int i = 0; i < 100; ++i) {
             const double value = size * std::sin(i * 1.7);
             EXPECT_LE(std::abs(std::stod(number(lattice, value)) - value), size * 1e-6);
@@ -355,7 +355,7 @@ TEST(PovrayWriter, LinesAndDotsAreSkippedWithoutAWordAndSheetsGetAThickness) {
     ExportOptions options;
     options.folder = scratch("singular");
     Problems problems;
-    const choose::Cut cut = choose::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose_cut(builder.finish(), above());
     export_scene(builder.model, cut, above(), options, problems);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].object, "broken");
@@ -401,7 +401,7 @@ TEST(PovrayWriter, CoveredOnlyLeavesOutEnvironmentLightsAndWorld) {
     builder.model.world.color = {1, 2, 3};
     builder.model.lights.push_back(scenes::sun(1));
     const ObjectIndex ground = builder.mesh(shapes::quad(9, 9));
-    builder.model.objects[ground].role = Role::Environment;
+    builder.model.objects[ground].role = ObjectRole::Environment;
     builder.place(ground, {}, "ground");
     builder.place(builder.mesh(shapes::cube()), {}, "cube");
     ExportOptions options;
@@ -438,7 +438,7 @@ TEST(PovrayWriter, ACancelledExportStops) {
     ExportOptions options;
     options.folder = scratch("cancelled");
     Problems problems;
-    const choose::Cut cut = choose::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose_cut(builder.finish(), above());
     EXPECT_THROW(export_scene(builder.model, cut, above(), options, problems,
                               Job(&cancel, nullptr, nullptr)),
                  Error);
@@ -450,7 +450,7 @@ TEST(PovrayWriter, GivenColorsPaintTheChosenOccurrencesInTheirOrder) {
     const ObjectIndex cube = builder.mesh(shapes::cube());
     builder.place_at(cube, {-1, 0, 0});
     builder.place_at(cube, {1, 0, 0});
-    const choose::Cut cut = choose::choose(builder.finish(), above());
+    const choose::Cut cut = choose::choose_cut(builder.finish(), above());
     ExportOptions options;
     options.folder = scratch("given_colors");
     options.false_color = true;

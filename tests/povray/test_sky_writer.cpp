@@ -29,7 +29,7 @@ World world_of(float sky, float side) {
     return world;
 }
 
-Sky written(const World& world, const SkySampling& sampling = {}) {
+WrittenSky written(const World& world, const SkySampling& sampling = {}) {
     Problems problems;
     return write_sky(world, sampling, own_scratch(), problems);
 }
@@ -37,13 +37,13 @@ Sky written(const World& world, const SkySampling& sampling = {}) {
 }  // namespace
 
 TEST(PovraySky, OneGrayIsAmbientAndNeedsNoLights) {
-    const Sky sky = written(world_of(0.5f, 0.5f));
+    const WrittenSky sky = written(world_of(0.5f, 0.5f));
     EXPECT_NEAR(sky.ambient.x, 0.5, 0.01);
     EXPECT_TRUE(sky.lights.empty());
 }
 
 TEST(PovraySky, ABrightSideHasLightsAndNoneThatNoPictureCouldTell) {
-    const Sky sky = written(world_of(0.25f, 0.75f));
+    const WrittenSky sky = written(world_of(0.25f, 0.75f));
     ASSERT_FALSE(sky.lights.empty());
     double brightest = sky.ambient.x;
     for (const Light& light : sky.lights)
@@ -54,8 +54,8 @@ TEST(PovraySky, ABrightSideHasLightsAndNoneThatNoPictureCouldTell) {
 
 TEST(PovraySky, WithoutLightsAllOfItsLightIsUniform) {
     const World world = world_of(0.25f, 0.75f);
-    const Sky with = written(world);
-    const Sky without = written(world, {0, true});
+    const WrittenSky with = written(world);
+    const WrittenSky without = written(world, {0, true});
     EXPECT_TRUE(without.lights.empty());
     double energy = with.ambient.x;
     for (const Light& light : with.lights)

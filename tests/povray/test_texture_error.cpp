@@ -79,7 +79,7 @@ TEST(PovrayTextureError, ATexelCoversNoMorePixelsThanAsked) {
 TEST(PovrayTextureError, PixelArtAndPalettesStay) {
     Texture texture = texture_of(stripes());
     EXPECT_EQ(written(texture, square(glm::vec2(0.3F, 0.7F)), 8, 1), kSide) << "one texel for all";
-    texture.interpolation = Interpolation::Closest;
+    texture.interpolation = TextureInterpolation::Closest;
     EXPECT_EQ(written(texture, square(), 8, 1), kSide);
 }
 
@@ -100,7 +100,7 @@ TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
     PictureWriter writer;
     UvRange range;
     range.texel = 1e9;
-    EXPECT_NE(writer.pigment(texture, Content::Color, range), "");
+    EXPECT_NE(writer.pigment(texture, PigmentContent::Color, range), "");
     PictureFolder files(folder);
     writer.write(files);
     for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {

@@ -54,7 +54,7 @@ std::vector<double> differences(const std::vector<Texture>& textures, double low
     const scenes::Image image = shown(materials, patch(low, high), "scene");
     std::vector<double> worst;
     for (const Texture& texture : textures) {
-        const image::Sampler sampler(texture, glm::dvec3(0.0));
+        const image::TextureSampler sampler(texture, glm::dvec3(0.0));
         const int left = 28 * static_cast<int>(worst.size());
         worst.push_back(0);
         for (int y = 0; y < 28; ++y) {
@@ -83,11 +83,13 @@ TEST(PovrayTextures, EveryExtensionAndInterpolationShowsWhatTheSamplerSays) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
     std::vector<Texture> textures;
-    for (const Extension extension :
-         {Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror}) {
-        for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Closest}) {
+    for (const TextureExtension extension : {TextureExtension::Repeat, TextureExtension::Extend,
+                                             TextureExtension::Clip, TextureExtension::Mirror}) {
+        for (const TextureInterpolation interpolation :
+             {TextureInterpolation::Linear, TextureInterpolation::Closest}) {
             // The border of a clipped picture is not interpolated with the black around it.
-            if (extension == Extension::Clip && interpolation == Interpolation::Linear)
+            if (extension == TextureExtension::Clip &&
+                interpolation == TextureInterpolation::Linear)
                 continue;
             textures.push_back(checker());
             textures.back().extension = extension;
@@ -106,7 +108,7 @@ TEST(PovrayTextures, AMappedPictureLiesWhereTheMappingSays) {
     std::vector<Texture> textures(5, checker(ColorSpace::Srgb));
     textures[0].to_picture = {0.8, -0.6, 0.3, 1.2, 1.6, -0.7};
     textures[1].to_picture = textures[0].to_picture;
-    textures[1].extension = Extension::Extend;
+    textures[1].extension = TextureExtension::Extend;
     textures[2].to_picture = {-1, 0, 0.3, 0, 1, 0.1};  // mirrored
     textures[3].to_picture = {0, 0, 0.3, 0, 0, 0.1};   // one texel everywhere
     textures[4].to_picture = {1, 0, 0.3, 2, 0, 0.1};   // a line
@@ -120,7 +122,7 @@ TEST(PovrayTextures, ChangedValuesAndTransparentPicturesAreBaked) {
     std::vector<Texture> textures(3, checker(ColorSpace::Srgb));
     textures[0].scale = {0.5, 0.25, -1};
     textures[0].offset = {0.1, 0.2, 1};
-    textures[1].channel = Channel::Green;
+    textures[1].channel = TextureChannel::Green;
     // What is behind transparent texels is color all the same.
     textures[2].picture = scenes::picture(2, {{.8, 0, 0, 0}, {0, .6, 0, 1}});
     for (const double difference : differences(textures))
@@ -184,8 +186,8 @@ TEST(PovrayTextures, AlphaLetsThatShareOfTheSkyThrough) {
     plain.alpha = 0.25;
     Material blend = plain;
     blend.alpha_texture.picture = scenes::picture(2, {{1, 1, 1, 0.25F}, {1, 1, 1, 1}});
-    blend.alpha_texture.channel = Channel::Alpha;
-    blend.alpha_texture.interpolation = Interpolation::Closest;
+    blend.alpha_texture.channel = TextureChannel::Alpha;
+    blend.alpha_texture.interpolation = TextureInterpolation::Closest;
     Material clip = blend;
     clip.alpha_mode = AlphaMode::Clip;
     Material opaque = blend;
@@ -212,7 +214,7 @@ TEST(PovrayTextures, ALeafsShadowHasItsHoles) {
     Material leaf = scenes::textured({});
     leaf.alpha_mode = AlphaMode::Clip;
     leaf.alpha_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
-    leaf.alpha_texture.interpolation = Interpolation::Closest;
+    leaf.alpha_texture.interpolation = TextureInterpolation::Closest;
     builder.place_at(builder.mesh(patch(0, 1), {builder.material(leaf)}), {-1.4375, -0.4375, 1});
     builder.place_at(builder.mesh(shapes::quad(0.875F, 0.875F), {builder.matte(glm::dvec3(1.0))}),
                      {-0.4375, -0.4375, 0});
@@ -228,11 +230,11 @@ TEST(PovrayTextures, EmissionAndBaseColorAddUp) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";
     Material plain = scenes::textured(checker());
-    plain.base_color_texture.interpolation = Interpolation::Closest;
+    plain.base_color_texture.interpolation = TextureInterpolation::Closest;
     plain.emission = {0.05, 0.1, 0.02};
     Material both = plain;
     both.emission_texture.picture = scenes::picture(1, {{0, .2, 0, 1}, {.1, .3, 1, 1}});
-    both.emission_texture.interpolation = Interpolation::Closest;
+    both.emission_texture.interpolation = TextureInterpolation::Closest;
     both.emission_texture.scale = {2, 1, 0.5};
     Material lamp = both;
     lamp.base_color_texture = {};
@@ -258,9 +260,10 @@ TEST(PovrayTextures, APictureBrighterThanWhiteLightsAsMuch) {
     shown({lamp}, patch(), "exr");
     RunOptions how;
     how.folder = own_scratch() / "exr";
-    how.output = Output::Exr;
+    how.output = OutputFormat::Exr;
     Texture texture;
-    texture.picture = image::make_picture(read_file(run(how).picture), ColorSpace::Linear, "lamp");
+    texture.picture =
+        image::make_picture(read_file(render_scene(how).picture), ColorSpace::Linear, "lamp");
     ASSERT_EQ(texture.picture->format, PictureFormat::Exr);
     EXPECT_NEAR(brightest_of(*texture.picture), 3, 0.01);
     texture.scale = glm::dvec3(0.25);
@@ -280,7 +283,7 @@ TEST(PovrayTextures, ConstantMapsLookLikeTheirNumbers) {
     Material mapped = plain;
     mapped.roughness = mapped.metallic = 0.9;
     mapped.roughness_texture.picture = scenes::picture(1, {{0, 127.5F / 255, 0, 1}});
-    mapped.roughness_texture.channel = Channel::Green;
+    mapped.roughness_texture.channel = TextureChannel::Green;
     mapped.metallic_texture.picture = scenes::picture(1, {{0.8F, 0.8F, 0.8F, 1}});
     mapped.metallic_texture.scale.x = 0.5;
     const scenes::Image image = shown({plain, mapped}, patch(), "maps", glm::dvec3(0.3));
@@ -299,7 +302,7 @@ TEST(PovrayTextures, MixedMaterialsAreWeightedMeans) {
     red.mix = 0.25;
     Material halves = red;
     halves.mix_texture.picture = scenes::picture(2, {{0, 0, 0, 1}, {1, 1, 1, 1}});
-    halves.mix_texture.interpolation = Interpolation::Closest;
+    halves.mix_texture.interpolation = TextureInterpolation::Closest;
     const scenes::Image image = shown({red, halves}, patch(0, 1), "mix");
     EXPECT_NEAR(image.at(14, 14).x, 0.3, 0.003);
     EXPECT_NEAR(image.at(14, 14).z, 0.2, 0.003);
@@ -448,7 +451,7 @@ TEST(PovrayTextures, VertexColorsRunBetweenVerticesAndMultiplyThePicture) {
     EXPECT_NEAR(shown({material}, mesh, "colors").at(7, 14).x, 1, 0.01);
 
     material = scenes::textured(checker());
-    material.base_color_texture.interpolation = Interpolation::Closest;
+    material.base_color_texture.interpolation = TextureInterpolation::Closest;
     material.vertex_colors = true;
     image = shown({material}, mesh, "colors");
     EXPECT_NEAR(image.at(7, 7).x, 0.8 * 7.5 / 28, 0.006);
@@ -481,7 +484,7 @@ TEST(PovrayTextures, HostileTexturesGiveTextThatPovrayReads) {
     Texture texture = checker();
     texture.to_picture = {1e300, 0, -1e300, 0, 1e-300, 5};
     texture.scale = {1e300, -1e300, 0};
-    texture.extension = Extension::Extend;
+    texture.extension = TextureExtension::Extend;
     Material material = scenes::textured(texture);
     material.emission_texture = texture;
     material.alpha_mode = AlphaMode::Clip;

@@ -12,9 +12,9 @@
 
 namespace lodestone::forest {
 
-inline std::shared_ptr<const choose::Table> table_of(const Model& model) {
-    return std::make_shared<const choose::Table>(
-        choose::Table::whole(model, model.root, kAllKinds));
+inline std::shared_ptr<const choose::ChoiceTable> table_of(const Model& model) {
+    return std::make_shared<const choose::ChoiceTable>(
+        choose::ChoiceTable::whole(model, model.root, kAllKinds));
 }
 
 /// A camera that is turned around the vertical: its pixels differ in the last bits.
@@ -56,7 +56,7 @@ inline size_t expect_same_rays(const Model& model, const View& view, const choos
 /// Each mesh and solid is measured once.
 inline choose::ShapeOf measured_once() {
     using Key = std::pair<const Representation*, const Representation*>;
-    auto known = std::make_shared<std::map<Key, choose::Shape>>();
+    auto known = std::make_shared<std::map<Key, choose::RayShape>>();
     return [known](const Representation& mesh, const Representation* solid) {
         const auto found = known->find({&mesh, solid});
         if (found != known->end())
@@ -77,14 +77,14 @@ inline Walked walk(
     Walked walked;
     const auto table = table_of(forest.model);
     const choose::ShapeOf shape_of = measured_once();
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     double looked = 0;
     double all = 0;
     size_t most = 0;
     for (int step = 0; step < steps; ++step) {
         stepper.step(view, cut);
-        const choose::Cut anew = choose::choose(*table, view);
+        const choose::Cut anew = choose::choose_cut(*table, view);
         expect_same(cut, anew);
         if (view.modifiers.ray_classes != 0)
             walked.own += expect_same_rays(forest.model, view, cut, anew, shape_of);
@@ -94,7 +94,7 @@ inline Walked walk(
             ADD_FAILURE() << "at step " << step;
             return {1, 0};
         }
-        looked += step > 0 ? static_cast<double>(stepper.looked_at()) : 0;
+        looked += step > 0 ? static_cast<double>(stepper.decided_nodes()) : 0;
         all += step > 0 ? static_cast<double>(cut.nodes.size()) : 0;
         const double far = forest.any() < 0.1 ? 400 : std::exp2(8 * forest.any() - 6);
         for (int axis = 0; axis < 3; ++axis)

@@ -14,7 +14,7 @@
 namespace lodestone::hostile {
 
 /// Flips 1...4 bytes, cuts the end off, repeats a piece, or writes an extreme number over one.
-inline std::string mutated(std::string bytes, Random& random) {
+inline std::string mutated(std::string bytes, PcgRandom& random) {
     const auto below = [&](size_t count) {
         return static_cast<size_t>(random.uniform() * static_cast<double>(count));
     };
@@ -51,7 +51,7 @@ inline int survive(const std::string& bytes, int count,
                    const std::function<void(const std::string&)>& read) {
     int accepted = 0;
     for (int i = 0; i < count; ++i) {
-        Random random(static_cast<uint64_t>(i), 7);
+        PcgRandom random(static_cast<uint64_t>(i), 7);
         const std::string damaged = mutated(bytes, random);
         try {
             read(damaged);

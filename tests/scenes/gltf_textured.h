@@ -15,7 +15,7 @@ inline PicturePtr many_texels(int width, int height, ColorSpace space, bool alph
     image::Image image;
     image.width = width;
     image.height = height;
-    Random random(static_cast<uint64_t>(width), static_cast<uint64_t>(height));
+    PcgRandom random(static_cast<uint64_t>(width), static_cast<uint64_t>(height));
     for (int i = 0; i < width * height; ++i) {
         for (int c = 0; c < 3; ++c)
             image.pixels.push_back(static_cast<float>(random.uniform()));

@@ -27,11 +27,11 @@ inline PicturePtr picture(int side, const std::function<glm::dvec4(double, doubl
     return image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "picture");
 }
 
-inline Texture texture(PicturePtr picture, Channel channel = Channel::Color) {
+inline Texture texture(PicturePtr picture, TextureChannel channel = TextureChannel::Color) {
     Texture out;
     out.picture = std::move(picture);
     out.channel = channel;
-    out.interpolation = Interpolation::Closest;
+    out.interpolation = TextureInterpolation::Closest;
     return out;
 }
 
@@ -43,7 +43,7 @@ inline Material leaf(const PicturePtr& picture, AlphaMode mode = AlphaMode::Clip
     material.base_color_texture = texture(picture);
     material.alpha_mode = mode;
     material.alpha = picture->mean.w;
-    material.alpha_texture = texture(picture, Channel::Alpha);
+    material.alpha_texture = texture(picture, TextureChannel::Alpha);
     return material;
 }
 
@@ -80,7 +80,7 @@ inline Mesh tree(int leaves, uint32_t sides = 8) {
         }
     }
     mesh.slots.assign(mesh.triangles.size(), 0);
-    Random random(5);
+    PcgRandom random(5);
     const auto direction = [&] {
         const double z = 2 * random.uniform() - 1;
         const double angle = 6.283185307179586 * random.uniform();

@@ -32,7 +32,7 @@ inline std::string drawn(const Model& model, const choose::Cut& cut) {
 }
 
 inline std::string drawn(const Model& model, const View& view) {
-    return drawn(model, choose::choose(model, view));
+    return drawn(model, choose::choose_cut(model, view));
 }
 
 inline DetailLens lens(double x, double radius, double strength) {

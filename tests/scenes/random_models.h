@@ -102,8 +102,8 @@ private:
 inline void expect_same(const choose::Cut& a, const choose::Cut& b) {
     ASSERT_EQ(a.nodes.size(), b.nodes.size());
     for (size_t i = 0; i < a.nodes.size(); ++i) {
-        const choose::Node& one = a.nodes[i];
-        const choose::Node& other = b.nodes[i];
+        const choose::CutNode& one = a.nodes[i];
+        const choose::CutNode& other = b.nodes[i];
         ASSERT_EQ(one.object, other.object);
         ASSERT_EQ(one.parent, other.parent);
         ASSERT_EQ(one.placement, other.placement);

@@ -48,14 +48,15 @@ inline std::vector<Material> paint(Mesh& mesh) {
 inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_solids = 32) {
     const std::vector<Material> materials = paint(mesh);
     image::TexelCache texels;
-    hierarchy::Settings settings;
-    hierarchy::Judge judge(mesh, materials, texels, settings, false, settings.seed, 0, {});
+    hierarchy::BuildSettings settings;
+    hierarchy::StandInEvaluator judge(mesh, materials, texels, settings, false, settings.seed, 0,
+                                      {});
     judge.measure_finest(mesh, {});
     judge.take_pictures(mesh, coarse, {});
     const Attributes wanted = judge.attributes();
     const Bound bound = bound_of(mesh.positions);
     const auto skin_of = [&](const std::vector<Material>& own) {
-        return std::make_shared<const ray::Skin>(own, texels);
+        return std::make_shared<const ray::MeshSkin>(own, texels);
     };
     const ray::SkinPtr skin = skin_of(materials);
 
@@ -63,17 +64,19 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     many.rays = 16 * settings.rays;
     many.seed = 77;
     const Attributes truth =
-        measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, many).attributes;
+        measure::measure_visible(mesh, ray::MeshScene(mesh, skin), skin, many).attributes;
     std::vector<measure::AgreementReference> pictures;
     for (const uint64_t seed : {101, 102, 103, 104})  // four times the samples each
         pictures.emplace_back(mesh, skin, seed, measure::AgreementReference::kSide);
     const auto off = [](const glm::dvec3& a, const glm::dvec3& b) {
-        const glm::dvec3 miss = glm::abs(measure::Looks::encoded(a) - measure::Looks::encoded(b));
+        const glm::dvec3 miss =
+            glm::abs(measure::LookPalette::encoded(a) - measure::LookPalette::encoded(b));
         return 255 * std::max({miss.x, miss.y, miss.z});
     };
 
     std::vector<Rematched> out;
-    const auto add = [&](const std::string& name, hierarchy::Candidate candidate, Mesh drawn) {
+    const auto add = [&](const std::string& name, hierarchy::StandInCandidate candidate,
+                         Mesh drawn) {
         judge.match_brightness(candidate, mesh, std::numeric_limits<double>::infinity(), {});
         glm::dvec3 light(0.0);
         for (const measure::AgreementReference& picture : pictures)
@@ -84,7 +87,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     };
     const auto add_solid = [&](const std::string& name, Kind kind, const Primitive& primitive,
                                double opacity) {
-        hierarchy::Candidate candidate;
+        hierarchy::StandInCandidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {solids::clear_material(solids::mean_material(wanted), opacity)};
@@ -100,11 +103,11 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     if (const auto ellipsoid = solids::fit_clear_ellipsoid(wanted, bound))
         add_solid("clear ellipsoid", Kind::Ellipsoid, ellipsoid->primitive, ellipsoid->opacity);
     const auto add_composites = [&](const std::string& name,
-                                    const std::vector<solids::Clustered>& levels) {
-        for (const solids::Clustered& level : levels) {
+                                    const std::vector<solids::ClusteredComposite>& levels) {
+        for (const solids::ClusteredComposite& level : levels) {
             if (level.composite.solids.size() > most_solids)
                 break;
-            hierarchy::Candidate candidate;
+            hierarchy::StandInCandidate candidate;
             candidate.kind = Kind::Composite;
             candidate.composite = std::make_shared<const Composite>(level.composite);
             for (size_t i = 0; i < level.attributes.size(); ++i)
@@ -118,7 +121,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     if (!solids::boxlike(wanted))
         add_composites("clear composite",
                        solids::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
-    hierarchy::Candidate collapsed;
+    hierarchy::StandInCandidate collapsed;
     collapsed.mesh = std::make_shared<const Mesh>(
         simplify::simplify_mesh(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
     collapsed.materials = materials;

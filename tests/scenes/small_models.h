@@ -9,7 +9,7 @@
 namespace lodestone::models {
 
 inline ObjectIndex add_leaf(Model& model, const std::string& uid, Mesh mesh, Material material = {},
-                            Role role = Role::Automatic) {
+                            ObjectRole role = ObjectRole::Automatic) {
     Object object;
     object.uid = object.name = uid;
     object.role = role;

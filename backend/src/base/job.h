@@ -10,7 +10,7 @@
 namespace lodestone {
 
 /// What a long call is doing now; the C interface's lds_stage has the same numbers.
-enum class Stage : int32_t {
+enum class JobStage : int32_t {
     Extract = 1,   // reading the scene from its program
     Measure = 2,   // attributes and errors
     Simplify = 3,  // making representations
@@ -46,7 +46,7 @@ public:
     }
 
     /// Names what is being done now.
-    void stage(Stage now) const {
+    void stage(JobStage now) const {
         if (stage_ != nullptr)
             *stage_ = static_cast<int32_t>(now);
     }

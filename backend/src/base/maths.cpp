@@ -57,7 +57,7 @@ double stretch(const Affine& transform) {
     return std::sqrt(std::max(0.0, eigen_symmetric(square).values.x));
 }
 
-Eigen eigen_symmetric(const glm::dmat3& matrix) {
+SymmetricEigen eigen_symmetric(const glm::dmat3& matrix) {
     // Cyclic Jacobi rotations: unconditionally stable and exact enough for 3x3 in a few sweeps.
     glm::dmat3 a = matrix;
     glm::dmat3 axes(1.0);
@@ -84,7 +84,7 @@ Eigen eigen_symmetric(const glm::dmat3& matrix) {
     }
     std::array<int, 3> order{0, 1, 2};
     std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return a[i][i] > a[j][j]; });
-    Eigen out;
+    SymmetricEigen out;
     for (int i = 0; i < 3; ++i) {
         out.values[i] = a[order[i]][order[i]];
         out.axes[i] = axes[order[i]];

@@ -63,11 +63,11 @@ struct Affine {
 double stretch(const Affine& transform);
 
 /// Eigenvalues (descending) and orthonormal, right-handed axes (columns) of a symmetric matrix.
-struct Eigen {
+struct SymmetricEigen {
     glm::dvec3 values{0.0};
     glm::dmat3 axes{1.0};
 };
-Eigen eigen_symmetric(const glm::dmat3& matrix);
+SymmetricEigen eigen_symmetric(const glm::dmat3& matrix);
 
 struct Box3 {
     glm::dvec3 low{kInfinity};

@@ -6,9 +6,9 @@
 
 namespace lodestone {
 
-class Random {
+class PcgRandom {
 public:
-    explicit Random(uint64_t seed, uint64_t stream = 0) : step_((stream << 1u) | 1u) {
+    explicit PcgRandom(uint64_t seed, uint64_t stream = 0) : step_((stream << 1u) | 1u) {
         next();
         state_ += seed;
         next();

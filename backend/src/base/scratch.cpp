@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kPage = size_t{2} << 20u;
 constexpr size_t kAlignment = 64;
 
-thread_local Scratch* latest = nullptr;
+thread_local ScratchArena* latest = nullptr;
 
 size_t rounded_up(size_t bytes, size_t unit) {
     return (bytes + unit - 1) / unit * unit;
@@ -18,21 +18,21 @@ size_t rounded_up(size_t bytes, size_t unit) {
 
 }  // namespace
 
-Scratch::Scratch(size_t expected) : before_(latest), expected_(expected) {
+ScratchArena::ScratchArena(size_t expected) : before_(latest), expected_(expected) {
     latest = this;
 }
 
-Scratch::~Scratch() {
-    for (const Block& block : blocks_)
+ScratchArena::~ScratchArena() {
+    for (const MemoryBlock& block : blocks_)
         ::operator delete (block.start, std::align_val_t{block.alignment});
     latest = before_;
 }
 
-Scratch* Scratch::current() {
+ScratchArena* ScratchArena::current() {
     return latest;
 }
 
-void* Scratch::take(size_t bytes) {
+void* ScratchArena::take(size_t bytes) {
     if (bytes > ~size_t{0} / 2)
         throw std::bad_alloc();
     bytes = rounded_up(bytes, kAlignment);
@@ -56,7 +56,7 @@ void* Scratch::take(size_t bytes) {
     return start;
 }
 
-void Scratch::give_back(void* start, size_t bytes) {
+void ScratchArena::give_back(void* start, size_t bytes) {
     auto* first = static_cast<std::byte*>(start);
     bytes = rounded_up(bytes, kAlignment);
     if (bytes == 0)
@@ -66,7 +66,7 @@ void Scratch::give_back(void* start, size_t bytes) {
         return;
     }
     constexpr size_t kMostHoles = 64;
-    for (Hole& hole : holes_) {  // what lies beside one becomes part of it
+    for (FreeBlock& hole : holes_) {  // what lies beside one becomes part of it
         if (hole.start + hole.size == first || first + bytes == hole.start) {
             hole.start = std::min(hole.start, first);
             hole.size += bytes;
@@ -77,7 +77,7 @@ void Scratch::give_back(void* start, size_t bytes) {
         holes_.push_back({first, bytes});
 }
 
-void Scratch::grow(size_t bytes) {
+void ScratchArena::grow(size_t bytes) {
     // What is never touched costs no memory, so a block may be generous.
     size_t size = std::max(bytes, blocks_.empty() ? expected_ : expected_ / 2);
     const bool large = size >= kPage / 4;

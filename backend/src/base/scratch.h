@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scratch: memory for one calculation, in large pages, given back all at once.
+// ScratchArena: memory for one calculation, in large pages, given back all at once.
 #pragma once
 
 #include <cstddef>
@@ -13,34 +13,34 @@ namespace lodestone {
 /// As long as it lives, scratch vectors that this thread makes take their memory from it, one after
 /// the other, and a page fault for 2 MB instead of one for 4 KB. What they give back others get
 /// before what was never touched. They must not outlive it.
-class Scratch {
+class ScratchArena {
 public:
     /// `expected` bytes in all; it grows beyond that.
-    explicit Scratch(size_t expected);
-    ~Scratch();
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
+    explicit ScratchArena(size_t expected);
+    ~ScratchArena();
+    ScratchArena(const ScratchArena&) = delete;
+    ScratchArena& operator=(const ScratchArena&) = delete;
 
     void* take(size_t bytes);
     void give_back(void* start, size_t bytes);
     /// This thread's latest; null when there is none.
-    static Scratch* current();
+    static ScratchArena* current();
 
 private:
-    struct Block {
+    struct MemoryBlock {
         std::byte* start;
         size_t size;
         size_t alignment;
     };
-    struct Hole {
+    struct FreeBlock {
         std::byte* start;
         size_t size;
     };
     void grow(size_t bytes);
 
-    Scratch* before_;
-    std::vector<Block> blocks_;
-    std::vector<Hole> holes_;  // given back; few
+    ScratchArena* before_;
+    std::vector<MemoryBlock> blocks_;
+    std::vector<FreeBlock> holes_;  // given back; few
     std::byte* next_ = nullptr;
     std::byte* end_ = nullptr;
     size_t expected_;
@@ -52,7 +52,7 @@ template <typename T>
 class ScratchAllocator {
 public:
     using value_type = T;
-    ScratchAllocator() : scratch_(Scratch::current()) {}
+    ScratchAllocator() : scratch_(ScratchArena::current()) {}
     template <typename U>
     ScratchAllocator(const ScratchAllocator<U>& other) : scratch_(other.scratch()) {}
 
@@ -78,11 +78,11 @@ public:
             ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
     }
 
-    Scratch* scratch() const { return scratch_; }
+    ScratchArena* scratch() const { return scratch_; }
     bool operator==(const ScratchAllocator& other) const { return scratch_ == other.scratch_; }
 
 private:
-    Scratch* scratch_;
+    ScratchArena* scratch_;
 };
 
 template <typename T>

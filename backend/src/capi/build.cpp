@@ -16,8 +16,8 @@ namespace {
 constexpr size_t kFirstOptions = offsetof(lds_build_options, poses);
 constexpr size_t kFirstReport = offsetof(lds_build_report, left);
 
-hierarchy::Settings settings_of(const lds_model& model, const lds_build_options& options) {
-    hierarchy::Settings settings;
+hierarchy::BuildSettings settings_of(const lds_model& model, const lds_build_options& options) {
+    hierarchy::BuildSettings settings;
     settings.level_ratio = options.level_ratio;
     settings.rays = options.rays;
     settings.samples = options.samples;
@@ -42,12 +42,12 @@ hierarchy::Settings settings_of(const lds_model& model, const lds_build_options&
     if (options.view != nullptr) {
         if (!(options.share >= 0) || !std::isfinite(options.share))
             fail(Status::InvalidArgument, "share is ", options.share, "; it must be 0 or more");
-        settings.demand = hierarchy::Demand{view_of(options.view, &model), options.share};
+        settings.demand = hierarchy::BuildDemand{view_of(options.view, &model), options.share};
     }
     return settings;
 }
 
-lds_build_report report_of(const hierarchy::Report& report) {
+lds_build_report report_of(const hierarchy::BuildReport& report) {
     lds_build_report out{};
     out.objects = report.objects;
     out.built = report.built;
@@ -63,7 +63,7 @@ lds_build_report report_of(const hierarchy::Report& report) {
 }  // namespace
 
 lds_build_options lds_build_options_default(void) {
-    const hierarchy::Settings settings;
+    const hierarchy::BuildSettings settings;
     lds_build_options options{};
     options.struct_size = sizeof options;
     options.level_ratio = settings.level_ratio;
@@ -71,7 +71,7 @@ lds_build_options lds_build_options_default(void) {
     options.samples = settings.samples;
     options.group_triangles = settings.group_triangles;
     options.seed = settings.seed;
-    options.share = hierarchy::Demand().share;
+    options.share = hierarchy::BuildDemand().share;
     return options;
 }
 
@@ -84,8 +84,8 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
         const lds_build_options given = grown(options, kFirstOptions, "options");
         const ThreadLimit limit(given.threads);
         hand_out_grown(out_report,
-                       report_of(hierarchy::estimate(model->model, segment::Store(store),
-                                                     settings_of(*model, given))),
+                       report_of(hierarchy::estimate_build(model->model, segment::Store(store),
+                                                           settings_of(*model, given))),
                        kFirstReport, "out_report");
     });
 }
@@ -97,14 +97,14 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         require(store, "store");
         require_size(out_report, kFirstReport, "out_report");
         const lds_build_options given = grown(options, kFirstOptions, "options");
-        const hierarchy::Settings settings = settings_of(*model, given);
+        const hierarchy::BuildSettings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();
         const segment::Store target(store);
         model->table.reset();
         const size_t before = model->model.objects.size();
-        const hierarchy::Report report = hierarchy::build_hierarchy(model->model, target, settings,
-                                                                    model->problems, job_of(job));
+        const hierarchy::BuildReport report = hierarchy::build_hierarchy(
+            model->model, target, settings, model->problems, job_of(job));
         model->store.emplace(target);
         model->summarized = true;
         model->structured += model->model.objects.size() == before ? 0 : 1;

@@ -18,7 +18,8 @@ void require_current(const lds_model& model, const lds_cut& cut) {
         fail(Status::StaleId, "the cut was made before the model's groups changed");
 }
 
-std::vector<Representation>& levels_with(lds_model& model, const choose::Node& node, uint32_t lod) {
+std::vector<Representation>& levels_with(lds_model& model, const choose::CutNode& node,
+                                         uint32_t lod) {
     std::vector<Object>& objects = model.model.objects;
     if (node.object >= objects.size() || lod >= objects[node.object].representations.size())
         fail(Status::StaleId, "the cut was made before the model's levels changed");
@@ -38,7 +39,7 @@ void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uin
     for (size_t i = 0; i < levels.size(); ++i) {
         if (levels[i] == choose::kBoxOnly)
             continue;
-        const choose::Node& node = cut.nodes.at(cut.chosen.at(i));
+        const choose::CutNode& node = cut.nodes.at(cut.chosen.at(i));
         Representation& chosen = levels_with(model, node, levels[i])[levels[i]];
         if (!chosen.resident())
             wanted[chosen.summary.hash].push_back(&chosen);

@@ -14,7 +14,8 @@ void require_made_from(const lds_model& model, const lds_cut& cut);
 void require_current(const lds_model& model, const lds_cut& cut);
 
 /// The levels of a node's object; throws Error(StaleId) where it has no number `lod` any more.
-std::vector<Representation>& levels_with(lds_model& model, const choose::Node& node, uint32_t lod);
+std::vector<Representation>& levels_with(lds_model& model, const choose::CutNode& node,
+                                         uint32_t lod);
 
 /// Index of the node that a choice is; throws unless the cut is current and has it.
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);

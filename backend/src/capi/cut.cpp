@@ -29,7 +29,7 @@ void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
         made.largest_error_name =
             choose::path_of(*made.table, made.cut, made.cut.largest_error_node);
     made.rays = choose_rays(model, made.view, made.cut, job);
-    made.resident = choose::resident(model.model, made.cut, made.rays);
+    made.resident = choose::resident_size(model.model, made.cut, made.rays);
 }
 
 }  // namespace
@@ -39,12 +39,12 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         require(model, "model");
         require(out_cut, "out_cut");
         const Job progress = job_of(job);
-        progress.stage(Stage::Choose);
+        progress.stage(JobStage::Choose);
         View given = view_of(view, model);
         auto made = std::make_unique<lds_cut>();
         made->generation = model->generation;
         made->table = model->table_for(given.kinds);
-        made->cut = choose::choose(*made->table, given, progress);
+        made->cut = choose::choose_cut(*made->table, given, progress);
         finish(*model, *made, std::move(given), progress);
         *out_cut = made.release();
     });
@@ -56,11 +56,11 @@ lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* view, ld
         require(cut, "cut");
         require_made_from(*model, *cut);
         const Job progress = job_of(job);
-        progress.stage(Stage::Choose);
+        progress.stage(JobStage::Choose);
         View given = view_of(view, model);
         auto table = model->table_for(given.kinds);
         if (cut->stepper == nullptr || cut->stepper->table() != table)
-            cut->stepper = std::make_unique<choose::Stepper>(table);
+            cut->stepper = std::make_unique<choose::CutStepper>(table);
         cut->stepper->step(given, cut->cut, progress);
         cut->table = std::move(table);
         finish(*model, *cut, std::move(given), progress);
@@ -75,13 +75,13 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         checked(out_report, "out_report");
         const lds_budget& given = checked(budget, "budget");
         const Job progress = job_of(job);
-        progress.stage(Stage::Choose);
+        progress.stage(JobStage::Choose);
         View made_for = view_of(view, model);
         auto made = std::make_unique<lds_cut>();
         made->generation = model->generation;
         made->table = model->table_for(made_for.kinds);
-        choose::Budgeted found =
-            choose::choose_within(*made->table, made_for, {given.triangles, given.bytes}, progress);
+        choose::BudgetedCut found = choose::fit_cut_to_budget(
+            *made->table, made_for, {given.triangles, given.bytes}, progress);
         lds_budget_report report{};
         report.fits = found.fits ? 1 : 0;
         report.pixel_error = found.pixel_error;
@@ -142,7 +142,7 @@ lds_status lds_cut_choice_copy(const lds_cut* cut, lds_choice* out_choices, size
             require(out_choices, "out_choices");
         const size_t count = std::min(capacity, cut->cut.chosen.size());
         for (size_t i = 0; i < count; ++i) {
-            const choose::Node& node = cut->cut.nodes[cut->cut.chosen[i]];
+            const choose::CutNode& node = cut->cut.nodes[cut->cut.chosen[i]];
             lds_choice& out = out_choices[i];
             out.object = {node.object, cut->generation};
             out.lod = node.lod;
@@ -189,8 +189,9 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
         const uint32_t node = node_at(*model, *cut, position);
         levels_with(*model, cut->cut.nodes[node], cut->cut.nodes[node].lod);
         model->summarize();
-        const choose::Reason reason = choose::why(model->model, cut->view, cut->cut, node);
-        const choose::Factors& factors = reason.factors;
+        const choose::ChoiceReason reason =
+            choose::explain_choice(model->model, cut->view, cut->cut, node);
+        const choose::DetailFactors& factors = reason.factors;
         lds_reason out{};
         out.lod = reason.chosen.lod;
         out.z = reason.z;

@@ -23,7 +23,7 @@ lds_status lds_cut_find_choice(lds_model* model, const lds_cut* cut, lds_object 
             fail(Status::InvalidArgument, "world is not finite");
         const choose::FoundChoice found = choose::find_choice(model->model, cut->cut, index, place);
         *out_drawn = static_cast<int32_t>(found.drawn);
-        if (found.drawn != choose::Drawn::Itself && found.drawn != choose::Drawn::InGroup)
+        if (found.drawn != choose::DrawnState::Itself && found.drawn != choose::DrawnState::InGroup)
             return;
         const auto at =
             std::lower_bound(cut->cut.chosen.begin(), cut->cut.chosen.end(), found.node);

@@ -27,14 +27,14 @@ void lds_model::summarize() {
     table.reset();
 }
 
-std::shared_ptr<const choose::Table> lds_model::table_for(KindMask kinds) {
+std::shared_ptr<const choose::ChoiceTable> lds_model::table_for(KindMask kinds) {
     summarize();
     if (model.root >= model.objects.size())
         fail(Status::InvalidArgument, "the model has no root object");
     if (!table || table->kinds() != kinds) {
         table.reset();
-        table =
-            std::make_shared<const choose::Table>(choose::Table::whole(model, model.root, kinds));
+        table = std::make_shared<const choose::ChoiceTable>(
+            choose::ChoiceTable::whole(model, model.root, kinds));
     }
     return table;
 }

@@ -30,9 +30,9 @@ struct lds_model {
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
     uint64_t structured = 0;  // how often what groups place was put into other groups
     /// For choosing; reset when the model changes. Cuts keep it.
-    std::shared_ptr<const lodestone::choose::Table> table;
+    std::shared_ptr<const lodestone::choose::ChoiceTable> table;
     /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
-    std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::choose::Shape> shapes;
+    std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::choose::RayShape> shapes;
 
     /// Index of an id; throws Error(StaleId) for another model's.
     lodestone::ObjectIndex index_of(lds_object object) const;
@@ -41,7 +41,7 @@ struct lds_model {
     /// Brings assemblies' summaries up to date.
     void summarize();
     /// What choosing reads, up to date.
-    std::shared_ptr<const lodestone::choose::Table> table_for(lodestone::KindMask kinds);
+    std::shared_ptr<const lodestone::choose::ChoiceTable> table_for(lodestone::KindMask kinds);
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
     /// Makes every finest mesh and every picture resident (a model read from a store).
@@ -53,17 +53,17 @@ struct lds_model {
 struct lds_cut {
     lodestone::choose::Cut cut;
     std::vector<lodestone::choose::RayCut> rays;  // of the classes asked for
-    lodestone::choose::Resident resident;         // for the camera and these
+    lodestone::choose::ResidentSize resident;     // for the camera and these
     lodestone::View view;                         // that it was made for, with the threshold found
     uint32_t generation = 0;                      // of the model it was made from
     uint64_t structured = 0;                      // the model's then
-    std::shared_ptr<const lodestone::choose::Table> table;  // that it was chosen from
-    std::unique_ptr<lodestone::choose::Stepper> stepper;    // of the table; null: not stepped yet
-    std::vector<std::string> paths;                         // by choice; those asked for
+    std::shared_ptr<const lodestone::choose::ChoiceTable> table;  // that it was chosen from
+    std::unique_ptr<lodestone::choose::CutStepper> stepper;  // of the table; null: not stepped yet
+    std::vector<std::string> paths;                          // by choice; those asked for
     std::string largest_error_name;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
-    lodestone::view::Surface surface;
-    std::vector<lodestone::view::Batch> batches;
+    lodestone::view::ViewerSurface surface;
+    std::vector<lodestone::view::ViewerBatch> batches;
     std::vector<glm::dvec3> batch_colors;  // that they were made with
 };
 
@@ -76,10 +76,10 @@ std::string name_of(const char* text);
 View view_of(const lds_view* view, const lds_model* model);
 Camera camera_of(const lds_camera* camera);
 /// What bends quality in a picture of this size.
-Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
-                       int height);
+QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
+                              int height);
 /// Views into the caller's memory; throws for lengths and indices that do not fit.
-Faces faces_of(const lds_faces_view* view);
+PolygonMesh faces_of(const lds_faces_view* view);
 lds_model* new_model();
 /// Checked, with what an older caller's lacks.
 lds_object_info object_info(const lds_object_info* info);

@@ -28,7 +28,7 @@ image::Image linearized(image::Image picture) {
     return picture;
 }
 
-lds_difference difference_of(const image::Difference& difference) {
+lds_difference difference_of(const image::ImageDifference& difference) {
     lds_difference out{};
     out.mean = difference.mean;
     out.p999 = difference.p999;
@@ -78,8 +78,8 @@ lds_status lds_image_read_part(const char* path, const int32_t part[4], int32_t 
         require(path, "path");
         require(part, "part");
         require(out_pixels, "out_pixels");
-        const image::Part wanted{part[0], part[1], part[2], part[3]};
-        copy_rows(image::read_part(path, wanted), bottom_up != 0, out_pixels, capacity);
+        const image::ImageRegion wanted{part[0], part[1], part[2], part[3]};
+        copy_rows(image::read_region(path, wanted), bottom_up != 0, out_pixels, capacity);
     });
 }
 
@@ -111,7 +111,7 @@ lds_status lds_image_add_text(const char* path, const char* const* keywords,
             require(keywords[i], "a keyword");
             lines.emplace_back(keywords[i], texts[i] == nullptr ? "" : texts[i]);
         }
-        write_file(path, image::with_text(read_file(path), lines, path));
+        write_file(path, image::with_png_text(read_file(path), lines, path));
     });
 }
 
@@ -126,7 +126,8 @@ lds_status lds_image_compare(const char* path_a, const char* path_b, const char*
         std::optional<image::Image> covered;
         if (mask != nullptr)
             covered = image::read(mask);
-        const image::Difference difference = image::compare(a, b, covered ? &*covered : nullptr);
+        const image::ImageDifference difference =
+            image::compare(a, b, covered ? &*covered : nullptr);
         hand_out(out_difference, difference_of(difference), "out_difference");
     });
 }
@@ -162,7 +163,7 @@ lds_status lds_image_compare_shown(const char* path_a, const char* path_b, const
         std::vector<double> sums_b(count_b, 0.0);
         image::add_differences(a, b, first, sums_a);
         image::add_differences(a, b, second, sums_b);
-        const image::Difference difference = image::compare(a, b, &covered);
+        const image::ImageDifference difference = image::compare(a, b, &covered);
         if (out_picture != nullptr)
             copy_rows(image::difference_picture(a, b), bottom_up != 0, out_picture, capacity);
         std::copy(sums_a.begin(), sums_a.end(), out_a);

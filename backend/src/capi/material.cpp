@@ -54,9 +54,10 @@ Texture texture_of(const lds_model& model, const lds_texture& given, const std::
     if (given.extension < LDS_EXTENSION_REPEAT || given.extension > LDS_EXTENSION_MIRROR)
         fail(Status::InvalidArgument, "a texture of ", owner, " has extension ", given.extension);
     texture.picture = model.pictures[given.picture - 1];
-    texture.channel = static_cast<Channel>(given.channel);
-    texture.extension = static_cast<Extension>(given.extension);
-    texture.interpolation = given.closest != 0 ? Interpolation::Closest : Interpolation::Linear;
+    texture.channel = static_cast<TextureChannel>(given.channel);
+    texture.extension = static_cast<TextureExtension>(given.extension);
+    texture.interpolation =
+        given.closest != 0 ? TextureInterpolation::Closest : TextureInterpolation::Linear;
     for (size_t i = 0; i < 6; ++i) {
         if (!std::isfinite(given.to_picture[i]))
             fail(Status::InvalidArgument, "a texture of ", owner, " has a mapping not finite");
@@ -67,9 +68,9 @@ Texture texture_of(const lds_model& model, const lds_texture& given, const std::
     return texture;
 }
 
-class Reader {
+class MaterialInput {
 public:
-    Reader(const lds_model& model, const lds_material& given)
+    MaterialInput(const lds_model& model, const lds_material& given)
         : model_(model), given_(given), owner_("material '" + name_of(given.name) + "'") {}
 
     Material material() const {
@@ -251,7 +252,8 @@ lds_status lds_model_add_material(lds_model* model, const lds_material* material
     return guard([&] {
         require(model, "model");
         require(out_index, "out_index");
-        model->model.materials.push_back(Reader(*model, checked(material, "material")).material());
+        model->model.materials.push_back(
+            MaterialInput(*model, checked(material, "material")).material());
         *out_index = static_cast<uint32_t>(model->model.materials.size() - 1);
     });
 }

@@ -40,7 +40,7 @@ lds_status lds_surface_inertia(const float* positions, size_t vertex_count,
         for (size_t i = 0; i < triangle_count; ++i)
             mesh.triangles[i] = {triangles[3 * i], triangles[3 * i + 1], triangles[3 * i + 2]};
         check(mesh);
-        const measure::SurfaceInertia inertia = measure::of_mesh(mesh);
+        const measure::SurfaceInertia inertia = measure::inertia_of_mesh(mesh);
         if (!(inertia.area > 0))
             fail(Status::InvalidArgument, "the surface has no area");
         *out_area = inertia.area;
@@ -74,10 +74,11 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
             return model->store.value().load_mesh(representation.summary.hash);
         };
         const Job progress = job_of(job);
-        progress.stage(Stage::Measure);
+        progress.stage(JobStage::Measure);
         const std::vector<uint64_t> uses(model->model.objects.size(), 1);
         hierarchy::OpenedGroup opened(model->model, model->index_of(object), uses);
-        const hierarchy::Flat flat = hierarchy::flatten(opened, 0, source, progress);
+        const hierarchy::FlattenedGroup flat =
+            hierarchy::flatten_group(opened, 0, source, progress);
         measure::VisibleOptions wanted;
         wanted.rays = given.rays;
         wanted.relative_error = given.relative_error;
@@ -116,7 +117,7 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
         const ThreadLimit limit(given.threads);
         model->load_finest();
         model->summarize();  // its bound
-        hierarchy::Reduction wanted;
+        hierarchy::ReductionOptions wanted;
         wanted.ratio = given.ratio;
         wanted.triangles = given.triangles;
         wanted.error = given.error;
@@ -127,7 +128,7 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
         wanted.mode = static_cast<hierarchy::ReductionMode>(given.mode);
         wanted.keep_topology = given.keep_topology != 0;
         const hierarchy::ReductionReport done =
-            hierarchy::reduce(model->model, wanted, job_of(job));
+            hierarchy::reduce_model(model->model, wanted, job_of(job));
         model->summarized = false;
         lds_simplify_report out{};
         out.triangles_before = done.triangles_before;

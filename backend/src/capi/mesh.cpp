@@ -20,9 +20,9 @@ glm::dvec3 point_at(const float* points, uint32_t index) {
 }
 
 /// Writes the coordinates of one slot's corners.
-class Projector {
+class UvProjector {
 public:
-    Projector(const lds_uv_projection* projection, const float* positions, float* out_corner_uvs)
+    UvProjector(const lds_uv_projection* projection, const float* positions, float* out_corner_uvs)
         : given_(checked(projection, "projection")), positions_(positions), out_(out_corner_uvs) {
         require(out_corner_uvs, "out_corner_uvs");
         if (given_.projection < LDS_PROJECTION_FLAT || given_.projection > LDS_PROJECTION_TUBE)
@@ -40,8 +40,8 @@ public:
         const glm::dvec3 a = point_at(positions_, vertices[0]);
         const glm::dvec3 normal = glm::cross(point_at(positions_, vertices[1]) - a,
                                              point_at(positions_, vertices[2]) - a);
-        const std::array<glm::dvec2, 3> uvs = project(
-            static_cast<Projection>(given_.projection),
+        const std::array<glm::dvec2, 3> uvs = project_uvs(
+            static_cast<UvProjection>(given_.projection),
             {to_space_(point_at(points_, vertices[0])), to_space_(point_at(points_, vertices[1])),
              to_space_(point_at(points_, vertices[2]))},
             normal);
@@ -68,7 +68,7 @@ std::span<const T> span_of(const T* values, size_t count) {
 
 }  // namespace
 
-Faces lodestone::capi::faces_of(const lds_faces_view* view) {
+PolygonMesh lodestone::capi::faces_of(const lds_faces_view* view) {
     const lds_faces_view& given = checked(view, "faces");
     if (given.vertex_count > 0)
         require(given.positions, "faces.positions");
@@ -77,7 +77,7 @@ Faces lodestone::capi::faces_of(const lds_faces_view* view) {
     if (given.face_starts == nullptr && given.face_count != given.corner_count / 3)
         fail(Status::InvalidArgument, given.face_count, " faces of ", given.corner_count,
              " corners are not triangles");
-    Faces out;
+    PolygonMesh out;
     out.positions = given.positions;
     out.vertex_count = given.vertex_count;
     out.vertices = span_of(given.corner_vertices, given.corner_count);
@@ -96,8 +96,8 @@ Faces lodestone::capi::faces_of(const lds_faces_view* view) {
 lds_status lds_faces_project_uvs(const lds_faces_view* faces, const lds_uv_projection* projection,
                                  float* out_corner_uvs) {
     return guard([&] {
-        const Faces given = faces_of(faces);
-        const Projector projector(projection, given.positions, out_corner_uvs);
+        const PolygonMesh given = faces_of(faces);
+        const UvProjector projector(projection, given.positions, out_corner_uvs);
         const FaceTriangles triangles = triangulated(given);
         for (size_t t = 0; t < triangles.corners.size(); ++t) {
             const Triangle& at = triangles.corners[t];

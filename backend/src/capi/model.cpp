@@ -111,7 +111,7 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
 
 /// One object with one mesh. Content-equal meshes share their memory; a build works once for all.
 lds_object add_mesh_object(lds_model& model, const lds_object_info* info, Mesh&& mesh,
-                           std::shared_ptr<const Pose> pose, const uint32_t* materials,
+                           std::shared_ptr<const PosedSurface> pose, const uint32_t* materials,
                            size_t material_count) {
     Representation finest;
     finest.summary.kind = Kind::Mesh;
@@ -205,7 +205,7 @@ ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info*
         fail(Status::InvalidArgument, "role ", given.role, " of object '", object.name,
              "' is unknown");
     object.deforms = given.deforms != 0;
-    object.role = static_cast<Role>(given.role);
+    object.role = static_cast<ObjectRole>(given.role);
     object.representations.push_back(std::move(finest));
     const auto index = static_cast<ObjectIndex>(model.model.objects.size());
     model.by_uid.emplace(object.uid, index);
@@ -260,7 +260,8 @@ lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
     return add_leaf(model, info, materials, material_count, out_object, [&] {
         const lds_mesh_view& view = checked(mesh, "mesh");
         Mesh made = mesh_of(view, material_count);
-        std::shared_ptr<const Pose> pose = pose_of(view, object_info(info), made, material_count);
+        std::shared_ptr<const PosedSurface> pose =
+            pose_of(view, object_info(info), made, material_count);
         return std::pair(std::move(made), std::move(pose));
     });
 }
@@ -269,9 +270,10 @@ lds_status lds_model_add_faces(lds_model* model, const lds_object_info* info,
                                const lds_faces_view* faces, const uint32_t* materials,
                                size_t material_count, lds_object* out_object) {
     return add_leaf(model, info, materials, material_count, out_object, [&] {
-        const Faces given = faces_of(faces);
+        const PolygonMesh given = faces_of(faces);
         Mesh made = mesh_of(given, material_count);
-        std::shared_ptr<const Pose> pose = pose_of(given, object_info(info), made, material_count);
+        std::shared_ptr<const PosedSurface> pose =
+            pose_of(given, object_info(info), made, material_count);
         return std::pair(std::move(made), std::move(pose));
     });
 }
@@ -281,7 +283,7 @@ lds_status lds_model_add_strands(lds_model* model, const lds_object_info* info,
                                  size_t material_count, lds_object* out_object) {
     return add_leaf(model, info, materials, material_count, out_object, [&] {
         Mesh made = mesh_of(checked(strands, "strands"), material_count);
-        std::shared_ptr<const Pose> pose = pose_of(made, object_info(info), material_count);
+        std::shared_ptr<const PosedSurface> pose = pose_of(made, object_info(info), material_count);
         return std::pair(std::move(made), std::move(pose));
     });
 }

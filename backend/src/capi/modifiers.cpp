@@ -53,14 +53,14 @@ ScreenLens screen_lens_of(const lds_screen_lens& given, int width, int height) {
 
 }  // namespace
 
-Modifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
-                       int height) {
+QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
+                              int height) {
     const lds_modifiers given = grown(modifiers, kFirstModifiers, "modifiers");
-    Modifiers out;
+    QualityModifiers out;
     if (given.criterion < LDS_CRITERION_RESOLUTION || given.criterion > LDS_CRITERION_DISTANCE)
         fail(Status::InvalidArgument, "modifiers.criterion is ", given.criterion,
              "; 0 to 3 expected");
-    out.criterion = static_cast<Criterion>(given.criterion);
+    out.criterion = static_cast<DetailCriterion>(given.criterion);
     if (given.lens_count > choose::kMostLenses || given.screen_lens_count > choose::kMostLenses)
         fail(Status::InvalidArgument, std::max(given.lens_count, given.screen_lens_count),
              " lenses; at most ", choose::kMostLenses);
@@ -94,7 +94,7 @@ using namespace lodestone;
 using namespace lodestone::capi;
 
 lds_modifiers lds_modifiers_default(void) {
-    const Modifiers defaults;
+    const QualityModifiers defaults;
     lds_modifiers modifiers{};
     modifiers.struct_size = sizeof modifiers;
     modifiers.depth = defaults.depth;

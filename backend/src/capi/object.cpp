@@ -12,7 +12,7 @@ lds_status lds_model_totals(lds_model* model, lds_totals* out_totals) {
     return guard([&] {
         require(model, "model");
         model->summarize();
-        const Totals sums = totals(model->model);
+        const ModelTotals sums = totals(model->model);
         lds_totals out{};
         for (const ObjectIndex index : bottom_up(model->model))
             out.representations += model->model.objects[index].representations.size();
@@ -81,7 +81,7 @@ lds_status lds_model_representation(lds_model* model, lds_object object, uint32_
         if (lod >= from.representations.size())
             fail(Status::InvalidArgument, "LOD ", lod, " of '", from.name, "', which has ",
                  from.representations.size());
-        const Summary& summary = from.representations[lod].summary;
+        const RepresentationSummary& summary = from.representations[lod].summary;
         lds_representation out{};
         out.kind = static_cast<int32_t>(summary.kind);
         out.error = summary.error;

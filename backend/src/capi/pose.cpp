@@ -23,11 +23,11 @@ void hash_floats(Hasher& hasher, const float* values, size_t width, size_t count
 
 }  // namespace
 
-std::shared_ptr<const Pose> pose_of(const lds_mesh_view& view, const lds_object_info& info,
-                                    const Mesh& mesh, size_t material_count) {
+std::shared_ptr<const PosedSurface> pose_of(const lds_mesh_view& view, const lds_object_info& info,
+                                            const Mesh& mesh, size_t material_count) {
     if (info.deforms == 0)
         return nullptr;
-    auto pose = std::make_shared<Pose>();
+    auto pose = std::make_shared<PosedSurface>();
     pose->points = points_of(view.positions, view.vertex_count);
     pose->triangles.reserve(view.triangle_count);
     for (size_t t = 0; t < view.triangle_count; ++t)
@@ -49,11 +49,11 @@ std::shared_ptr<const Pose> pose_of(const lds_mesh_view& view, const lds_object_
     return pose;
 }
 
-std::shared_ptr<const Pose> pose_of(const Faces& faces, const lds_object_info& info,
-                                    const Mesh& mesh, size_t material_count) {
+std::shared_ptr<const PosedSurface> pose_of(const PolygonMesh& faces, const lds_object_info& info,
+                                            const Mesh& mesh, size_t material_count) {
     if (info.deforms == 0)
         return nullptr;
-    auto pose = std::make_shared<Pose>();
+    auto pose = std::make_shared<PosedSurface>();
     pose->points = points_of(faces.positions, faces.vertex_count);
     pose->triangles = triangulated(faces).corners;
     for (Triangle& triangle : pose->triangles)
@@ -71,11 +71,11 @@ std::shared_ptr<const Pose> pose_of(const Faces& faces, const lds_object_info& i
     return pose;
 }
 
-std::shared_ptr<const Pose> pose_of(const Mesh& tubes, const lds_object_info& info,
-                                    size_t material_count) {
+std::shared_ptr<const PosedSurface> pose_of(const Mesh& tubes, const lds_object_info& info,
+                                            size_t material_count) {
     if (info.deforms == 0)
         return nullptr;
-    auto pose = std::make_shared<Pose>();
+    auto pose = std::make_shared<PosedSurface>();
     pose->points = tubes.positions;
     pose->triangles = tubes.triangles;
     pose->connectivity = Hasher()

@@ -12,12 +12,12 @@
 namespace lodestone::capi {
 
 /// Null for an object that does not deform. `mesh` is what was made of the views, before repair.
-std::shared_ptr<const Pose> pose_of(const lds_mesh_view& view, const lds_object_info& info,
-                                    const Mesh& mesh, size_t material_count);
-std::shared_ptr<const Pose> pose_of(const Faces& faces, const lds_object_info& info,
-                                    const Mesh& mesh, size_t material_count);
+std::shared_ptr<const PosedSurface> pose_of(const lds_mesh_view& view, const lds_object_info& info,
+                                            const Mesh& mesh, size_t material_count);
+std::shared_ptr<const PosedSurface> pose_of(const PolygonMesh& faces, const lds_object_info& info,
+                                            const Mesh& mesh, size_t material_count);
 /// Of strands, by their tubes.
-std::shared_ptr<const Pose> pose_of(const Mesh& tubes, const lds_object_info& info,
-                                    size_t material_count);
+std::shared_ptr<const PosedSurface> pose_of(const Mesh& tubes, const lds_object_info& info,
+                                            size_t material_count);
 
 }  // namespace lodestone::capi

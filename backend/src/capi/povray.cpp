@@ -80,7 +80,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require_current(*model, *cut);
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
-        progress.stage(Stage::Export);
+        progress.stage(JobStage::Export);
         std::vector<uint32_t> levels;
         for (const uint32_t index : cut->cut.chosen)
             levels.push_back(cut->cut.nodes[index].lod);
@@ -130,8 +130,8 @@ lds_status lds_povray_run(const char* folder, const char* picture,
         const std::string ending = std::filesystem::path(picture).extension().string();
         if (ending != ".exr" && ending != ".png")
             fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
-        wanted.output = ending == ".exr" ? povray::Output::Exr : povray::Output::Png;
-        const povray::RunReport report = povray::run(wanted, job_of(job));
+        wanted.output = ending == ".exr" ? povray::OutputFormat::Exr : povray::OutputFormat::Png;
+        const povray::RunReport report = povray::render_scene(wanted, job_of(job));
         lds_povray_report out{};
         out.exit_code = report.exit_code;
         out.parse_cpu_s = report.parse_cpu_s;

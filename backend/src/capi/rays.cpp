@@ -100,7 +100,7 @@ lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t posi
         require(model, "model");
         require(cut, "cut");
         const uint32_t node = node_at(*model, *cut, position);
-        const choose::Node& chosen = cut->cut.nodes[node];
+        const choose::CutNode& chosen = cut->cut.nodes[node];
         lds_ray_choice out{};
         out.object = model->id_of(chosen.object);
         out.lod = chosen.lod;
@@ -110,7 +110,7 @@ lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t posi
         if (own != nullptr) {
             out.met = static_cast<int32_t>(own->states.at(position));
             if (const choose::RayChoice* choice = own_of(cut->cut, *own, node)) {
-                const choose::Node& met = cut->cut.nodes[choice->node];
+                const choose::CutNode& met = cut->cut.nodes[choice->node];
                 const Representation& level = levels_with(*model, met, choice->lod)[choice->lod];
                 out.object = model->id_of(met.object);
                 out.lod = choice->lod;

@@ -62,7 +62,7 @@ lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_tr
         require(cut, "cut");
         require(out_triangles, "out_triangles");
         require_current(*model, *cut);
-        view::Surface made;
+        view::ViewerSurface made;
         if (most_triangles > 0) {
             const Job progress = job_of(job);
             const std::vector<uint32_t> levels =
@@ -79,7 +79,7 @@ lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t*
                                 size_t capacity) {
     return guard([&] {
         require(cut, "cut");
-        const view::Surface& surface = cut->surface;
+        const view::ViewerSurface& surface = cut->surface;
         if (capacity < surface.owners.size())
             fail(Status::InvalidArgument, "the surface has ", surface.owners.size(),
                  " triangles, the buffers room for ", capacity);
@@ -93,7 +93,7 @@ lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t*
         }
         for (size_t i = 0; i < surface.owners.size(); ++i) {
             const uint32_t owner = surface.owners[i];
-            const choose::Node& node = cut->cut.nodes[cut->cut.chosen[owner]];
+            const choose::CutNode& node = cut->cut.nodes[cut->cut.chosen[owner]];
             const glm::dvec3 color =
                 (cut->colors.empty() ? povray::color_of(node.kind, node.lod) : cut->colors[owner]) *
                 view::shade_of(surface.corners.data() + 3 * i);

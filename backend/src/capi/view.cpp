@@ -117,7 +117,7 @@ View view_of(const lds_view* view, const lds_model* model) {
             top > out.height - height)
             fail(Status::InvalidArgument, "the border ", left, ", ", top, ", ", width, " x ",
                  height, " is no part of a picture of ", out.width, " x ", out.height, " pixels");
-        out.border = Border{left, top, width, height};
+        out.border = RenderBorder{left, top, width, height};
     }
     if (given.modifiers != nullptr)
         out.modifiers = modifiers_of(given.modifiers, model, out.width, out.height);

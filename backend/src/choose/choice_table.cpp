@@ -21,8 +21,8 @@ double own_cost(const TableLevel& level) {
 
 }  // namespace
 
-Table Table::whole(const Model& model, ObjectIndex root, KindMask kinds) {
-    Table table(model, kinds);
+ChoiceTable ChoiceTable::whole(const Model& model, ObjectIndex root, KindMask kinds) {
+    ChoiceTable table(model, kinds);
     table.rows_.reserve(model.objects.size());
     table.objects_.reserve(model.objects.size());
     table.by_object_.reserve(model.objects.size());
@@ -44,7 +44,7 @@ Table Table::whole(const Model& model, ObjectIndex root, KindMask kinds) {
     return table;
 }
 
-uint32_t Table::row_of(ObjectIndex object) {
+uint32_t ChoiceTable::row_of(ObjectIndex object) {
     const auto known = by_object_.find(object);
     if (known != by_object_.end())
         return known->second;
@@ -53,7 +53,7 @@ uint32_t Table::row_of(ObjectIndex object) {
     return row;
 }
 
-uint32_t Table::add(ObjectIndex index) {
+uint32_t ChoiceTable::add(ObjectIndex index) {
     const auto row = static_cast<uint32_t>(rows_.size());
     by_object_.emplace(index, row);
     const Object& object = model_.objects.at(index);
@@ -74,7 +74,7 @@ uint32_t Table::add(ObjectIndex index) {
     }
     made.first_level = static_cast<uint32_t>(levels_.size());
     for (uint32_t lod = 0; lod < rest.all_levels; ++lod) {
-        const Summary& summary = object.representations[lod].summary;
+        const RepresentationSummary& summary = object.representations[lod].summary;
         if (summary.kind == Kind::Assembly || (kinds_ & mask_of(summary.kind)) == 0)
             continue;
         TableLevel level;
@@ -96,7 +96,7 @@ uint32_t Table::add(ObjectIndex index) {
     return row;
 }
 
-void Table::expand(uint32_t row) {
+void ChoiceTable::expand(uint32_t row) {
     if (objects_[row].expanded)
         return;
     objects_[row].expanded = true;
@@ -118,10 +118,10 @@ void Table::expand(uint32_t row) {
         const auto known = by_object_.find(placement.object);
         child.row = known != by_object_.end() ? known->second : add(placement.object);
         const double demand = objects_[child.row].demand;
-        if (placement.decided() || placement.hidden != 0 || demand != 1) {
-            child.wish = static_cast<uint32_t>(wishes_.size());
-            wishes_.push_back({placement.importance, demand, placement.coarsest, placement.finest,
-                               placement.hidden});
+        if (placement.has_overrides() || placement.hidden != 0 || demand != 1) {
+            child.overrides = static_cast<uint32_t>(overrides_.size());
+            overrides_.push_back({placement.importance, demand, placement.coarsest,
+                                  placement.finest, placement.hidden});
         }
         const TableRow& placed = rows_[child.row];
         child.finest_error = kInfinity;
@@ -137,7 +137,7 @@ void Table::expand(uint32_t row) {
 }
 
 /// Tells all placements where their objects' children are, and rows whether they last.
-void Table::link() {
+void ChoiceTable::link() {
     for (TableChild& child : children_) {
         child.first_child = objects_[child.row].first_child;
         child.child_count = objects_[child.row].child_count;
@@ -154,20 +154,21 @@ void Table::link() {
         bool lasting = rows_[row].lasting;
         for (uint32_t i = 0; !lasting && i < object.child_count; ++i) {
             const TableChild& child = children_[object.first_child + i];
-            const TableWish& wish = wishes_[child.wish];
-            lasting = rows_[child.row].lasting && wish.hidden == 0 && wish.coarsest == kAnyLevel;
+            const PlacementOverrides& overrides = overrides_[child.overrides];
+            lasting = rows_[child.row].lasting && overrides.hidden == 0 &&
+                      overrides.coarsest == kAnyLevel;
         }
         rows_[row].lasting = lasting && rows_[row].drawable;
     }
 }
 
-double Table::stretch_of(const TableChild& child) const {
+double ChoiceTable::stretch_of(const TableChild& child) const {
     return child.linear == kUnturned ? 1 : stretches_[child.linear];
 }
 
 /// For each stand-in of a group that costs more than its children could, from which error on they
 /// do.
-void Table::set_openings(uint32_t row) {
+void ChoiceTable::set_openings(uint32_t row) {
     const TableRow group = rows_[row];
     if (objects_[row].openings)
         return;
@@ -222,7 +223,7 @@ void Table::set_openings(uint32_t row) {
 }
 
 /// What is drawn for it costs at most, where an error of so much is allowed.
-double Table::cost_at(uint32_t row, double error, int depth) {
+double ChoiceTable::cost_at(uint32_t row, double error, int depth) {
     set_openings(row);
     const TableRow here = rows_[row];
     uint32_t pick = here.level_count;
@@ -241,13 +242,13 @@ double Table::cost_at(uint32_t row, double error, int depth) {
     return own_cost(level);
 }
 
-double Table::cost_below(uint32_t row, double error, int depth) {
+double ChoiceTable::cost_below(uint32_t row, double error, int depth) {
     expand(row);
     double cost = 0;
     for (uint32_t i = 0; i < objects_[row].child_count; ++i) {
         const TableChild child = children_[objects_[row].first_child + i];
         const double enlarge = stretch_of(child);
-        if (wishes_[child.wish].hidden != kAllRays && rows_[child.row].drawable)
+        if (overrides_[child.overrides].hidden != kAllRays && rows_[child.row].drawable)
             cost += cost_at(child.row, enlarge > 0 ? error / enlarge : kInfinity, depth);
     }
     return cost;

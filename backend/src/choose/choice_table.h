@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table: all that choosing reads of a model, in flat arrays, siblings beside each other and
+// ChoiceTable: all that choosing reads of a model, in flat arrays, siblings beside each other and
 // subtrees together, so that a visit misses few caches. Made once per change of the model.
 #pragma once
 
@@ -27,7 +27,7 @@ struct TableLevel {
 };
 
 /// What is particular of a placement, or of its object; of nearly all nothing is.
-struct TableWish {
+struct PlacementOverrides {
     double importance = 1;
     double demand = 1;  // of the object
     uint32_t coarsest = kAnyLevel;
@@ -44,7 +44,7 @@ struct alignas(64) TableChild {
     ObjectIndex object = kNoObject;
     uint32_t row = 0;
     uint32_t linear = kUnturned;  // in linears(); kUnturned: moved only
-    uint32_t wish = 0;            // in wishes(); 0: none
+    uint32_t overrides = 0;       // in overrides(); 0: none
     // Of its object's children; of a whole table alone.
     uint32_t first_child = 0;
     uint32_t child_count = 0;
@@ -79,13 +79,13 @@ struct TableObject {
     bool openings = false;  // its levels' opens_from is known
 };
 
-class Table {
+class ChoiceTable {
 public:
     /// Empty; rows are made when they are asked for. The model must stay as it is.
-    Table(const Model& model, KindMask kinds) : model_(model), kinds_(kinds) {}
+    ChoiceTable(const Model& model, KindMask kinds) : model_(model), kinds_(kinds) {}
 
     /// Of everything below an object. Never changes afterwards: safe from any thread.
-    static Table whole(const Model& model, ObjectIndex root, KindMask kinds);
+    static ChoiceTable whole(const Model& model, ObjectIndex root, KindMask kinds);
 
     KindMask kinds() const { return kinds_; }
     const Model& model() const { return model_; }
@@ -98,24 +98,24 @@ public:
     const TableLevel& level(uint32_t index) const { return levels_[index]; }
     const TableChild& child(uint32_t index) const { return children_[index]; }
     const glm::dmat3& linear(uint32_t index) const { return linears_[index]; }
-    const TableWish& wish(uint32_t index) const { return wishes_[index]; }
+    const PlacementOverrides& overrides(uint32_t index) const { return overrides_[index]; }
     /// Of a group that is expanded; the table keeps it.
     const Assembly& assembly(uint32_t row) const { return *assemblies_[row]; }
     size_t size() const { return rows_.size(); }
     size_t distinct() const { return distinct_.size(); }
     /// Brings nearer what is read of a child and of those behind it.
-    void fetch(uint32_t child) const {
+    void prefetch(uint32_t child) const {
         const uint32_t row = children_[child].row;
-        fetch(rows_, row);
-        fetch(levels_, rows_[row].first_level);
+        prefetch(rows_, row);
+        prefetch(levels_, rows_[row].first_level);
     }
     /// The same of a placed group's first children, before their placements are known.
-    void fetch_below(uint32_t first_child, uint32_t first_row, uint32_t first_level,
-                     uint32_t count) const {
+    void prefetch_below(uint32_t first_child, uint32_t first_row, uint32_t first_level,
+                        uint32_t count) const {
         for (uint32_t i = 0; i < count; ++i) {
-            fetch(children_, first_child + i);
-            fetch(rows_, first_row + i);
-            fetch(levels_, first_level + i);
+            prefetch(children_, first_child + i);
+            prefetch(rows_, first_row + i);
+            prefetch(levels_, first_level + i);
         }
     }
     /// Nodes of the cut before: what the next one makes room for. A hint; nothing depends on it.
@@ -133,7 +133,7 @@ public:
 
 private:
     template <typename Row>
-    static void fetch(const std::vector<Row>& rows, size_t index) {
+    static void prefetch(const std::vector<Row>& rows, size_t index) {
         if (index < rows.size())
             __builtin_prefetch(rows.data() + index);
     }
@@ -145,22 +145,22 @@ private:
     double cost_at(uint32_t row, double error, int depth);
     double cost_below(uint32_t row, double error, int depth);
 
-    struct Hint {
+    struct NodeCountHint {
         std::atomic<size_t> value{0};
-        Hint() = default;
-        Hint(Hint&& other) noexcept : value(other.value.load()) {}
+        NodeCountHint() = default;
+        NodeCountHint(NodeCountHint&& other) noexcept : value(other.value.load()) {}
     };
 
     const Model& model_;
     KindMask kinds_;
-    mutable Hint expected_;
+    mutable NodeCountHint expected_;
     std::vector<TableRow> rows_;
     std::vector<TableObject> objects_;  // by row
     std::vector<TableLevel> levels_;
     std::vector<TableChild> children_;
     std::vector<glm::dmat3> linears_;
     std::vector<double> stretches_;  // of them
-    std::vector<TableWish> wishes_{TableWish{}};
+    std::vector<PlacementOverrides> overrides_{PlacementOverrides{}};
     std::vector<std::shared_ptr<const Assembly>> assemblies_;  // by row; null of what is no group
     std::unordered_map<ObjectIndex, uint32_t> by_object_;
     std::unordered_map<Hash, uint32_t> distinct_;

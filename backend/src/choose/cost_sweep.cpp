@@ -12,23 +12,23 @@ constexpr uint32_t kAheadOfSweep = 4;
 
 }  // namespace
 
-CostSweep::CostSweep(const Table& table, const View& view, const Job& job)
+CostSweep::CostSweep(const ChoiceTable& table, const View& view, const Job& job)
     : table_(table),
       view_(view),
       finest_(view.pixel_error),
       field_(table.model(), view_, true),
       job_(job) {}
 
-std::optional<double> CostSweep::least_that_fits(uint32_t root, const Budget& budget) {
+std::optional<double> CostSweep::least_that_fits(uint32_t root, const CutBudget& budget) {
     tally_.clear(table_);
     certain_tally_.clear(table_);
-    Placed top;
+    PlacedNode top;
     top.node.object = table_.object(root).object;
     visit(root, top, table_.object(root).demand, 1, field_.root(), finest_);
     std::optional<double> found;
     for (;;) {
         while (!openings_.empty() && !too_many()) {
-            const Opening opening = openings_.back();
+            const GroupOpening opening = openings_.back();
             openings_.pop_back();
             open(opening);
         }
@@ -54,17 +54,17 @@ bool CostSweep::too_many() const {
 }
 
 /// Finds what a node is drawn by from the threshold of now down to `low`.
-void CostSweep::visit(uint32_t index, const Placed& placed, double demand, double enlarge,
-                      FactorField::Path path, double low) {
+void CostSweep::visit(uint32_t index, const PlacedNode& placed, double demand, double enlarge,
+                      FactorField::FactorPath path, double low) {
     if ((visited_.size() & 1023u) == 0)
         job_.check();
     const TableRow& row = table_.row(index);
-    Sight sight;
-    Factors factors;
-    if (!row.drawable || !see(view_, field_, placed, row.group, table_.bound(index), demand,
-                              enlarge, path, sight, factors))
+    OccurrenceSight sight;
+    DetailFactors factors;
+    if (!row.drawable || !find_sight(view_, field_, placed, row.group, table_.bound(index), demand,
+                                     enlarge, path, sight, factors))
         return;
-    // Between two of these decide() decides alike.
+    // Between two of these decide_level() decides alike.
     thresholds_.assign(1, low);
     const size_t levels = by_error(view_) ? 0 : table_.object(index).all_levels;
     const auto add = [&](const TableLevel& level, double error) {
@@ -79,12 +79,12 @@ void CostSweep::visit(uint32_t index, const Placed& placed, double demand, doubl
         add(level, level.opens_from);
     }
     std::sort(thresholds_.begin(), thresholds_.end(), std::greater<>());
-    Ranged made;
+    RangedNode made;
     made.range = static_cast<uint32_t>(ranges_.size());
     bool opens = false;
     for (const double threshold : thresholds_) {
         view_.pixel_error = threshold;
-        const Decision decision = decide(table_, view_, index, placed.node, sight);
+        const LevelDecision decision = decide_level(table_, view_, index, placed.node, sight);
         if (!decision.drawn)
             return;
         const TableLevel* level = decision.opened ? nullptr : decision.level;
@@ -104,20 +104,21 @@ void CostSweep::visit(uint32_t index, const Placed& placed, double demand, doubl
     enter(static_cast<uint32_t>(visited_.size() - 1));
 }
 
-void CostSweep::open(const Opening& opening) {
-    const Group& group = groups_[opening.group];
+void CostSweep::open(const GroupOpening& opening) {
+    const SweepGroup& group = groups_[opening.group];
     const TableObject& object = table_.object(group.row);
     for (uint32_t i = 0; i < std::min(object.child_count, kAheadOfSweep); ++i)
-        table_.fetch(object.first_child + i);
+        table_.prefetch(object.first_child + i);
     for (uint32_t i = 0; i < object.child_count; ++i) {
         const TableChild& child = table_.child(object.first_child + i);
-        Placed placed;
+        PlacedNode placed;
         placed.node.placement = i;
         double enlarge = group.stretch;
         double demand = 1;
-        if (!place(table_, group.placed.node, group.placed.world, child, placed, enlarge, demand))
+        if (!place_child(table_, group.placed.node, group.placed.world, child, placed, enlarge,
+                         demand))
             continue;
-        FactorField::Path path = group.path;
+        FactorField::FactorPath path = group.path;
         if (view_.modifiers.when_moving)
             path = field_.below(group.path, group.placed.world,
                                 table_.model()
@@ -130,8 +131,8 @@ void CostSweep::open(const Opening& opening) {
 }
 
 void CostSweep::enter(uint32_t index) {
-    const Ranged& visited = visited_[index];
-    const Range& range = ranges_[visited.range];
+    const RangedNode& visited = visited_[index];
+    const LevelRange& range = ranges_[visited.range];
     count(visited, range, true);
     if (range.level == nullptr)
         openings_.push_back({visited.group, range.low});
@@ -139,11 +140,11 @@ void CostSweep::enter(uint32_t index) {
         turns_.push({range.low, index});
 }
 
-void CostSweep::leave(const Ranged& visited) {
+void CostSweep::leave(const RangedNode& visited) {
     count(visited, ranges_[visited.range], false);
 }
 
-void CostSweep::count(const Ranged& visited, const Range& range, bool more) {
+void CostSweep::count(const RangedNode& visited, const LevelRange& range, bool more) {
     nodes_ += more ? 1 : -1;
     if (range.level == nullptr)
         return;

@@ -17,52 +17,52 @@ namespace lodestone::choose {
 class CostSweep {
 public:
     /// From the finest threshold that is wanted on, which the view has. All must outlive it.
-    CostSweep(const Table& table, const View& view, const Job& job);
+    CostSweep(const ChoiceTable& table, const View& view, const Job& job);
 
     /// The least threshold whose cut fits, to the last bit; none: there is no finite one. What is
     /// finer is looked at until as much costs more than the budget as any finer cut draws, too.
     /// Once. Throws Error(Cancelled).
-    std::optional<double> least_that_fits(uint32_t root, const Budget& budget);
+    std::optional<double> least_that_fits(uint32_t root, const CutBudget& budget);
     /// Then: the least threshold that gives the coarsest cut.
     double coarsest() const { return coarsest_; }
 
 private:
     /// What a node is drawn by down to a threshold (from the one of the range before it).
-    struct Range {
+    struct LevelRange {
         double low = 0;
         const TableLevel* level = nullptr;  // null: opened
     };
-    struct Ranged {
+    struct RangedNode {
         uint32_t range = 0;  // the one that it is in
         uint32_t end = 0;
         uint32_t group = 0;  // in groups_; of one that may be opened
         bool lasts = false;  // down to the finest it or something below it is drawn
     };
-    struct Group {
-        Placed placed;
+    struct SweepGroup {
+        PlacedNode placed;
         double stretch = 1;
-        FactorField::Path path;  // of what it places
+        FactorField::FactorPath path;  // of what it places
         uint32_t row = 0;
     };
-    struct Opening {
+    struct GroupOpening {
         uint32_t group = 0;
         double low = 0;  // down to where it is open
     };
-    struct Turn {
+    struct SweepEvent {
         double at = 0;
         uint32_t visited = 0;
-        bool operator<(const Turn& other) const { return at < other.at; }
+        bool operator<(const SweepEvent& other) const { return at < other.at; }
     };
 
-    void visit(uint32_t row, const Placed& placed, double demand, double enlarge,
-               FactorField::Path path, double low);
-    void open(const Opening& opening);
+    void visit(uint32_t row, const PlacedNode& placed, double demand, double enlarge,
+               FactorField::FactorPath path, double low);
+    void open(const GroupOpening& opening);
     void enter(uint32_t visited);
-    void leave(const Ranged& visited);
-    void count(const Ranged& visited, const Range& range, bool more);
+    void leave(const RangedNode& visited);
+    void count(const RangedNode& visited, const LevelRange& range, bool more);
     bool too_many() const;
 
-    const Table& table_;
+    const ChoiceTable& table_;
     View view_;  // its threshold changes
     const double finest_;
     FactorField field_;
@@ -70,17 +70,17 @@ private:
 
     double now_ = kInfinity;  // the threshold, from above
     double coarsest_ = kInfinity;
-    std::vector<Range> ranges_;
-    std::vector<Ranged> visited_;
-    std::deque<Group> groups_;
-    std::vector<Opening> openings_;  // to be made
-    std::priority_queue<Turn> turns_;
+    std::vector<LevelRange> ranges_;
+    std::vector<RangedNode> visited_;
+    std::deque<SweepGroup> groups_;
+    std::vector<GroupOpening> openings_;  // to be made
+    std::priority_queue<SweepEvent> turns_;
     std::vector<double> thresholds_;  // of one node
 
     Cut sums_;  // of now
-    Tally tally_;
+    CutTotals tally_;
     Cut certain_;  // of what every finer cut draws, too
-    Tally certain_tally_;
+    CutTotals certain_tally_;
     size_t nodes_ = 0;
 };
 

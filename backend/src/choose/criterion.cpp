@@ -40,13 +40,13 @@ bool good_enough(const View& view, double error, double stretch, double z, doubl
 namespace {
 
 /// least_threshold(), but for rounding.
-double near_threshold(const View& view, const Sight& sight, double error, size_t lod,
+double near_threshold(const View& view, const OccurrenceSight& sight, double error, size_t lod,
                       size_t levels) {
-    if (view.modifiers.criterion == Criterion::Feature) {
+    if (view.modifiers.criterion == DetailCriterion::Feature) {
         const double feature = error * sight.stretch * sight.total;
         return feature * feature / picture_area(view, sight.z);
     }
-    if (view.modifiers.criterion == Criterion::Area)
+    if (view.modifiers.criterion == DetailCriterion::Area)
         return std::ldexp(sight.share * sight.total * sight.total,
                           -2 * static_cast<int>(levels - 1 - lod));
     return error_on_screen(sight, error) * sight.total;
@@ -60,7 +60,8 @@ double picture_area(const View& view, double z) {
     return frame * depth * depth;
 }
 
-double least_threshold(View& view, const Sight& sight, double error, size_t lod, size_t levels) {
+double least_threshold(View& view, const OccurrenceSight& sight, double error, size_t lod,
+                       size_t levels) {
     // From 0 on numbers are in the order of their bits.
     const auto good = [&](uint64_t threshold) {
         view.pixel_error = std::bit_cast<double>(threshold);
@@ -88,25 +89,26 @@ double least_threshold(View& view, const Sight& sight, double error, size_t lod,
     return std::bit_cast<double>(works);
 }
 
-bool good_otherwise(const View& view, const Sight& sight, double error, size_t lod, size_t levels) {
+bool good_otherwise(const View& view, const OccurrenceSight& sight, double error, size_t lod,
+                    size_t levels) {
     const double refine = sight.total;
     if (std::isinf(refine))
         return false;
     const double threshold = view.pixel_error;
     switch (view.modifiers.criterion) {
-        case Criterion::Feature: {
+        case DetailCriterion::Feature: {
             const double feature = error * sight.stretch * refine;
             return feature * feature <= threshold * picture_area(view, sight.z);
         }
-        case Criterion::Area: {
+        case DetailCriterion::Area: {
             const double serves = std::ldexp(threshold, 2 * static_cast<int>(levels - 1 - lod));
             return lod > 0 && sight.share * refine * refine <= serves;
         }
-        case Criterion::Distance: {
+        case DetailCriterion::Distance: {
             const double serves = std::ldexp(threshold, static_cast<int>(lod) - 1);
             return lod > 0 && sight.z >= serves * refine;
         }
-        case Criterion::Resolution:
+        case DetailCriterion::Resolution:
             break;
     }
     return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Criterion: is a representation good enough from here? (DESIGN 5; dissertation 5.2)
+// DetailCriterion: is a representation good enough from here? (DESIGN 5; dissertation 5.2)
 #pragma once
 
 #include "base/maths.h"
@@ -28,12 +28,13 @@ double total_refinement(double factors);
 bool good_enough(const View& view, double error, double stretch, double z, double refine = 1);
 
 /// How an occurrence is seen: what its levels are judged by.
-struct Sight {
+struct OccurrenceSight {
     double z = 0;        // metres from the eye to its bound
     double pixel = 0;    // pixel_size() there
     double stretch = 1;  // of its transform
     double total = 1;    // total_refinement of all factors
-    double share = 0;    // of the picture, covered by the image of its box; Criterion::Area only
+    double share =
+        0;  // of the picture, covered by the image of its box; DetailCriterion::Area only
 };
 
 /// distance(transformed(bound, world, stretch), eye), to the last bit and sooner, above all where
@@ -51,27 +52,29 @@ inline double distance_of(const Bound& bound, const Affine& world, double stretc
 }
 
 /// error_on_screen() of what is seen so.
-inline double error_on_screen(const Sight& sight, double error) {
+inline double error_on_screen(const OccurrenceSight& sight, double error) {
     return sight.pixel > 0 ? error * sight.stretch / sight.pixel : 0;
 }
 
 /// By another criterion than resolution: see below.
-bool good_otherwise(const View& view, const Sight& sight, double error, size_t lod, size_t levels);
+bool good_otherwise(const View& view, const OccurrenceSight& sight, double error, size_t lod,
+                    size_t levels);
 
 /// Whether LOD number `lod` of `levels` is good enough by the view's criterion (5.2.2): by
-/// resolution as above; else as Criterion says, the threshold divided by the refinement (of areas:
+/// resolution as above; else as DetailCriterion says, the threshold divided by the refinement (of areas:
 /// by its square).
-inline bool good_enough(const View& view, const Sight& sight, double error, size_t lod,
+inline bool good_enough(const View& view, const OccurrenceSight& sight, double error, size_t lod,
                         size_t levels) {
-    if (view.modifiers.criterion != Criterion::Resolution)
+    if (view.modifiers.criterion != DetailCriterion::Resolution)
         return good_otherwise(view, sight, error, lod, levels);
     return !std::isinf(sight.total) &&
            error * sight.stretch * sight.total <= view.pixel_error * sight.pixel;
 }
 
 /// The least threshold that this is good enough for, to the last bit as good_enough() finds it;
-/// infinite: there is none. Not of Criterion::Distance. The view's own threshold is lost.
-double least_threshold(View& view, const Sight& sight, double error, size_t lod, size_t levels);
+/// infinite: there is none. Not of DetailCriterion::Distance. The view's own threshold is lost.
+double least_threshold(View& view, const OccurrenceSight& sight, double error, size_t lod,
+                       size_t levels);
 
 /// Square metres that the whole picture covers at distance z.
 double picture_area(const View& view, double z);

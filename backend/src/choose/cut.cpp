@@ -21,41 +21,41 @@ ObjectIndex root_of(const Model& model) {
 
 }  // namespace
 
-Cut choose(const Model& model, const View& view, const Job& job) {
+Cut choose_cut(const Model& model, const View& view, const Job& job) {
     return choose_below(model, root_of(model), view, job);
 }
 
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job) {
-    Table table(model, view.kinds);
+    ChoiceTable table(model, view.kinds);
     return choose_below(table, root, view, job);
 }
 
-Cut choose_below(Table& table, ObjectIndex root, const View& view, const Job& job) {
+Cut choose_below(ChoiceTable& table, ObjectIndex root, const View& view, const Job& job) {
     refuse_nonsense(view);
     if (table.kinds() != view.kinds)
         fail(Status::Internal, "the table was made for other kinds");
     const uint32_t top = table.row_of(root);
     FactorField field(table.model(), view);
     Cut cut;
-    Chooser(table, &table, view, field, job).run(top, {}, cut);
+    CutChooser(table, &table, view, field, job).run(top, {}, cut);
     return cut;
 }
 
-std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
-                                        const Job& job) {
+std::optional<Cut> choose_cut_if_within(const ChoiceTable& table, const View& view,
+                                        const CutBudget& budget, const Job& job) {
     refuse_nonsense(view);
     if (table.kinds() != view.kinds)
         fail(Status::Internal, "the table was made for other kinds");
     FactorField field(table.model(), view);
-    Chooser chooser(table, nullptr, view, field, job);
+    CutChooser chooser(table, nullptr, view, field, job);
     Cut cut;
     if (!chooser.run(table.find(root_of(table.model())), budget, cut))
         return std::nullopt;
     return cut;
 }
 
-Cut choose(const Table& table, const View& view, const Job& job) {
-    return choose_within_budget(table, view, {}, job).value();
+Cut choose_cut(const ChoiceTable& table, const View& view, const Job& job) {
+    return choose_cut_if_within(table, view, {}, job).value();
 }
 
 std::vector<LevelUse> level_uses(const Cut& cut) {
@@ -63,7 +63,7 @@ std::vector<LevelUse> level_uses(const Cut& cut) {
     std::unordered_map<uint64_t, uint64_t> uses;
     std::pair<const uint64_t, uint64_t>* last = nullptr;  // neighbors are often drawn alike
     for (const uint32_t index : cut.chosen) {
-        const Node& node = cut.nodes[index];
+        const CutNode& node = cut.nodes[index];
         const uint64_t key = uint64_t{node.object} << kLodBits | node.lod;
         if (last == nullptr || last->first != key)
             last = &*uses.try_emplace(key, 0).first;
@@ -80,7 +80,8 @@ std::vector<LevelUse> level_uses(const Cut& cut) {
     return found;
 }
 
-double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node) {
+double error_on_screen(const ChoiceTable& table, const View& view, const Cut& cut,
+                       const CutNode& node) {
     if (node.opened)
         return 0;
     const uint32_t index = table.find(node.object);
@@ -97,50 +98,50 @@ double error_on_screen(const Table& table, const View& view, const Cut& cut, con
     fail(Status::InvalidArgument, "the cut was made from another table");
 }
 
-Reason why(const Model& model, const View& view, const Cut& cut, uint32_t index) {
+ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut, uint32_t index) {
     // The path from the root, so that the lenses that touch it are found as when it was chosen.
     std::vector<uint32_t> way;
     for (uint32_t at = index; at != kNoParent; at = cut.nodes.at(at).parent)
         way.push_back(at);
     FactorField field(model, view);
-    FactorField::Path path = field.root();
-    Reason reason;
+    FactorField::FactorPath path = field.root();
+    ChoiceReason reason;
     for (size_t i = way.size(); i-- > 0;) {
-        const Node& node = cut.nodes[way[i]];
+        const CutNode& node = cut.nodes[way[i]];
         if (i + 1 < way.size()) {
-            const Node& group = cut.nodes[node.parent];
+            const CutNode& group = cut.nodes[node.parent];
             path = field.below(path, cut.world(group),
                                model.objects.at(group.object)
                                    .representations.at(0)
                                    .assembly()
                                    .placements.at(node.placement));
         }
-        Factors factors;
-        Sight seen;
-        const Sight* sight = &seen;
+        DetailFactors factors;
+        OccurrenceSight seen;
+        const OccurrenceSight* sight = &seen;
         const Object& object = model.objects.at(node.object);
         const Affine& world = cut.world(node);
-        if (!see(view, field, {node, world}, object.group(), object.bound(), object.demand,
-                 stretch(world), path, seen, factors))
+        if (!find_sight(view, field, {node, world}, object.group(), object.bound(), object.demand,
+                        stretch(world), path, seen, factors))
             fail(Status::InvalidArgument, "the cut was made for another view");
         const size_t first = i == 0 ? node.lod + size_t{1} : size_t{1};
         for (size_t lod = first; lod < object.representations.size(); ++lod) {
-            const Summary& summary = object.representations[lod].summary;
+            const RepresentationSummary& summary = object.representations[lod].summary;
             if ((view.kinds & mask_of(summary.kind)) == 0)
                 continue;
-            reason.coarser =
-                Reason::Level{node.object,
-                              static_cast<uint32_t>(lod),
-                              summary.kind,
-                              summary.error,
-                              error_on_screen(view, summary.error, sight->stretch, sight->z),
-                              sight->total};
+            reason.coarser = ChoiceReason::ReasonLevel{
+                node.object,
+                static_cast<uint32_t>(lod),
+                summary.kind,
+                summary.error,
+                error_on_screen(view, summary.error, sight->stretch, sight->z),
+                sight->total};
             reason.pinned = lod > node.coarsest;
             break;
         }
         if (i > 0)
             continue;
-        const Summary& summary = object.representations.at(node.lod).summary;
+        const RepresentationSummary& summary = object.representations.at(node.lod).summary;
         reason.z = std::max(sight->z, view.camera.near_clip);
         reason.pixel = pixel_size(view, sight->z);
         reason.stretch = sight->stretch;
@@ -180,16 +181,18 @@ std::string joined_names(const Cut& cut, uint32_t node, const Name& name) {
 }  // namespace
 
 std::string path_of(const Model& model, const Cut& cut, uint32_t node) {
-    return joined_names(cut, node, [&](const Node& group, uint32_t position) -> const std::string& {
-        const Representation& finest = model.objects[group.object].representations[0];
-        return finest.assembly().placements[position].name;
-    });
+    return joined_names(
+        cut, node, [&](const CutNode& group, uint32_t position) -> const std::string& {
+            const Representation& finest = model.objects[group.object].representations[0];
+            return finest.assembly().placements[position].name;
+        });
 }
 
-std::string path_of(const Table& table, const Cut& cut, uint32_t node) {
-    return joined_names(cut, node, [&](const Node& group, uint32_t position) -> const std::string& {
-        return table.assembly(table.find(group.object)).placements[position].name;
-    });
+std::string path_of(const ChoiceTable& table, const Cut& cut, uint32_t node) {
+    return joined_names(
+        cut, node, [&](const CutNode& group, uint32_t position) -> const std::string& {
+            return table.assembly(table.find(group.object)).placements[position].name;
+        });
 }
 
 }  // namespace lodestone::choose

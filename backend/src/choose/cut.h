@@ -17,7 +17,7 @@ inline constexpr uint32_t kNoParent = ~uint32_t{0};
 
 /// An occurrence the choice visited: either opened (its assembly goes on below) or chosen. Nothing
 /// in it changes with the eye as long as it is drawn alike: see error_on_screen().
-struct Node {
+struct CutNode {
     ObjectIndex object = kNoObject;
     uint32_t parent = kNoParent;  // index of the opened node above it
     uint32_t placement = 0;       // index in that node's assembly
@@ -32,7 +32,7 @@ struct Node {
 };
 
 struct Cut {
-    std::vector<Node> nodes;       // depth-first, in order of placements
+    std::vector<CutNode> nodes;    // depth-first, in order of placements
     std::vector<uint32_t> chosen;  // indices of the nodes that are drawn, rising
     /// object -> world, in any order, some of none: nodes that move take 40 bytes, not 136, with
     /// them.
@@ -45,11 +45,11 @@ struct Cut {
     uint32_t largest_error_node = kNoParent;
     std::map<std::string, uint64_t> kinds;  // word -> occurrences drawn
 
-    const Affine& world(const Node& node) const { return transforms[node.transform]; }
+    const Affine& world(const CutNode& node) const { return transforms[node.transform]; }
 };
 
 /// What a cut may cost at most; 0: any number.
-struct Budget {
+struct CutBudget {
     uint64_t triangles = 0;  // placed
     uint64_t bytes = 0;      // in POV-Ray's memory, as Cut::bytes
 
@@ -63,20 +63,20 @@ struct Budget {
 /// costs less (TableLevel::opens_from); it must be good enough for the most important thing below
 /// it. Throws Error(InvalidArgument) for a view that makes no sense or a model without root. cost:
 /// one visit per opened group and chosen occurrence. Thread-safe on a const model.
-Cut choose(const Model& model, const View& view, const Job& job = {});
+Cut choose_cut(const Model& model, const View& view, const Job& job = {});
 
 /// The same with a whole table of the model for the view's kinds: without making one.
-Cut choose(const Table& table, const View& view, const Job& job = {});
+Cut choose_cut(const ChoiceTable& table, const View& view, const Job& job = {});
 
 /// The same; nothing, and sooner, when it costs more than the budget.
-std::optional<Cut> choose_within_budget(const Table& table, const View& view, const Budget& budget,
-                                        const Job& job = {});
+std::optional<Cut> choose_cut_if_within(const ChoiceTable& table, const View& view,
+                                        const CutBudget& budget, const Job& job = {});
 
 /// The same for the part of the model below one object, in that object's frame.
 Cut choose_below(const Model& model, ObjectIndex root, const View& view, const Job& job = {});
 
 /// The same for several views: the table, for the views' kinds, gets what rows it needs.
-Cut choose_below(Table& table, ObjectIndex root, const View& view, const Job& job = {});
+Cut choose_below(ChoiceTable& table, ObjectIndex root, const View& view, const Job& job = {});
 
 /// How many occurrences a level of an object is drawn by.
 struct LevelUse {
@@ -89,11 +89,12 @@ struct LevelUse {
 std::vector<LevelUse> level_uses(const Cut& cut);
 
 /// Of a chosen node of a cut for this view, in pixels; 0 of an opened one.
-double error_on_screen(const Table& table, const View& view, const Cut& cut, const Node& node);
+double error_on_screen(const ChoiceTable& table, const View& view, const Cut& cut,
+                       const CutNode& node);
 
 /// Why a node is drawn as it is.
-struct Reason {
-    struct Level {
+struct ChoiceReason {
+    struct ReasonLevel {
         ObjectIndex object = kNoObject;
         uint32_t lod = 0;
         Kind kind = Kind::Mesh;
@@ -101,24 +102,24 @@ struct Reason {
         double error_px = 0;  // on screen
         double total = 1;  // its factors together: error_px * total is what is held to Pixel Error
     };
-    Level chosen;
+    ReasonLevel chosen;
     double z = 0;        // metres from the eye
     double pixel = 0;    // size of a pixel there, metres
     double stretch = 1;  // of its transform
-    Factors factors;
+    DetailFactors factors;
     /// The next coarser level of the same object, else the finest stand-in of the nearest group
     /// around it that has one.
-    std::optional<Level> coarser;
+    std::optional<ReasonLevel> coarser;
     bool pinned = false;  // that one is not allowed, by a decision on the placement
 };
 
 /// Of a node of a cut for this model and view, with the numbers it was chosen by. Throws
 /// Error(InvalidArgument) for a cut of another view whose lenses hide it.
-Reason why(const Model& model, const View& view, const Cut& cut, uint32_t node);
+ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut, uint32_t node);
 
 /// Names of the placements from the root to a node, joined by '/'.
 std::string path_of(const Model& model, const Cut& cut, uint32_t node);
 /// The same by the table that it was chosen from, whose model may be gone.
-std::string path_of(const Table& table, const Cut& cut, uint32_t node);
+std::string path_of(const ChoiceTable& table, const Cut& cut, uint32_t node);
 
 }  // namespace lodestone::choose

@@ -6,19 +6,20 @@
 namespace lodestone::choose {
 namespace {
 
-class Search {
+class BudgetSearch {
 public:
-    Search(const Table& table, const View& view, const Budget& budget, const Job& job)
+    BudgetSearch(const ChoiceTable& table, const View& view, const CutBudget& budget,
+                 const Job& job)
         : table_(table), view_(view), budget_(budget), job_(job) {}
 
-    Budgeted run() {
+    BudgetedCut run() {
         if (try_at(view_.pixel_error, budget_))
             return std::move(found_);
         ++found_.cuts;
         CostSweep sweep(table_, view_, job_);
         const std::optional<double> least =
             sweep.least_that_fits(table_.find(table_.model().root), budget_);
-        if (!try_at(least.value_or(sweep.coarsest()), least ? budget_ : Budget{}))
+        if (!try_at(least.value_or(sweep.coarsest()), least ? budget_ : CutBudget{}))
             fail(Status::Internal, "a Pixel Error of ", least.value_or(0),
                  " does not fit the budget");
         found_.fits = least.has_value();
@@ -26,10 +27,10 @@ public:
     }
 
 private:
-    bool try_at(double threshold, const Budget& budget) {
+    bool try_at(double threshold, const CutBudget& budget) {
         View view = view_;
         view.pixel_error = threshold;
-        std::optional<Cut> cut = choose_within_budget(table_, view, budget, job_);
+        std::optional<Cut> cut = choose_cut_if_within(table_, view, budget, job_);
         ++found_.cuts;
         if (!cut)
             return false;
@@ -39,25 +40,27 @@ private:
         return true;
     }
 
-    const Table& table_;
+    const ChoiceTable& table_;
     const View& view_;
-    const Budget& budget_;
+    const CutBudget& budget_;
     const Job& job_;
-    Budgeted found_;
+    BudgetedCut found_;
 };
 
 }  // namespace
 
-Budgeted choose_within(const Table& table, const View& view, const Budget& budget, const Job& job) {
-    if (view.modifiers.criterion == Criterion::Distance)
+BudgetedCut fit_cut_to_budget(const ChoiceTable& table, const View& view, const CutBudget& budget,
+                              const Job& job) {
+    if (view.modifiers.criterion == DetailCriterion::Distance)
         fail(Status::InvalidArgument, "a budget cannot be kept by distances");
-    return Search(table, view, budget, job).run();
+    return BudgetSearch(table, view, budget, job).run();
 }
 
-Budgeted choose_within(const Model& model, const View& view, const Budget& budget, const Job& job) {
+BudgetedCut fit_cut_to_budget(const Model& model, const View& view, const CutBudget& budget,
+                              const Job& job) {
     if (model.root >= model.objects.size())
         fail(Status::InvalidArgument, "the model has no root object");
-    return choose_within(Table::whole(model, model.root, view.kinds), view, budget, job);
+    return fit_cut_to_budget(ChoiceTable::whole(model, model.root, view.kinds), view, budget, job);
 }
 
 }  // namespace lodestone::choose

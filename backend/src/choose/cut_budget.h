@@ -7,7 +7,7 @@
 
 namespace lodestone::choose {
 
-struct Budgeted {
+struct BudgetedCut {
     Cut cut;
     double pixel_error = 0;  // the threshold it was chosen with
     bool fits = false;       // false: the coarsest cut, which costs more than the budget
@@ -16,12 +16,12 @@ struct Budgeted {
 
 /// The cut of the least threshold not below view.pixel_error whose cost fits. So a larger budget
 /// never gives a coarser threshold, also where memory rises with it, as a mesh is then used at two
-/// levels instead of one. Throws Error(InvalidArgument) for Criterion::Distance. cost: the view's
+/// levels instead of one. Throws Error(InvalidArgument) for DetailCriterion::Distance. cost: the view's
 /// own cut, given up when it is known not to fit, a CostSweep, and the cut found
-Budgeted choose_within(const Model& model, const View& view, const Budget& budget,
-                       const Job& job = {});
+BudgetedCut fit_cut_to_budget(const Model& model, const View& view, const CutBudget& budget,
+                              const Job& job = {});
 /// The same with a whole table of the model for the view's kinds.
-Budgeted choose_within(const Table& table, const View& view, const Budget& budget,
-                       const Job& job = {});
+BudgetedCut fit_cut_to_budget(const ChoiceTable& table, const View& view, const CutBudget& budget,
+                              const Job& job = {});
 
 }  // namespace lodestone::choose

@@ -24,7 +24,7 @@ void refuse_nonsense(const View& view) {
         fail(Status::InvalidArgument, "camera '", view.camera.name, "' is nowhere");
 }
 
-std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
+std::map<std::string, uint64_t> counts_by_kind(std::span<const uint64_t, kKinds> kinds) {
     std::map<std::string, uint64_t> out;
     for (size_t kind = 0; kind < kKinds; ++kind) {
         if (kinds[kind] != 0)
@@ -33,13 +33,14 @@ std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds) {
     return out;
 }
 
-bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
-         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors) {
-    const Node& node = placed.node;
+bool find_sight(const View& view, FactorField& field, const PlacedNode& placed, bool group,
+                const Bound& local, double demand, double enlarge, FactorField::FactorPath& path,
+                OccurrenceSight& sight, DetailFactors& factors) {
+    const CutNode& node = placed.node;
     sight.stretch = enlarge;
     factors.importance = node.importance;
     factors.demand = demand;
-    if (!field.bends(path) && view.modifiers.criterion != Criterion::Area) {
+    if (!field.bends(path) && view.modifiers.criterion != DetailCriterion::Area) {
         sight.z = distance_of(local, placed.world, enlarge, view.camera.position);
         sight.pixel = field.pixel(sight.z);
         sight.total = total_refinement(node.importance * demand);
@@ -49,7 +50,7 @@ bool see(const View& view, FactorField& field, const Placed& placed, bool group,
     sight.z = distance(bound, view.camera.position);
     sight.pixel = field.pixel(sight.z);
     if (field.bends(path)) {
-        const FactorField::Effect effect =
+        const FactorField::FactorEffect effect =
             field.at(node.object, group, local, placed.world, bound, sight.z, path);
         if (effect.gone)
             return false;
@@ -60,28 +61,28 @@ bool see(const View& view, FactorField& field, const Placed& placed, bool group,
     } else {
         sight.total = total_refinement(node.importance * demand);
     }
-    if (view.modifiers.criterion == Criterion::Area)
+    if (view.modifiers.criterion == DetailCriterion::Area)
         sight.share = field.frame().rect_of_box(bound).area() /
                       (field.frame().width() * field.frame().height());
     return true;
 }
 
-bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
-           Placed& placed, double& enlarge, double& demand) {
-    Node& node = placed.node;
+bool place_child(const ChoiceTable& table, const CutNode& group, const Affine& around,
+                 const TableChild& child, PlacedNode& placed, double& enlarge, double& demand) {
+    CutNode& node = placed.node;
     node.object = child.object;
     node.hidden = group.hidden;
     node.importance = group.importance;
     demand = 1;
-    if (child.wish != 0) {
-        const TableWish& wish = table.wish(child.wish);
-        node.hidden = static_cast<RayMask>(group.hidden | wish.hidden);
+    if (child.overrides != 0) {
+        const PlacementOverrides& overrides = table.overrides(child.overrides);
+        node.hidden = static_cast<RayMask>(group.hidden | overrides.hidden);
         if (node.hidden == kAllRays)
             return false;
-        node.importance = group.importance * wish.importance;
-        node.coarsest = wish.coarsest;
-        node.finest = wish.finest;
-        demand = wish.demand;
+        node.importance = group.importance * overrides.importance;
+        node.coarsest = overrides.coarsest;
+        node.finest = overrides.finest;
+        demand = overrides.demand;
     }
     if (group.coarsest == 0) {
         node.coarsest = 0;
@@ -99,11 +100,11 @@ bool place(const Table& table, const Node& group, const Affine& around, const Ta
 
 /// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
 /// costs fall from finest to coarsest.
-Decision decide(const Table& table, const View& view, uint32_t index, const Node& node,
-                const Sight& sight) {
+LevelDecision decide_level(const ChoiceTable& table, const View& view, uint32_t index,
+                           const CutNode& node, const OccurrenceSight& sight) {
     const TableRow& row = table.row(index);
     const size_t levels = by_error(view) ? 0 : table.object(index).all_levels;
-    Decision made;
+    LevelDecision made;
     for (uint32_t i = row.level_count; i-- > 0;) {
         const TableLevel& level = table.level(row.first_level + i);
         if (level.lod > node.coarsest)
@@ -129,19 +130,19 @@ Decision decide(const Table& table, const View& view, uint32_t index, const Node
     return made;
 }
 
-void Visited::clear() {
+void VisitedNodes::clear() {
     nodes.clear();
     transforms.clear();
     seen.clear();
 }
 
-void Visited::reserve(size_t count) {
+void VisitedNodes::reserve(size_t count) {
     nodes.reserve(count);
     transforms.reserve(count);
     seen.reserve(count);
 }
 
-bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
+bool CutChooser::run(uint32_t root, const CutBudget& budget, Cut& cut) {
     job_.check();
     const size_t expected = table_.expected();
     cut.nodes.reserve(expected);
@@ -153,14 +154,14 @@ bool Chooser::run(uint32_t root, const Budget& budget, Cut& cut) {
     transforms_ = &cut.transforms;
     visit_root(root);
     visit_all();
-    if (too_dear())
+    if (exceeds_budget())
         return false;
-    cut.kinds = named(kinds_);
+    cut.kinds = counts_by_kind(kinds_);
     table_.expect(cut.nodes.size());
     return true;
 }
 
-void Chooser::run(uint32_t root, Visited& out) {
+void CutChooser::run(uint32_t root, VisitedNodes& out) {
     job_.check();
     nodes_ = &out.nodes;
     transforms_ = &out.transforms;
@@ -169,12 +170,12 @@ void Chooser::run(uint32_t root, Visited& out) {
     visit_all();
 }
 
-void Chooser::open(const Placed& group, const Seen& known, const FactorField::Path& path,
-                   Visited& out) {
+void CutChooser::open(const PlacedNode& group, const SeenNode& known,
+                      const FactorField::FactorPath& path, VisitedNodes& out) {
     nodes_ = &out.nodes;
     transforms_ = &out.transforms;
     seen_ = &out.seen;
-    Placed opened = group;
+    PlacedNode opened = group;
     opened.node.opened = true;
     opened.node.lod = 0;
     opened.node.kind = Kind::Assembly;
@@ -183,9 +184,9 @@ void Chooser::open(const Placed& group, const Seen& known, const FactorField::Pa
     visit_all();
 }
 
-Chooser::Known Chooser::known(uint32_t row) const {
+CutChooser::KnownObject CutChooser::known(uint32_t row) const {
     const TableObject& object = table_.object(row);
-    Known out{row, object.demand, 0, object.first_child, object.child_count, 0, 0};
+    KnownObject out{row, object.demand, 0, object.first_child, object.child_count, 0, 0};
     if (object.child_count > 0) {
         out.first_row = table_.child(object.first_child).row;
         out.first_level = table_.row(out.first_row).first_level;
@@ -193,14 +194,14 @@ Chooser::Known Chooser::known(uint32_t row) const {
     return out;
 }
 
-void Chooser::visit_root(uint32_t root) {
-    Placed top;
+void CutChooser::visit_root(uint32_t root) {
+    PlacedNode top;
     top.node.object = table_.object(root).object;
-    FactorField::Path path = field_.root();
+    FactorField::FactorPath path = field_.root();
     visit(known(root), top, 1, path, 0);
 }
 
-bool Chooser::too_dear() const {
+bool CutChooser::exceeds_budget() const {
     const bool limited = budget_ != nullptr && (budget_->triangles > 0 || budget_->bytes > 0);
     if (nodes_->size() > most_ && !limited)
         fail(Status::InvalidArgument, "more than ", most_,
@@ -208,31 +209,31 @@ bool Chooser::too_dear() const {
     return nodes_->size() > most_ || (limited && !budget_->fits(*cut_));
 }
 
-void Chooser::visit_all() {
+void CutChooser::visit_all() {
     while (!stack_.empty()) {
-        if (too_dear())
+        if (exceeds_budget())
             return;
-        const Entry entry = stack_.back();
+        const PendingChild entry = stack_.back();
         stack_.pop_back();
         if (stack_.size() >= kAhead)
-            table_.fetch(stack_[stack_.size() - kAhead].child);
+            table_.prefetch(stack_[stack_.size() - kAhead].child);
         visit_child(entry);
         if ((++visits_ & 1023u) == 0)
             job_.check();
     }
 }
 
-void Chooser::visit_child(const Entry& entry) {
+void CutChooser::visit_child(const PendingChild& entry) {
     const TableChild& child = table_.child(entry.child);
-    const Node& group = (*nodes_)[entry.parent];
+    const CutNode& group = (*nodes_)[entry.parent];
     const Affine& around = (*transforms_)[entry.parent];
-    const Frame& above = frames_[entry.depth - 1];
-    Placed placed;
+    const GroupFrame& above = frames_[entry.depth - 1];
+    PlacedNode placed;
     placed.node.parent = entry.parent;
     placed.node.placement = entry.position;
     double enlarge = above.stretch;
     double demand = 1;
-    if (!place(table_, group, around, child, placed, enlarge, demand))
+    if (!place_child(table_, group, around, child, placed, enlarge, demand))
         return;
     path_.lenses = above.path.lenses;
     if (view_.modifiers.when_moving)
@@ -248,7 +249,7 @@ void Chooser::visit_child(const Entry& entry) {
 }
 
 /// Of the nodes; their transforms are in the same order.
-uint32_t Chooser::append(Placed& placed, const Seen& seen) {
+uint32_t CutChooser::append(PlacedNode& placed, const SeenNode& seen) {
     const auto index = static_cast<uint32_t>(nodes_->size());
     placed.node.transform = index;
     nodes_->push_back(placed.node);
@@ -258,28 +259,28 @@ uint32_t Chooser::append(Placed& placed, const Seen& seen) {
     return index;
 }
 
-void Chooser::visit(const Known& known, Placed& placed, double enlarge, FactorField::Path& path,
-                    uint32_t depth) {
-    Node& node = placed.node;
+void CutChooser::visit(const KnownObject& known, PlacedNode& placed, double enlarge,
+                       FactorField::FactorPath& path, uint32_t depth) {
+    CutNode& node = placed.node;
     const TableRow& row = table_.row(known.row);
     if (!row.drawable)
         return;
-    Sight sight;
-    Factors factors;
-    if (!see(view_, field_, placed, row.group, table_.bound(known.row), known.demand, enlarge, path,
-             sight, factors))
+    OccurrenceSight sight;
+    DetailFactors factors;
+    if (!find_sight(view_, field_, placed, row.group, table_.bound(known.row), known.demand,
+                    enlarge, path, sight, factors))
         return;
-    Decision made;
+    LevelDecision made;
     // Most groups that are opened have no level that is good enough: none is read.
     if (row.group && node.coarsest == kAnyLevel && node.finest == 0 &&
-        view_.modifiers.criterion == Criterion::Resolution &&
+        view_.modifiers.criterion == DetailCriterion::Resolution &&
         !good_enough(view_, sight, known.finest_error, 0, 0))
         made.opened = made.drawn = true;
     else
-        made = decide(table_, view_, known.row, node, sight);
+        made = decide_level(table_, view_, known.row, node, sight);
     if (!made.drawn)
         return;
-    const Seen seen(table_, known.row, sight, made);
+    const SeenNode seen(table_, known.row, sight, made);
     if (made.opened) {
         node.opened = true;
         const uint32_t index = append(placed, seen);
@@ -295,8 +296,8 @@ void Chooser::visit(const Known& known, Placed& placed, double enlarge, FactorFi
     take(index, level, error_on_screen(sight, level.error) / factors.off_screen);
 }
 
-void Chooser::push_children(const Known& known, uint32_t index, double enlarge,
-                            const FactorField::Path& path, uint32_t depth) {
+void CutChooser::push_children(const KnownObject& known, uint32_t index, double enlarge,
+                               const FactorField::FactorPath& path, uint32_t depth) {
     uint32_t first = known.first_child;
     uint32_t count = known.child_count;
     if (growing_ != nullptr) {
@@ -304,7 +305,7 @@ void Chooser::push_children(const Known& known, uint32_t index, double enlarge,
         first = table_.object(known.row).first_child;
         count = table_.object(known.row).child_count;
     } else {
-        table_.fetch_below(first, known.first_row, known.first_level, std::min(count, kAhead));
+        table_.prefetch_below(first, known.first_row, known.first_level, std::min(count, kAhead));
     }
     if (frames_.size() <= depth)
         frames_.resize(depth + size_t{1});
@@ -317,7 +318,7 @@ void Chooser::push_children(const Known& known, uint32_t index, double enlarge,
 }
 
 /// Counts what is drawn. `shown_px`: what of its error the picture shows.
-void Chooser::take(uint32_t index, const TableLevel& level, double shown_px) {
+void CutChooser::take(uint32_t index, const TableLevel& level, double shown_px) {
     cut_->chosen.push_back(index);
     cut_->triangles += level.triangles;
     cut_->bytes += kBytesPerOccurrence;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut
+// CutChooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut
 // and step.
 #pragma once
 
@@ -21,28 +21,29 @@ inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
 void refuse_nonsense(const View& view);
 
 /// A node and where it is, before they are kept apart.
-struct Placed {
-    Node node;
+struct PlacedNode {
+    CutNode node;
     Affine world;
 };
 
 /// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
-bool see(const View& view, FactorField& field, const Placed& placed, bool group, const Bound& local,
-         double demand, double enlarge, FactorField::Path& path, Sight& sight, Factors& factors);
+bool find_sight(const View& view, FactorField& field, const PlacedNode& placed, bool group,
+                const Bound& local, double demand, double enlarge, FactorField::FactorPath& path,
+                OccurrenceSight& sight, DetailFactors& factors);
 
 /// What a group, opened, places (`around`: where it is): the node, where it is and by whom it is
 /// seen, its stretch (from the group's) and its object's demand. False: nothing would show it.
-bool place(const Table& table, const Node& group, const Affine& around, const TableChild& child,
-           Placed& placed, double& enlarge, double& demand);
+bool place_child(const ChoiceTable& table, const CutNode& group, const Affine& around,
+                 const TableChild& child, PlacedNode& placed, double& enlarge, double& demand);
 
 /// Whether levels are judged by their errors.
 inline bool by_error(const View& view) {
-    return view.modifiers.criterion == Criterion::Resolution ||
-           view.modifiers.criterion == Criterion::Feature;
+    return view.modifiers.criterion == DetailCriterion::Resolution ||
+           view.modifiers.criterion == DetailCriterion::Feature;
 }
 
 /// By which level something is drawn.
-struct Decision {
+struct LevelDecision {
     const TableLevel* level = nullptr;  // null: there is none that is allowed
     bool good = false;                  // good enough
     bool pinned = false;                // no other one is allowed
@@ -50,20 +51,21 @@ struct Decision {
     bool opened = false;
     bool drawn = false;  // neither: it has nothing to be drawn by
 };
-Decision decide(const Table& table, const View& view, uint32_t row, const Node& node,
-                const Sight& sight);
+LevelDecision decide_level(const ChoiceTable& table, const View& view, uint32_t row,
+                           const CutNode& node, const OccurrenceSight& sight);
 
 /// What stepping a cut keeps of a node, beside its transform.
-struct Seen {
+struct SeenNode {
     uint32_t row = 0;
-    uint32_t level = 0;  // of the table; Decision's, any where that has none
+    uint32_t level = 0;  // of the table; LevelDecision's, any where that has none
     double stretch = 1;
-    double total = 1;   // as Sight's
-    bool good = false;  // as Decision's, and so is the next
+    double total = 1;   // as OccurrenceSight's
+    bool good = false;  // as LevelDecision's, and so is the next
     bool cheaper = false;
 
-    Seen() = default;
-    Seen(const Table& table, uint32_t of, const Sight& sight, const Decision& made)
+    SeenNode() = default;
+    SeenNode(const ChoiceTable& table, uint32_t of, const OccurrenceSight& sight,
+             const LevelDecision& made)
         : row(of),
           level(made.level != nullptr ? static_cast<uint32_t>(made.level - &table.level(0)) : 0),
           stretch(sight.stretch),
@@ -73,49 +75,50 @@ struct Seen {
 };
 
 /// What was visited, in the order of a cut; transforms and what is kept in the order of the nodes.
-struct Visited {
-    std::vector<Node> nodes;
+struct VisitedNodes {
+    std::vector<CutNode> nodes;
     std::vector<Affine> transforms;
-    std::vector<Seen> seen;
+    std::vector<SeenNode> seen;
 
     void clear();
     void reserve(size_t count);
 };
 
 /// Visits what is drawn and the groups above it, depth first, each once.
-class Chooser {
+class CutChooser {
 public:
     /// `growing`: the same table, where rows are made on the way. All must outlive it.
     /// `most`: nodes; where there would be more, Error(InvalidArgument) is thrown, or it is too
     /// dear.
-    Chooser(const Table& table, Table* growing, const View& view, FactorField& field,
-            const Job& job, size_t most = kMostNodes)
+    CutChooser(const ChoiceTable& table, ChoiceTable* growing, const View& view, FactorField& field,
+               const Job& job, size_t most = kMostNodes)
         : table_(table), growing_(growing), view_(view), field_(field), job_(job), most_(most) {}
 
     /// All of a cut, but its kinds and sums where `budget` was exceeded, or with one `most`: false.
-    bool run(uint32_t root, const Budget& budget, Cut& cut);
+    bool run(uint32_t root, const CutBudget& budget, Cut& cut);
 
     /// Appends the nodes alone, and what is kept of each.
-    void run(uint32_t root, Visited& out);
+    void run(uint32_t root, VisitedNodes& out);
     /// The same for what is below a group: itself, opened, and the nodes below. `path`: of what it
     /// places. Their parents are indices in `out`, its own is left as it is.
-    void open(const Placed& group, const Seen& known, const FactorField::Path& path, Visited& out);
+    void open(const PlacedNode& group, const SeenNode& known, const FactorField::FactorPath& path,
+              VisitedNodes& out);
 
 private:
-    struct Entry {
+    struct PendingChild {
         uint32_t parent;    // node
         uint32_t child;     // of the table
         uint32_t position;  // among the placements
         uint32_t depth;
     };
     /// The group at some depth that is being visited.
-    struct Frame {
+    struct GroupFrame {
         double stretch = 1;
-        FactorField::Path path;  // of what it places
+        FactorField::FactorPath path;  // of what it places
     };
 
     /// What is known of an object before its row is looked at.
-    struct Known {
+    struct KnownObject {
         uint32_t row = 0;
         double demand = 1;
         double finest_error = 0;
@@ -126,37 +129,37 @@ private:
     };
 
     void visit_root(uint32_t root);
-    void visit_child(const Entry& entry);
-    void visit(const Known& known, Placed& placed, double enlarge, FactorField::Path& path,
-               uint32_t depth);
-    uint32_t append(Placed& placed, const Seen& seen);
-    void push_children(const Known& known, uint32_t index, double enlarge,
-                       const FactorField::Path& path, uint32_t depth);
-    Known known(uint32_t row) const;
+    void visit_child(const PendingChild& entry);
+    void visit(const KnownObject& known, PlacedNode& placed, double enlarge,
+               FactorField::FactorPath& path, uint32_t depth);
+    uint32_t append(PlacedNode& placed, const SeenNode& seen);
+    void push_children(const KnownObject& known, uint32_t index, double enlarge,
+                       const FactorField::FactorPath& path, uint32_t depth);
+    KnownObject known(uint32_t row) const;
     void take(uint32_t index, const TableLevel& level, double shown_px);
-    bool too_dear() const;
+    bool exceeds_budget() const;
     void visit_all();
 
-    const Table& table_;
-    Table* growing_;
+    const ChoiceTable& table_;
+    ChoiceTable* growing_;
     const View& view_;
     FactorField& field_;
     const Job& job_;
     const size_t most_;
-    const Budget* budget_ = nullptr;
-    Cut* cut_ = nullptr;                  // whose sums are made; null: none are
-    std::vector<Node>* nodes_ = nullptr;  // what is appended to
+    const CutBudget* budget_ = nullptr;
+    Cut* cut_ = nullptr;                     // whose sums are made; null: none are
+    std::vector<CutNode>* nodes_ = nullptr;  // what is appended to
     std::vector<Affine>* transforms_ = nullptr;
-    std::vector<Seen>* seen_ = nullptr;  // null: nothing is kept
-    FactorField::Path path_;             // of what is visited; of motion only where that counts
-    std::vector<Entry> stack_;
-    std::vector<Frame> frames_;  // by depth
-    std::vector<bool> drawn_;    // by TableLevel::distinct
+    std::vector<SeenNode>* seen_ = nullptr;  // null: nothing is kept
+    FactorField::FactorPath path_;           // of what is visited; of motion only where that counts
+    std::vector<PendingChild> stack_;
+    std::vector<GroupFrame> frames_;  // by depth
+    std::vector<bool> drawn_;         // by TableLevel::distinct
     std::array<uint64_t, kKinds> kinds_{};
     size_t visits_ = 0;
 };
 
 /// The words of kinds, and how many are drawn by each.
-std::map<std::string, uint64_t> named(std::span<const uint64_t, kKinds> kinds);
+std::map<std::string, uint64_t> counts_by_kind(std::span<const uint64_t, kKinds> kinds);
 
 }  // namespace lodestone::choose

@@ -3,12 +3,12 @@
 
 namespace lodestone::choose {
 
-void Tally::clear(const Table& table) {
+void CutTotals::clear(const ChoiceTable& table) {
     uses_.assign(table.distinct(), 0);
     kinds_.fill(0);
 }
 
-void Tally::count(const TableLevel& level, bool more, Cut& cut) {
+void CutTotals::count(const TableLevel& level, bool more, Cut& cut) {
     uint32_t& uses = uses_[level.distinct];
     // A composite is copied for each occurrence.
     const bool own = level.kind == Kind::Composite || uses == (more ? 0u : 1u);

@@ -18,7 +18,7 @@ constexpr double kSteepest = 8;       // depth exaggeration
 constexpr double kMiddleShown = 0.5;  // what is displayed brighter needs all detail
 constexpr double kLeastShown = 1.0 / 128;
 
-void refuse_nonsense(const Modifiers& modifiers) {
+void refuse_nonsense(const QualityModifiers& modifiers) {
     if (!(modifiers.depth >= 0 && modifiers.depth <= kSteepest))
         fail(Status::InvalidArgument, "depth exaggeration is ", modifiers.depth, "; 0 to ",
              kSteepest, " expected");
@@ -76,14 +76,14 @@ double lit(const Light& light, const Bound& bound) {
 
 }  // namespace
 
-double Factors::total() const {
+double DetailFactors::total() const {
     const double refine = importance * demand * lenses * screen_lenses;
     if (std::isinf(refine))
         return refine;
     return total_refinement(refine / (depth * motion * darkness * off_screen));
 }
 
-double displayed(double radiance) {
+double displayed_radiance(double radiance) {
     return radiance <= 0.0031308 ? 12.92 * radiance : 1.055 * std::pow(radiance, 1 / 2.4) - 0.055;
 }
 
@@ -100,7 +100,7 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
       view_(view),
       lenses_(model, view.modifiers.lenses, in_any_order),
       frame_(view.camera, view.width, view.height) {
-    const Modifiers& modifiers = view.modifiers;
+    const QualityModifiers& modifiers = view.modifiers;
     refuse_nonsense(modifiers);
     lenses_alone_ = modifiers.screen_lenses.empty() && modifiers.depth == 1 &&
                     !modifiers.when_moving && !modifiers.when_dark &&
@@ -126,7 +126,8 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
     if (modifiers.when_dark) {
         // What is put behind a transparent film may be bright, and so may a picture of the sky.
         const World& world = model.world;
-        background_ = world.transparent || world.environment ? 1 : displayed(largest(world.color));
+        background_ =
+            world.transparent || world.environment ? 1 : displayed_radiance(largest(world.color));
         glows_.resize(model.objects.size(), 0);
         for (const ObjectIndex index : bottom_up(model)) {
             const Object& object = model.objects[index];
@@ -142,13 +143,13 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
     }
 }
 
-FactorField::Path FactorField::root() {
+FactorField::FactorPath FactorField::root() {
     return {lenses_.root(), Affine{}, false};
 }
 
-FactorField::Path FactorField::below(const Path& group, const Affine& world,
-                                     const Placement& placement) const {
-    Path path = group;
+FactorField::FactorPath FactorField::below(const FactorPath& group, const Affine& world,
+                                           const Placement& placement) const {
+    FactorPath path = group;
     if (moves_below_.empty())
         return path;
     if (placement.closing) {
@@ -160,17 +161,18 @@ FactorField::Path FactorField::below(const Path& group, const Affine& world,
     return path;
 }
 
-FactorField::Effect FactorField::at(ObjectIndex object, bool group, const Bound& local,
-                                    const Affine& world, const Bound& bound, double z, Path& path) {
-    Effect effect;
+FactorField::FactorEffect FactorField::at(ObjectIndex object, bool group, const Bound& local,
+                                          const Affine& world, const Bound& bound, double z,
+                                          FactorPath& path) {
+    FactorEffect effect;
     if (!lenses_.empty()) {
-        const LensField::Effect lens = lenses_.at(object, group, bound, path.lenses);
+        const LensField::LensEffect lens = lenses_.at(object, group, bound, path.lenses);
         effect.factors.lenses = lens.refine;
         effect.open = lens.open;
         effect.gone = lens.gone;
         path.lenses = lens.below;
     }
-    const Modifiers& modifiers = view_.modifiers;
+    const QualityModifiers& modifiers = view_.modifiers;
     if (!modifiers.screen_lenses.empty())
         effect.factors.screen_lenses = screen_lenses(bound);
     if (modifiers.depth != 1)
@@ -200,7 +202,7 @@ double FactorField::screen_lenses(const Bound& bound) const {
 
 /// By the least motion of the bound's center and of the middles of its box's sides.
 double FactorField::motion(ObjectIndex object, const Bound& local, const Affine& world,
-                           const Path& path) const {
+                           const FactorPath& path) const {
     if (!closing_ && !path.moving)
         return 1;
     if (moves_below_[object] != 0 || local.empty())  // each part in its own way
@@ -230,11 +232,11 @@ double FactorField::darkness(ObjectIndex object, const Bound& bound) const {
         return 1;
     double radiance = largest(model_.world.color);
     for (const Light& light : model_.lights) {
-        if (displayed(radiance) >= kMiddleShown)
+        if (displayed_radiance(radiance) >= kMiddleShown)
             break;
         radiance += lit(light, bound);
     }
-    return coarser_by_darkness(std::max(displayed(radiance), background_));
+    return coarser_by_darkness(std::max(displayed_radiance(radiance), background_));
 }
 
 }  // namespace lodestone::choose

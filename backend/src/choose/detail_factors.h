@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Factors: all that makes one occurrence finer or coarser than Pixel Error alone (5.5.5).
+// DetailFactors: all that makes one occurrence finer or coarser than Pixel Error alone (5.5.5).
 #pragma once
 
 #include "choose/image_frame.h"
@@ -11,7 +11,7 @@
 namespace lodestone::choose {
 
 /// Each is kept, so that "why this level?" can name it. The first four refine, the others coarsen.
-struct Factors {
+struct DetailFactors {
     double importance = 1;  // of the placements along its path
     double demand = 1;      // of what is most important below it
     double lenses = 1;
@@ -26,7 +26,7 @@ struct Factors {
 };
 
 /// Radiance as a display shows it: 0 ... 1 and beyond.
-double displayed(double radiance);
+double displayed_radiance(double radiance);
 /// What motion over so many pixels while the shutter is open coarsens: sharpness of a pixel and of
 /// the way, squares added.
 double coarser_by_motion(double pixels);
@@ -45,27 +45,28 @@ public:
     bool bends() const { return bends_; }
 
     /// What is known along a path.
-    struct Path {
-        LensField::Path lenses;
+    struct FactorPath {
+        LensField::LensPath lenses;
         Affine closing;       // -> world when the shutter closes
         bool moving = false;  // a placement along it moves
     };
-    Path root();
+    FactorPath root();
     /// For a child, once `at` was asked for its group.
-    Path below(const Path& group, const Affine& world, const Placement& placement) const;
+    FactorPath below(const FactorPath& group, const Affine& world,
+                     const Placement& placement) const;
 
-    struct Effect {
-        Factors factors;  // without importance and demand
+    struct FactorEffect {
+        DetailFactors factors;  // without importance and demand
         bool open = false;
         bool gone = false;
     };
     /// Occurrences in depth-first order, or in any where that was asked for. `path` becomes that of
     /// what is below it.
-    Effect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
-              const Bound& bound, double z, Path& path);
+    FactorEffect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
+                    const Bound& bound, double z, FactorPath& path);
 
     /// False: neither here nor below, for lenses are all there is, and none is near.
-    bool bends(const Path& path) const {
+    bool bends(const FactorPath& path) const {
         return bends_ && (path.lenses.begin < path.lenses.end || !lenses_alone_);
     }
 
@@ -78,7 +79,7 @@ public:
 private:
     double screen_lenses(const Bound& bound) const;
     double motion(ObjectIndex object, const Bound& local, const Affine& world,
-                  const Path& path) const;
+                  const FactorPath& path) const;
     double darkness(ObjectIndex object, const Bound& bound) const;
 
     const Model& model_;

@@ -45,7 +45,7 @@ double tolerance(const Affine& world) {
     return 1e-3 * size;
 }
 
-struct Visit {
+struct OccurrenceVisit {
     ObjectIndex object = kNoObject;
     uint32_t parent = kNone;  // index of a visit
     uint32_t placement = 0;
@@ -59,7 +59,7 @@ std::optional<std::vector<uint32_t>> path_to(const Model& model, ObjectIndex obj
     const std::vector<uint8_t> holds = holders(model, object);
     if (model.root >= holds.size() || holds[model.root] == 0)
         return std::nullopt;
-    std::vector<Visit> visits(1);
+    std::vector<OccurrenceVisit> visits(1);
     visits[0].object = model.root;
     uint32_t best = kNone;
     double nearest = tolerance(world);
@@ -67,7 +67,7 @@ std::optional<std::vector<uint32_t>> path_to(const Model& model, ObjectIndex obj
     while (!stack.empty()) {
         const uint32_t at = stack.back();
         stack.pop_back();
-        const Visit visit = visits[at];
+        const OccurrenceVisit visit = visits[at];
         if (visit.object == object) {
             const double distance = apart(visit.world, world);
             if (distance < nearest || (best == kNone && distance <= nearest)) {
@@ -103,21 +103,21 @@ FoundChoice find_choice(const Model& model, const Cut& cut, ObjectIndex object,
     if (!path)
         return {};
     if (cut.nodes.empty() || cut.nodes[0].parent != kNoParent)
-        return {Drawn::NotDrawn, kNoParent};
+        return {DrawnState::NotDrawn, kNoParent};
     uint32_t at = 0;
     for (const uint32_t step : *path) {
         if (!cut.nodes[at].opened)
-            return {Drawn::InGroup, at};
+            return {DrawnState::InGroup, at};
         uint32_t below = kNoParent;
         for (uint32_t i = at + 1; i < cut.nodes.size() && below == kNoParent; ++i) {
             if (cut.nodes[i].parent == at && cut.nodes[i].placement == step)
                 below = i;
         }
         if (below == kNoParent)
-            return {Drawn::NotDrawn, kNoParent};
+            return {DrawnState::NotDrawn, kNoParent};
         at = below;
     }
-    return {cut.nodes[at].opened ? Drawn::Opened : Drawn::Itself, at};
+    return {cut.nodes[at].opened ? DrawnState::Opened : DrawnState::Itself, at};
 }
 
 std::string most_demanding(const Model& model, ObjectIndex group) {

@@ -9,7 +9,7 @@
 namespace lodestone::choose {
 
 /// How a cut draws an occurrence.
-enum class Drawn : uint8_t {
+enum class DrawnState : uint8_t {
     Missing = 0,   // the model has no such occurrence
     Itself = 1,    // by a level of its own
     InGroup = 2,   // by a stand-in for a group around it
@@ -18,7 +18,7 @@ enum class Drawn : uint8_t {
 };
 
 struct FoundChoice {
-    Drawn drawn = Drawn::Missing;
+    DrawnState drawn = DrawnState::Missing;
     uint32_t node = kNoParent;  // the chosen or opened one
 };
 

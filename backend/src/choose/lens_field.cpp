@@ -125,16 +125,16 @@ LensField::LensField(const Model& model, const std::vector<DetailLens>& lenses, 
     }
 }
 
-LensField::Path LensField::root() {
+LensField::LensPath LensField::root() {
     touching_.clear();
     for (size_t i = 0; i < lenses_.size(); ++i)
         touching_.push_back(static_cast<uint32_t>(i));
     return {0, static_cast<uint32_t>(touching_.size()), 0};
 }
 
-LensField::Effect LensField::at(ObjectIndex object, bool group, const Bound& world,
-                                const Path& above) {
-    Effect effect;
+LensField::LensEffect LensField::at(ObjectIndex object, bool group, const Bound& world,
+                                    const LensPath& above) {
+    LensEffect effect;
     if (!in_any_order_)
         touching_.resize(above.end);  // all that was visited below an earlier one is done
     const auto first = static_cast<uint32_t>(touching_.size());

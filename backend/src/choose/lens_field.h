@@ -31,22 +31,22 @@ public:
 
     /// What is known along a path: which lenses touch what is above, and the lists that hold any of
     /// it.
-    struct Path {
+    struct LensPath {
         uint32_t begin = 0;  // in touching_
         uint32_t end = 0;
         uint64_t lists = 0;
     };
-    Path root();
+    LensPath root();
 
-    struct Effect {
+    struct LensEffect {
         double refine = 1;  // the largest value anywhere in the bound, and for anything below
         bool open = false;  // a stand-in would show what a lens hides
         bool gone = false;  // hidden by a lens
-        Path below;         // for what it places
+        LensPath below;     // for what it places
     };
     /// Occurrences in depth-first order, what is below one before the next beside it, or in any in
     /// which groups come before what they place.
-    Effect at(ObjectIndex object, bool group, const Bound& world, const Path& above);
+    LensEffect at(ObjectIndex object, bool group, const Bound& world, const LensPath& above);
 
 private:
     struct Lens {

@@ -33,20 +33,20 @@ double extent(const Light& light) {
 }
 
 /// Of every object, what is below it included, whatever levels are drawn.
-struct Images {
+struct ImagingShare {
     double share = 0;  // the largest; 0: the reach is not known
     Bound reach;
 };
-std::vector<Images> images_below(const Model& model) {
-    std::vector<Images> images(model.objects.size());
+std::vector<ImagingShare> images_below(const Model& model) {
+    std::vector<ImagingShare> images(model.objects.size());
     for (const ObjectIndex index : bottom_up(model)) {
         const Object& object = model.objects[index];
-        Images& here = images[index];
+        ImagingShare& here = images[index];
         for (const Representation& representation : object.representations)
-            here.share = std::max(here.share, imaged(model, representation));
+            here.share = std::max(here.share, imaged_share(model, representation));
         if (object.group()) {
             for (const Placement& placement : object.representations[0].assembly().placements) {
-                const Images& below = images[placement.object];
+                const ImagingShare& below = images[placement.object];
                 here.share = std::max(here.share, below.share);
                 here.reach = merged(here.reach, transformed(below.reach, placement.transform));
             }
@@ -59,7 +59,7 @@ std::vector<Images> images_below(const Model& model) {
 
 }  // namespace
 
-double imaged(const Material& material) {
+double imaged_share(const Material& material) {
     double share = 0;
     const Material* part = &material;
     for (int depth = 0; part != nullptr && depth < 64; ++depth, part = part->other.get()) {
@@ -75,26 +75,26 @@ double imaged(const Material& material) {
     return share;
 }
 
-double imaged(const Model& model, const Representation& representation) {
+double imaged_share(const Model& model, const Representation& representation) {
     double most = 0;
     for (const uint32_t index : representation.materials)
-        most = std::max(most, imaged(model.materials.at(index)));
+        most = std::max(most, imaged_share(model.materials.at(index)));
     return most;
 }
 
-double imaged(double share, const View& view, const Bound& bound, double away) {
+double imaged_share(double share, const View& view, const Bound& bound, double away) {
     const double wide = 2 * bound.radius / pixel_size(view, away);
     return share * std::min(1.0, wide * wide / kWholeMirror);
 }
 
-bool shadows(const Light& light) {
+bool casts_shadows(const Light& light) {
     return light.shadow && light.power != 0 && std::isfinite(light.power);
 }
 
-ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* pyramid,
+ShadowReach shadow_reach(const Light& light, const Bound& bound, const ViewPyramid* pyramid,
                          const Box3& scene, const glm::dvec3& eye) {
     ShadowReach reach;
-    Sweep& sweep = reach.sweep;
+    SweptBall& sweep = reach.sweep;
     sweep = {bound.center, {}, bound.radius, 0};
     if (light.kind == LightKind::Sun) {
         const double length = glm::length(light.direction);
@@ -114,8 +114,8 @@ ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* 
         sweep.direction = ray / away;
         sweep.growth = (bound.radius + extent(light)) / away;
     }
-    const Stretch seen =
-        pyramid != nullptr ? pyramid->touched(sweep, scene) : touched(sweep, scene);
+    const SweepInterval seen = pyramid != nullptr ? pyramid->touched_interval(sweep, scene)
+                                                  : touched_interval(sweep, scene);
     if (seen.empty())
         return reach;
     reach.seen = true;
@@ -139,19 +139,19 @@ OffScreenField::OffScreenField(const Model& model, const View& view)
 }
 
 void OffScreenField::find_mirrors(const Model& model) {
-    struct Part {
+    struct MirrorCandidate {
         ObjectIndex object = kNoObject;
         Affine world;
-        Mirror mirror;
+        MirrorGroup mirror;
         size_t number = 0;  // the order they were found in
 
-        bool operator<(const Part& other) const {
+        bool operator<(const MirrorCandidate& other) const {
             return mirror.share != other.mirror.share ? mirror.share < other.mirror.share
                                                       : number > other.number;
         }
     };
-    const std::vector<Images> images = images_below(model);
-    std::priority_queue<Part> parts;
+    const std::vector<ImagingShare> images = images_below(model);
+    std::priority_queue<MirrorCandidate> parts;
     size_t number = 0;
     const auto add = [&](ObjectIndex index, const Affine& world) {
         if (!(images[index].share > 0))
@@ -160,14 +160,14 @@ void OffScreenField::find_mirrors(const Model& model) {
         if (pyramid_.outside(bound))
             return;
         const double away = distance(bound, view_.camera.position);
-        const double share = imaged(images[index].share, view_, bound, away);
+        const double share = imaged_share(images[index].share, view_, bound, away);
         if (share > kLeastImaged)
             parts.push({index, world, {bound, away, share}, number++});
     };
     add(model.root, Affine{});
     // What shows most is parted as long as there are few: a group is nearer than the mirrors in it
     while (!parts.empty()) {
-        const Part part = parts.top();
+        const MirrorCandidate part = parts.top();
         parts.pop();
         const Object& object = model.objects[part.object];
         const size_t children =
@@ -195,7 +195,7 @@ double OffScreenField::coarser(const Bound& bound, double z) const {
         return 1;
     const double here = pixel_size(view_, z);
     double least = here * most_;
-    for (const Mirror& mirror : mirrors_) {
+    for (const MirrorGroup& mirror : mirrors_) {
         const double gap =
             glm::length(bound.center - mirror.bound.center) - bound.radius - mirror.bound.radius;
         const double way = std::max(z, mirror.away + std::max(0.0, gap));
@@ -204,7 +204,7 @@ double OffScreenField::coarser(const Bound& bound, double z) const {
     for (const Light& light : lights_) {
         if (least <= here)
             return 1;
-        if (shadows(light))
+        if (casts_shadows(light))
             least = std::min(least, shadow_pixel(light, bound));
     }
     return std::max(1.0, least / here);

@@ -11,17 +11,17 @@ namespace lodestone::choose {
 
 /// Share of the light from around that a surface sends on as an image of it, the mean over all
 /// directions; 0 for what is rough, 1 for what refracts.
-double imaged(const Material& material);
+double imaged_share(const Material& material);
 /// The largest of a representation's materials.
-double imaged(const Model& model, const Representation& representation);
+double imaged_share(const Model& model, const Representation& representation);
 
 /// The same weighed by the pixels something covers: what is wrong in a door knob is small whatever
 /// it shows. Below kLeastImaged it does not count.
-double imaged(double share, const View& view, const Bound& bound, double away);
+double imaged_share(double share, const View& view, const Bound& bound, double away);
 inline constexpr double kLeastImaged = 1 / (kMostImportance * kMostImportance);  // its root counts
 
 /// Whether a light throws shadows at all.
-bool shadows(const Light& light);
+bool casts_shadows(const Light& light);
 
 /// Where the shadow of a ball can be, itself included: a swept ball.
 struct ShadowReach {
@@ -30,10 +30,10 @@ struct ShadowReach {
     double last = 0;    // there no farther from the ball's center
     /// From the light to the ball's center: infinite for suns; 0: the ball may be all around it.
     double away = 0;
-    Sweep sweep;
+    SweptBall sweep;
 };
 /// In the pyramid, or anywhere (null), as far as the scene's box goes.
-ShadowReach shadow_reach(const Light& light, const Bound& bound, const Pyramid* pyramid,
+ShadowReach shadow_reach(const Light& light, const Bound& bound, const ViewPyramid* pyramid,
                          const Box3& scene, const glm::dvec3& eye);
 
 /// How much coarser than at its distance something may be that is not in the picture: by how large
@@ -53,10 +53,10 @@ public:
     static constexpr size_t kMostMirrors = 256;
 
 private:
-    struct Mirror {
+    struct MirrorGroup {
         Bound bound;       // around all levels
         double away = 0;   // of it, metres from the eye
-        double share = 1;  // see imaged()
+        double share = 1;  // see imaged_share()
     };
 
     double shadow_pixel(const Light& light, const Bound& bound) const;
@@ -64,10 +64,10 @@ private:
 
     const View& view_;
     const std::vector<Light>& lights_;
-    Pyramid pyramid_;
+    ViewPyramid pyramid_;
     Box3 scene_;
     double most_ = 1;
-    std::vector<Mirror> mirrors_;
+    std::vector<MirrorGroup> mirrors_;
 };
 
 }  // namespace lodestone::choose

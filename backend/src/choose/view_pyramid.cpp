@@ -34,7 +34,7 @@ double half_frame(const View& view, int pixels, double extent) {
 
 }  // namespace
 
-void Stretch::cut_by(const Sweep& sweep, const HalfSpace& space) {
+void SweepInterval::cut_by(const SweptBall& sweep, const HalfSpace& space) {
     // The ball touches it where slope * t + at_start >= 0
     const double at_start = glm::dot(space.normal, sweep.start) + space.offset + sweep.radius;
     const double slope = glm::dot(space.normal, sweep.direction) + sweep.growth;
@@ -46,7 +46,7 @@ void Stretch::cut_by(const Sweep& sweep, const HalfSpace& space) {
         last = -1;
 }
 
-bool touches(const Sweep& sweep, const glm::dvec3& center, double radius) {
+bool touches(const SweptBall& sweep, const glm::dvec3& center, double radius) {
     const double both = sweep.radius + radius;
     const glm::dvec3 to = center - sweep.start;
     if (glm::length(to) <= both || sweep.growth >= 1)
@@ -59,8 +59,8 @@ bool touches(const Sweep& sweep, const glm::dvec3& center, double radius) {
            beside * slope - sweep.growth * along <= both;
 }
 
-Stretch touched(const Sweep& sweep, const Box3& box) {
-    Stretch out{0, std::numeric_limits<double>::infinity()};
+SweepInterval touched_interval(const SweptBall& sweep, const Box3& box) {
+    SweepInterval out{0, std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 normal(0.0);
         normal[axis] = 1;
@@ -70,7 +70,7 @@ Stretch touched(const Sweep& sweep, const Box3& box) {
     return out;
 }
 
-Pyramid::Pyramid(const View& view) {
+ViewPyramid::ViewPyramid(const View& view) {
     const Camera& camera = view.camera;
     const glm::dvec3 right = camera.right * half_frame(view, view.width, glm::length(camera.right));
     const glm::dvec3 up = camera.up * half_frame(view, view.height, glm::length(camera.up));
@@ -86,7 +86,7 @@ Pyramid::Pyramid(const View& view) {
               side(eye, glm::cross(right, up), ahead)};
 }
 
-bool Pyramid::outside(const Bound& bound) const {
+bool ViewPyramid::outside(const Bound& bound) const {
     if (bound.empty())
         return true;
     const glm::dvec3 middle = 0.5 * (bound.box.low + bound.box.high);
@@ -98,8 +98,8 @@ bool Pyramid::outside(const Bound& bound) const {
     });
 }
 
-Stretch Pyramid::touched(const Sweep& sweep, const Box3& box) const {
-    Stretch out = choose::touched(sweep, box);
+SweepInterval ViewPyramid::touched_interval(const SweptBall& sweep, const Box3& box) const {
+    SweepInterval out = choose::touched_interval(sweep, box);
     for (const HalfSpace& space : sides_)
         out.cut_by(sweep, space);
     return out;

@@ -18,13 +18,13 @@ constexpr uint64_t kSeed = 1;
 // A walk ends sooner, unless the surface is very fine.
 constexpr int kSteps = 256;
 
-Anchor anchor_at(const PoseSurface& surface, const geometry::Nearest& nearest,
-                 const glm::dvec3& place) {
-    Anchor anchor;
+SurfaceAnchor anchor_at(const PoseSurface& surface, const geometry::NearestWalk& nearest,
+                        const glm::dvec3& place) {
+    SurfaceAnchor anchor;
     anchor.corners = nearest.corners();
     anchor.u = static_cast<float>(nearest.u());
     anchor.v = static_cast<float>(nearest.v());
-    const Footing footing = footing_of(surface, anchor);
+    const AnchorFrame footing = anchor_frame_of(surface, anchor);
     if (footing.size > 0) {
         const glm::vec3 offset(glm::transpose(footing.axes) * (place - footing.point) /
                                footing.size);
@@ -36,18 +36,18 @@ Anchor anchor_at(const PoseSurface& surface, const geometry::Nearest& nearest,
 
 /// Normals along the axes of their anchors; those of flat faces zero.
 std::vector<glm::vec3> bound_normals(const BoundLevel& level, const PoseSurface& surface) {
-    const Facing facing = facing_of(level.mesh);
+    const VertexFacing facing = vertex_facing_of(level.mesh);
     std::vector<glm::vec3> normals(level.mesh.normals.size(), glm::vec3(0.0f));
     for (size_t i = 0; i < normals.size(); ++i) {
         if (facing.flat[i] != 0)
             continue;
-        const Footing footing = footing_of(surface, level.anchors[level.places[i]]);
+        const AnchorFrame footing = anchor_frame_of(surface, level.anchors[level.places[i]]);
         normals[i] = glm::vec3(glm::transpose(footing.axes) * glm::dvec3(level.mesh.normals[i]));
     }
     return normals;
 }
 
-Mesh mesh_of(const Pose& pose) {
+Mesh mesh_of(const PosedSurface& pose) {
     Mesh mesh;
     mesh.positions = pose.points;
     mesh.triangles = pose.triangles;
@@ -55,13 +55,13 @@ Mesh mesh_of(const Pose& pose) {
 }
 
 /// The first entries of weld() for a pose's points followed by a mesh's vertices.
-std::vector<uint32_t> weld_both(const Pose& pose, const Mesh& mesh) {
+std::vector<uint32_t> weld_both(const PosedSurface& pose, const Mesh& mesh) {
     Mesh both = mesh_of(pose);
     both.positions.insert(both.positions.end(), mesh.positions.begin(), mesh.positions.end());
     return weld(both);
 }
 
-void measure_source(Witness& witness, const Pose& pose) {
+void measure_source(PoseErrorSample& witness, const PosedSurface& pose) {
     const glm::dvec3 a(pose.points[witness.source.x]);
     const glm::dvec3 b(pose.points[witness.source.y]);
     const glm::dvec3 c(pose.points[witness.source.z]);
@@ -72,7 +72,7 @@ void measure_source(Witness& witness, const Pose& pose) {
 
 }  // namespace
 
-std::vector<uint32_t> points_of(const Mesh& mesh, const Pose& pose) {
+std::vector<uint32_t> points_of(const Mesh& mesh, const PosedSurface& pose) {
     const auto count = static_cast<uint32_t>(pose.points.size());
     const std::vector<uint32_t> welded = weld_both(pose, mesh);
     std::vector<uint32_t> points;
@@ -83,24 +83,24 @@ std::vector<uint32_t> points_of(const Mesh& mesh, const Pose& pose) {
 }
 
 /// What is known of one level while it is bound.
-struct Binder::Trace {
+struct LevelBinder::BindingTrace {
     std::vector<std::vector<uint32_t>> points;  // by place: those that ended up there
     std::vector<uint32_t> place_of;             // by (welded) point; kNowhere: vanished
-    geometry::Rings rings;                      // of the level, by place
+    geometry::VertexRings rings;                // of the level, by place
 };
 
-Binder::Binder(const Mesh& finest, const PoseSurface& surface)
+LevelBinder::LevelBinder(const Mesh& finest, const PoseSurface& surface)
     : surface_(surface),
       points_(points_of(finest, surface.pose())),
       scene_(mesh_of(surface.pose())) {
-    const Pose& pose = surface.pose();
+    const PosedSurface& pose = surface.pose();
     welded_ = weld(mesh_of(pose));
-    rings_ = geometry::Rings(pose.triangles, pose.points.size(),
-                             [&](uint32_t point) { return welded_[point]; });
+    rings_ = geometry::VertexRings(pose.triangles, pose.points.size(),
+                                   [&](uint32_t point) { return welded_[point]; });
 }
 
-std::optional<BoundLevel> Binder::bind(simplify::TracedLevel&& level) const {
-    const Pose& pose = surface_.pose();
+std::optional<BoundLevel> LevelBinder::bind(simplify::TracedLevel&& level) const {
+    const PosedSurface& pose = surface_.pose();
     const auto points = static_cast<uint32_t>(pose.points.size());
     BoundLevel out;
     out.mesh = std::move(level.mesh);
@@ -120,9 +120,10 @@ std::optional<BoundLevel> Binder::bind(simplify::TracedLevel&& level) const {
             number_of[traced] = places++;
         out.places[vertex] = number_of[traced];
     }
-    Trace trace{std::vector<std::vector<uint32_t>>(places), std::vector<uint32_t>(points, kNowhere),
-                geometry::Rings(out.mesh.triangles, places,
-                                [&](uint32_t vertex) { return out.places[vertex]; })};
+    BindingTrace trace{std::vector<std::vector<uint32_t>>(places),
+                       std::vector<uint32_t>(points, kNowhere),
+                       geometry::VertexRings(out.mesh.triangles, places,
+                                             [&](uint32_t vertex) { return out.places[vertex]; })};
     for (const auto& [traced, vertex] : level.origins) {
         if (traced >= number_of.size() || number_of[traced] == kNowhere)
             continue;
@@ -140,7 +141,7 @@ std::optional<BoundLevel> Binder::bind(simplify::TracedLevel&& level) const {
             continue;
         done[place] = 1;
         const glm::dvec3 here(out.mesh.positions[vertex]);
-        geometry::Nearest nearest(pose.points, pose.triangles, here);
+        geometry::NearestWalk nearest(pose.points, pose.triangles, here);
         for (const uint32_t point : trace.points[place]) {
             for (const uint32_t triangle : rings_.around(point))
                 nearest.visit(triangle);
@@ -151,20 +152,20 @@ std::optional<BoundLevel> Binder::bind(simplify::TracedLevel&& level) const {
     }
     if (!out.mesh.normals.empty())
         out.normals = bound_normals(out, surface_);
-    add_source_witnesses(trace, out);
-    add_level_witnesses(trace, out);
+    add_source_samples(trace, out);
+    add_level_samples(trace, out);
     return out;
 }
 
-void Binder::add_source_witnesses(const Trace& trace, BoundLevel& level) const {
-    const Pose& pose = surface_.pose();
-    std::optional<ray::Scene> whole;  // of the level, for parts that vanished
+void LevelBinder::add_source_samples(const BindingTrace& trace, BoundLevel& level) const {
+    const PosedSurface& pose = surface_.pose();
+    std::optional<ray::MeshScene> whole;  // of the level, for parts that vanished
     for (const measure::WeightedVertex& from :
          measure::weighted_vertices(mesh_of(pose), kSourceWitnesses, kSeed)) {
         const glm::dvec3 here(pose.points[from.vertex]);
         if (!finite(here))
             continue;
-        geometry::Nearest nearest(level.mesh.positions, level.mesh.triangles, here);
+        geometry::NearestWalk nearest(level.mesh.positions, level.mesh.triangles, here);
         const uint32_t place = trace.place_of[welded_[from.vertex]];
         if (place != kNowhere) {
             // From the triangles at its place on, which are of its own sheet.
@@ -175,13 +176,13 @@ void Binder::add_source_witnesses(const Trace& trace, BoundLevel& level) const {
         } else {
             if (!whole)
                 whole.emplace(level.mesh);
-            const ray::Closest closest = whole->closest_point(here);
+            const ray::ClosestPoint closest = whole->closest_point(here);
             if (closest.triangle != ray::kNoTriangle)
                 nearest.visit(closest.triangle);
         }
         if (!nearest.found())
             continue;
-        Witness witness;
+        PoseErrorSample witness;
         const uint32_t triangle = rings_.around(welded_[from.vertex]).front();
         const Triangle& t = pose.triangles[triangle];
         const int at = welded_[t.x] == welded_[from.vertex]   ? 0
@@ -193,18 +194,18 @@ void Binder::add_source_witnesses(const Trace& trace, BoundLevel& level) const {
         witness.level_v = static_cast<float>(nearest.v());
         witness.area = static_cast<float>(from.weight);
         measure_source(witness, pose);
-        level.witnesses.of_source.push_back(witness);
+        level.error_samples.of_source.push_back(witness);
     }
 }
 
-void Binder::add_level_witnesses(const Trace& trace, BoundLevel& level) const {
-    const Pose& pose = surface_.pose();
-    std::vector<Witness>& out = level.witnesses.of_level;
+void LevelBinder::add_level_samples(const BindingTrace& trace, BoundLevel& level) const {
+    const PosedSurface& pose = surface_.pose();
+    std::vector<PoseErrorSample>& out = level.error_samples.of_level;
     const Mesh& mesh = level.mesh;
     for (const measure::WeightedVertex& from :
          measure::weighted_vertices(mesh, kLevelVertices, kSeed)) {
-        const Anchor& anchor = level.anchors[level.places[from.vertex]];
-        Witness witness;
+        const SurfaceAnchor& anchor = level.anchors[level.places[from.vertex]];
+        PoseErrorSample witness;
         witness.source = anchor.corners;
         witness.source_u = anchor.u;
         witness.source_v = anchor.v;
@@ -241,8 +242,8 @@ void Binder::add_level_witnesses(const Trace& trace, BoundLevel& level) const {
         const glm::dvec3 here = (1 - u - v) * glm::dvec3(mesh.positions[t.x]) +
                                 u * glm::dvec3(mesh.positions[t.y]) +
                                 v * glm::dvec3(mesh.positions[t.z]);
-        geometry::Nearest nearest(pose.points, pose.triangles, here);
-        const ray::Closest closest = scene_.closest_point(here);
+        geometry::NearestWalk nearest(pose.points, pose.triangles, here);
+        const ray::ClosestPoint closest = scene_.closest_point(here);
         const auto own = [&](uint32_t point) {
             const uint32_t place = trace.place_of[welded_[point]];
             for (int corner = 0; corner < 3 && place != kNowhere; ++corner) {
@@ -265,7 +266,7 @@ void Binder::add_level_witnesses(const Trace& trace, BoundLevel& level) const {
         }
         if (!nearest.found())
             continue;
-        Witness witness;
+        PoseErrorSample witness;
         witness.source = nearest.corners();
         witness.source_u = static_cast<float>(nearest.u());
         witness.source_v = static_cast<float>(nearest.v());

@@ -11,30 +11,30 @@ namespace lodestone::deform {
 
 /// For each vertex of a mesh the lowest point of a pose that is at its position, and the number of
 /// points where there is none.
-std::vector<uint32_t> points_of(const Mesh& mesh, const Pose& pose);
+std::vector<uint32_t> points_of(const Mesh& mesh, const PosedSurface& pose);
 
 /// Binds levels of one mesh. Every place of a level is tied to the nearest triangle of those that
 /// were collapsed into it, so that it follows its own sheet and not another one that happens to lie
-/// near; likewise its witnesses.
-class Binder {
+/// near; likewise its error samples.
+class LevelBinder {
 public:
     /// `finest` is the mesh that levels are made from, its positions those of `surface`'s points.
     /// Keeps a reference to the surface. Throws Error(RaysUnavailable).
-    Binder(const Mesh& finest, const PoseSurface& surface);
+    LevelBinder(const Mesh& finest, const PoseSurface& surface);
 
     /// Nothing when the mesh has positions that the pose lacks.
     std::optional<BoundLevel> bind(simplify::TracedLevel&& level) const;
 
 private:
-    struct Trace;
-    void add_source_witnesses(const Trace& trace, BoundLevel& level) const;
-    void add_level_witnesses(const Trace& trace, BoundLevel& level) const;
+    struct BindingTrace;
+    void add_source_samples(const BindingTrace& trace, BoundLevel& level) const;
+    void add_level_samples(const BindingTrace& trace, BoundLevel& level) const;
 
     const PoseSurface& surface_;
     std::vector<uint32_t> welded_;  // of each point: the lowest at its position
     std::vector<uint32_t> points_;  // of each of the mesh's vertices
-    geometry::Rings rings_;         // of the pose, by lowest point
-    ray::Scene scene_;              // of the pose
+    geometry::VertexRings rings_;   // of the pose, by lowest point
+    ray::MeshScene scene_;          // of the pose
 };
 
 }  // namespace lodestone::deform

@@ -31,13 +31,13 @@ void check(const BoundLevel& level) {
         if (place >= level.anchors.size())
             fail(Status::InvalidArgument, "place ", place, " of ", level.anchors.size());
     }
-    for (const Anchor& anchor : level.anchors) {
+    for (const SurfaceAnchor& anchor : level.anchors) {
         if (!finite(anchor.offset) || !std::isfinite(anchor.u) || !std::isfinite(anchor.v))
             fail(Status::InvalidArgument, "an anchor is not finite");
     }
-    for (const std::vector<Witness>* list :
-         {&level.witnesses.of_source, &level.witnesses.of_level}) {
-        for (const Witness& w : *list) {
+    for (const std::vector<PoseErrorSample>* list :
+         {&level.error_samples.of_source, &level.error_samples.of_level}) {
+        for (const PoseErrorSample& w : *list) {
             if (w.level >= level.mesh.triangles.size())
                 fail(Status::InvalidArgument, "a witness uses triangle ", w.level, " of ",
                      level.mesh.triangles.size());
@@ -55,7 +55,7 @@ void check(const BoundLevel& level) {
     }
 }
 
-PoseSurface::PoseSurface(const Pose& pose)
+PoseSurface::PoseSurface(const PosedSurface& pose)
     : pose_(pose), normals_(pose.points.size(), glm::dvec3(0.0)), areas_(pose.points.size(), 0.0) {
     for (size_t i = 0; i < pose.triangles.size(); ++i) {
         const Triangle& t = pose.triangles[i];
@@ -73,18 +73,18 @@ PoseSurface::PoseSurface(const Pose& pose)
             areas_[t[corner]] += third;
         }
     }
-    rings_ =
-        geometry::Rings(pose.triangles, pose.points.size(), [](uint32_t point) { return point; });
+    rings_ = geometry::VertexRings(pose.triangles, pose.points.size(),
+                                   [](uint32_t point) { return point; });
 }
 
-Strayed strayed(const BoundLevel& level, const Mesh& followed, const PoseSurface& surface) {
-    const geometry::Rings rings(followed.triangles, level.anchors.size(),
-                                [&](uint32_t vertex) { return level.places[vertex]; });
-    return strayed(level.witnesses,
-                   {followed, level.places, rings, surface.pose(), surface.rings()});
+PoseError pose_error(const BoundLevel& level, const Mesh& followed, const PoseSurface& surface) {
+    const geometry::VertexRings rings(followed.triangles, level.anchors.size(),
+                                      [&](uint32_t vertex) { return level.places[vertex]; });
+    return pose_error(level.error_samples,
+                      {followed, level.places, rings, surface.pose(), surface.rings()});
 }
 
-Footing footing_of(const PoseSurface& surface, const Anchor& anchor) {
+AnchorFrame anchor_frame_of(const PoseSurface& surface, const SurfaceAnchor& anchor) {
     const Triangle& corners = anchor.corners;
     const double u = anchor.u;
     const double v = anchor.v;
@@ -93,7 +93,7 @@ Footing footing_of(const PoseSurface& surface, const Anchor& anchor) {
     const glm::dvec3 b(points[corners.y]);
     const glm::dvec3 c(points[corners.z]);
     const double w = 1 - u - v;
-    Footing footing;
+    AnchorFrame footing;
     footing.point = w * a + u * b + v * c;
     footing.size =
         std::sqrt(std::max(0.0, w * surface.area(corners.x) + u * surface.area(corners.y) +
@@ -109,9 +109,9 @@ Footing footing_of(const PoseSurface& surface, const Anchor& anchor) {
     return footing;
 }
 
-Facing facing_of(const Mesh& mesh) {
-    Facing out{std::vector<glm::dvec3>(mesh.positions.size(), glm::dvec3(0.0)),
-               std::vector<uint8_t>(mesh.positions.size(), 1)};
+VertexFacing vertex_facing_of(const Mesh& mesh) {
+    VertexFacing out{std::vector<glm::dvec3>(mesh.positions.size(), glm::dvec3(0.0)),
+                     std::vector<uint8_t>(mesh.positions.size(), 1)};
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         const glm::dvec3 area = area_vector(mesh, i);
         const glm::dvec3 facing = unit(area);
@@ -129,9 +129,9 @@ Facing facing_of(const Mesh& mesh) {
 std::optional<Mesh> follow(const BoundLevel& level, const PoseSurface& surface) {
     constexpr double kMost = std::numeric_limits<float>::max();
     const std::vector<glm::vec3>& points = surface.pose().points;
-    for (const std::vector<Witness>* list :
-         {&level.witnesses.of_source, &level.witnesses.of_level}) {
-        for (const Witness& w : *list) {
+    for (const std::vector<PoseErrorSample>* list :
+         {&level.error_samples.of_source, &level.error_samples.of_level}) {
+        for (const PoseErrorSample& w : *list) {
             if (std::max({w.source.x, w.source.y, w.source.z}) >= points.size())
                 return std::nullopt;
         }
@@ -140,11 +140,11 @@ std::optional<Mesh> follow(const BoundLevel& level, const PoseSurface& surface) 
     std::vector<glm::vec3> places;
     axes.reserve(level.anchors.size());
     places.reserve(level.anchors.size());
-    for (const Anchor& anchor : level.anchors) {
+    for (const SurfaceAnchor& anchor : level.anchors) {
         const Triangle& t = anchor.corners;
         if (std::max({t.x, t.y, t.z}) >= points.size())
             return std::nullopt;
-        const Footing footing = footing_of(surface, anchor);
+        const AnchorFrame footing = anchor_frame_of(surface, anchor);
         const glm::dvec3 place =
             footing.point + footing.axes * (footing.size * glm::dvec3(anchor.offset));
         if (!finite(place) ||
@@ -158,7 +158,7 @@ std::optional<Mesh> follow(const BoundLevel& level, const PoseSurface& surface) 
         mesh.positions[i] = places[level.places[i]];
     if (mesh.normals.empty())
         return mesh;
-    const Facing facing = facing_of(mesh);
+    const VertexFacing facing = vertex_facing_of(mesh);
     for (size_t i = 0; i < mesh.normals.size(); ++i) {
         glm::dvec3 normal = unit(axes[level.places[i]] * glm::dvec3(level.normals[i]));
         if (normal == glm::dvec3(0.0))

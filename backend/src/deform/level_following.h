@@ -13,7 +13,7 @@ namespace lodestone::deform {
 /// A place of a level, tied to a triangle of the source's vertices: the point
 /// (1-u-v) a + u b + v c, and from there `offset` along the surface's own axes (tangent, bitangent,
 /// normal), in parts of `size`.
-struct Anchor {
+struct SurfaceAnchor {
     Triangle corners{0, 0, 0};
     float u = 0;
     float v = 0;
@@ -23,12 +23,12 @@ struct Anchor {
 /// A level with what it takes to put it into another pose. Texture coordinates, colors and slots
 /// are the mesh's in every pose.
 struct BoundLevel {
-    Mesh mesh;                       // in the pose it was bound in
-    std::vector<uint32_t> places;    // of each vertex, into anchors: split vertices stay together
-    std::vector<Anchor> anchors;     // by place
-    std::vector<glm::vec3> normals;  // empty, or of each vertex: along its anchor's axes; zero
-                                     // where it is that of its flat triangles, made anew
-    Witnesses witnesses;
+    Mesh mesh;                     // in the pose it was bound in
+    std::vector<uint32_t> places;  // of each vertex, into anchors: split vertices stay together
+    std::vector<SurfaceAnchor> anchors;  // by place
+    std::vector<glm::vec3> normals;      // empty, or of each vertex: along its anchor's axes; zero
+                                         // where it is that of its flat triangles, made anew
+    PoseErrorSamples error_samples;
     /// Metres: its error in the pose it was bound in, if that is one of materials; else 0.
     double look_error = 0;
 };
@@ -42,41 +42,41 @@ void check(const BoundLevel& level);
 class PoseSurface {
 public:
     /// Keeps a reference to the pose. Throws Error(InvalidArgument) for an index out of range.
-    explicit PoseSurface(const Pose& pose);
+    explicit PoseSurface(const PosedSurface& pose);
 
-    const Pose& pose() const { return pose_; }
+    const PosedSurface& pose() const { return pose_; }
     /// The sum of the area vectors around a vertex, and a third of their lengths' sum.
     const glm::dvec3& normal(uint32_t vertex) const { return normals_[vertex]; }
     double area(uint32_t vertex) const { return areas_[vertex]; }
     /// Of the pose's triangles, by point.
-    const geometry::Rings& rings() const { return rings_; }
+    const geometry::VertexRings& rings() const { return rings_; }
 
 private:
-    const Pose& pose_;
+    const PosedSurface& pose_;
     std::vector<glm::dvec3> normals_;
     std::vector<double> areas_;
-    geometry::Rings rings_;
+    geometry::VertexRings rings_;
 };
 
 /// Where an anchor is on a surface: the point, the surface's axes there (columns; those that it
 /// does not have are zero) and the length that offsets are parts of.
-struct Footing {
+struct AnchorFrame {
     glm::dvec3 point{0.0};
     glm::dmat3 axes{0.0};
     double size = 0;
 };
-Footing footing_of(const PoseSurface& surface, const Anchor& anchor);
+AnchorFrame anchor_frame_of(const PoseSurface& surface, const SurfaceAnchor& anchor);
 
 /// Of each vertex: the sum of its triangles' area vectors, and 1 where its normal is that of all of
 /// them, or the mesh has no normals.
-struct Facing {
+struct VertexFacing {
     std::vector<glm::dvec3> sums;
     std::vector<uint8_t> flat;
 };
-Facing facing_of(const Mesh& mesh);
+VertexFacing vertex_facing_of(const Mesh& mesh);
 
 /// How far a level is from a surface where it follows it: `followed` is follow()'s.
-Strayed strayed(const BoundLevel& level, const Mesh& followed, const PoseSurface& surface);
+PoseError pose_error(const BoundLevel& level, const Mesh& followed, const PoseSurface& surface);
 
 /// The level in another pose. Nothing when that has fewer points, or where one that the level
 /// hangs on is not finite.

@@ -13,20 +13,20 @@ constexpr double kGrowthShare = 0.99;
 // Of a walk: farther than so many triangles, surfaces that slide along each other seem to be apart.
 constexpr int kSearchSteps = 24;
 
-struct Weighted {
+struct WeightedValue {
     double value;
     double weight;
 };
 
 /// The least value that so large a share of the weight does not exceed; 0 of nothing.
-double quantile(std::vector<Weighted>& values, double share) {
+double quantile(std::vector<WeightedValue>& values, double share) {
     double sum = 0;
-    for (const Weighted& one : values)
+    for (const WeightedValue& one : values)
         sum += one.weight;
     std::sort(values.begin(), values.end(),
-              [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+              [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
     double below = 0;
-    for (const Weighted& one : values) {
+    for (const WeightedValue& one : values) {
         below += one.weight;
         if (below >= share * sum)
             return one.value;
@@ -35,10 +35,10 @@ double quantile(std::vector<Weighted>& values, double share) {
 }
 
 /// Of three corners in one pose.
-struct Corners {
+struct PosedCorners {
     glm::dvec3 a, b, c;
 
-    Corners(const std::vector<glm::vec3>& points, const Triangle& t)
+    PosedCorners(const std::vector<glm::vec3>& points, const Triangle& t)
         : a(points[t.x]), b(points[t.y]), c(points[t.z]) {}
     glm::dvec3 at(double u, double v) const { return (1 - u - v) * a + u * b + v * c; }
     double area() const { return 0.5 * glm::length(glm::cross(b - a, c - a)); }
@@ -49,15 +49,16 @@ struct Corners {
 
 }  // namespace
 
-Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
+PoseError pose_error(const PoseErrorSamples& error_samples, const FollowedLevel& what) {
     constexpr double kFar = std::numeric_limits<double>::max();
     const std::vector<glm::vec3>& points = what.pose.points;
     const std::vector<glm::vec3>& positions = what.level.positions;
-    Strayed out;
-    std::vector<Weighted> distances;
-    std::vector<Weighted> growths;
+    PoseError out;
+    std::vector<WeightedValue> distances;
+    std::vector<WeightedValue> growths;
     // It stands for as much more of the surface as that has grown.
-    const auto add = [&](const Witness& witness, const Corners& source, double distance) {
+    const auto add = [&](const PoseErrorSample& witness, const PosedCorners& source,
+                         double distance) {
         if (!std::isfinite(distance))
             distance = kFar;
         const double grown = witness.facet > 0 ? source.area() / witness.facet : 1;
@@ -66,10 +67,10 @@ Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
     };
     const auto point_of = [](uint32_t point) { return point; };
     const auto place_of = [&](uint32_t vertex) { return what.places[vertex]; };
-    for (const Witness& witness : witnesses.of_source) {
-        const Corners source(points, witness.source);
-        geometry::Nearest nearest(positions, what.level.triangles,
-                                  source.at(witness.source_u, witness.source_v));
+    for (const PoseErrorSample& witness : error_samples.of_source) {
+        const PosedCorners source(points, witness.source);
+        geometry::NearestWalk nearest(positions, what.level.triangles,
+                                      source.at(witness.source_u, witness.source_v));
         nearest.visit(witness.level);
         nearest.walk(what.level_rings, place_of, kSearchSteps);
         add(witness, source, std::sqrt(nearest.square()));
@@ -80,11 +81,11 @@ Strayed strayed(const Witnesses& witnesses, const Strayable& what) {
     }
     out.error = quantile(distances, kErrorShare);
     distances.clear();
-    for (const Witness& witness : witnesses.of_level) {
-        const Corners source(points, witness.source);
-        const Corners level(positions, what.level.triangles[witness.level]);
-        geometry::Nearest nearest(points, what.pose.triangles,
-                                  level.at(witness.level_u, witness.level_v));
+    for (const PoseErrorSample& witness : error_samples.of_level) {
+        const PosedCorners source(points, witness.source);
+        const PosedCorners level(positions, what.level.triangles[witness.level]);
+        geometry::NearestWalk nearest(points, what.pose.triangles,
+                                      level.at(witness.level_u, witness.level_v));
         nearest.start(what.pose_rings, point_of, witness.source);
         nearest.walk(what.pose_rings, point_of, kSearchSteps);
         add(witness, source, std::sqrt(nearest.square()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Witnesses: pairs of points by which a followed level's error is known in every pose.
+// PosedSurface error samples: pairs of points by which a followed level's error is known in every pose.
 #pragma once
 
 #include "geometry/vertex_rings.h"
@@ -13,7 +13,7 @@ namespace lodestone::deform {
 /// Both are carried along, so their distance in another pose is never less than that from the one
 /// point to the other surface; nor is that to what is found near the other point. Points are
 /// (1-u-v) a + u b + v c of their corners.
-struct Witness {
+struct PoseErrorSample {
     Triangle source{0, 0, 0};  // of the pose's points
     uint32_t level = 0;        // triangle of the level
     float source_u = 0, source_v = 0;
@@ -25,28 +25,28 @@ struct Witness {
 
 /// Of the two directions: points of the source (its vertices), and of the level (vertices and
 /// area).
-struct Witnesses {
-    std::vector<Witness> of_source;
-    std::vector<Witness> of_level;
+struct PoseErrorSamples {
+    std::vector<PoseErrorSample> of_source;
+    std::vector<PoseErrorSample> of_level;
 };
 
 /// How far a level has strayed from the surface in some pose.
-struct Strayed {
+struct PoseError {
     double error = 0;   // metres: the larger 99.9 % quantile by area of both directions
     double max = 0;     // the largest distance
     double growth = 0;  // by how much lengths of the source have grown: 99 % quantile
 };
 
 /// A level in some pose, and what it was made from there.
-struct Strayable {
+struct FollowedLevel {
     const Mesh& level;
-    std::span<const uint32_t> places;    // of the level's vertices: numbers that split ones share
-    const geometry::Rings& level_rings;  // by place
-    const Pose& pose;
-    const geometry::Rings& pose_rings;  // by point
+    std::span<const uint32_t> places;  // of the level's vertices: numbers that split ones share
+    const geometry::VertexRings& level_rings;  // by place
+    const PosedSurface& pose;
+    const geometry::VertexRings& pose_rings;  // by point
 };
 
 /// Everything must be in range; what is not finite counts as infinitely far.
-Strayed strayed(const Witnesses& witnesses, const Strayable& what);
+PoseError pose_error(const PoseErrorSamples& error_samples, const FollowedLevel& what);
 
 }  // namespace lodestone::deform

@@ -13,10 +13,10 @@ namespace lodestone::format {
 namespace {
 
 /// The decoded pictures of a recipe, each once.
-class Sources {
+class RecipeImages {
 public:
-    explicit Sources(const Recipe& recipe) {
-        for (const Ingredient& ingredient : recipe) {
+    explicit RecipeImages(const Recipe& recipe) {
+        for (const ChannelSource& ingredient : recipe) {
             if (ingredient.texture == nullptr)
                 continue;
             const Picture& picture = *ingredient.texture->picture;
@@ -33,7 +33,7 @@ public:
     int height() const { return height_; }
 
     /// Of a texel of the new picture, row 0 on top; outside: nothing is there.
-    double value(const Ingredient& ingredient, int x, int y) const {
+    double value(const ChannelSource& ingredient, int x, int y) const {
         if (ingredient.texture == nullptr)
             return ingredient.constant;
         glm::dvec4 texel(0.0);
@@ -59,7 +59,7 @@ private:
 };
 
 const Texture& lead(const Recipe& recipe) {
-    for (const Ingredient& ingredient : recipe) {
+    for (const ChannelSource& ingredient : recipe) {
         if (ingredient.texture != nullptr)
             return *ingredient.texture;
     }
@@ -69,7 +69,7 @@ const Texture& lead(const Recipe& recipe) {
 /// Texels around a clipped picture. Under a turn both directions must be stretched alike, or the
 /// turn would become a shear.
 glm::ivec2 border_of(const Texture& texture, int width, int height) {
-    if (texture.extension != Extension::Clip)
+    if (texture.extension != TextureExtension::Clip)
         return {0, 0};
     if (texture.to_picture[1] == 0 && texture.to_picture[3] == 0)
         return {1, 1};
@@ -78,7 +78,7 @@ glm::ivec2 border_of(const Texture& texture, int width, int height) {
 }
 
 bool resident(const Recipe& recipe) {
-    return std::none_of(recipe.begin(), recipe.end(), [](const Ingredient& ingredient) {
+    return std::none_of(recipe.begin(), recipe.end(), [](const ChannelSource& ingredient) {
         return ingredient.texture != nullptr && ingredient.texture->picture->bytes.empty();
     });
 }
@@ -94,14 +94,14 @@ bool same_layout(const Texture& a, const Texture& b) {
            a.interpolation == b.interpolation;
 }
 
-std::optional<Baked> bake(const Recipe& recipe, ColorSpace space, bool bright) {
+std::optional<BakedTexture> bake_recipe(const Recipe& recipe, ColorSpace space, bool bright) {
     if (!resident(recipe))
         return std::nullopt;
     try {
-        const Sources sources(recipe);
-        Baked baked;
+        const RecipeImages sources(recipe);
+        BakedTexture baked;
         baked.texture = lead(recipe);
-        baked.texture.channel = Channel::Color;
+        baked.texture.channel = TextureChannel::Color;
         baked.texture.scale = glm::dvec3(1.0);
         baked.texture.offset = glm::dvec3(0.0);
         const glm::ivec2 border = border_of(baked.texture, sources.width(), sources.height());
@@ -114,7 +114,7 @@ std::optional<Baked> bake(const Recipe& recipe, ColorSpace space, bool bright) {
         double largest = 0;
         for (int y = -border.y; y < image.height - border.y; ++y) {
             for (int x = -border.x; x < image.width - border.x; ++x) {
-                for (const Ingredient& ingredient : recipe) {
+                for (const ChannelSource& ingredient : recipe) {
                     const double value = sources.value(ingredient, x, y);
                     largest = std::max(largest, &ingredient == &recipe[3] ? 0.0 : value);
                     image.pixels.push_back(static_cast<float>(std::min(value, 1e30)));
@@ -132,7 +132,7 @@ std::optional<Baked> bake(const Recipe& recipe, ColorSpace space, bool bright) {
                 value = image::encode_srgb(value);
         }
         if (border.x > 0) {
-            baked.texture.extension = Extension::Extend;
+            baked.texture.extension = TextureExtension::Extend;
             const glm::dvec2 inner(sources.width(), sources.height());
             const glm::dvec2 outer(image.width, image.height);
             for (int row = 0; row < 2; ++row) {
@@ -153,7 +153,7 @@ std::optional<Baked> bake(const Recipe& recipe, ColorSpace space, bool bright) {
 Hash hash_of(const Recipe& recipe, ColorSpace space) {
     Hasher hasher;
     hasher.value(space);
-    for (const Ingredient& ingredient : recipe)
+    for (const ChannelSource& ingredient : recipe)
         hasher
             .value(ingredient.texture == nullptr ? Hash{0}
                                                  : lodestone::hash_of(*ingredient.texture))

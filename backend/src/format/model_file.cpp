@@ -96,7 +96,7 @@ Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
         part.slots = std::move(slots);
         append(whole, part, occurrence.world);
     };
-    for_each_occurrence(model, add, Below::Parts);
+    for_each_occurrence(model, add, OccurrenceUnit::Parts);
     return whole;
 }
 

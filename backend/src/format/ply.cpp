@@ -16,32 +16,32 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
-enum class Encoding { Ascii, Little, Big };
+enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
+enum class PlyEncoding { Ascii, Little, Big };
 
-struct Property {
+struct PlyProperty {
     std::string name;
-    Type type = Type::Float;
-    std::optional<Type> count;  // set: a list, its length has this type
+    PlyType type = PlyType::Float;
+    std::optional<PlyType> count;  // set: a list, its length has this type
 };
 
-struct Element {
+struct PlyElement {
     std::string name;
     uint64_t count = 0;
-    std::vector<Property> properties;
+    std::vector<PlyProperty> properties;
 };
 
-struct Header {
-    Encoding encoding = Encoding::Ascii;
-    std::vector<Element> elements;
+struct PlyHeader {
+    PlyEncoding encoding = PlyEncoding::Ascii;
+    std::vector<PlyElement> elements;
 };
 
-size_t size_of(Type type) {
+size_t size_of(PlyType type) {
     constexpr std::array<size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
     return kSizes[static_cast<size_t>(type)];
 }
 
-std::optional<Type> type_named(std::string_view word) {
+std::optional<PlyType> type_named(std::string_view word) {
     constexpr std::array<std::array<std::string_view, 2>, 8> kNames{{{"char", "int8"},
                                                                      {"uchar", "uint8"},
                                                                      {"short", "int16"},
@@ -52,7 +52,7 @@ std::optional<Type> type_named(std::string_view word) {
                                                                      {"double", "float64"}}};
     for (size_t i = 0; i < kNames.size(); ++i) {
         if (word == kNames[i][0] || word == kNames[i][1])
-            return static_cast<Type>(i);
+            return static_cast<PlyType>(i);
     }
     return std::nullopt;
 }
@@ -68,7 +68,7 @@ public:
 
     Mesh read() {
         read_header();
-        for (const Element& element : header_.elements) {
+        for (const PlyElement& element : header_.elements) {
             check_count(element);
             if (element.name == "vertex")
                 read_vertices(element);
@@ -127,15 +127,15 @@ private:
             if (word[0] == "format" && word.size() >= 2) {
                 format = true;
                 if (word[1] == "ascii")
-                    header_.encoding = Encoding::Ascii;
+                    header_.encoding = PlyEncoding::Ascii;
                 else if (word[1] == "binary_little_endian")
-                    header_.encoding = Encoding::Little;
+                    header_.encoding = PlyEncoding::Little;
                 else if (word[1] == "binary_big_endian")
-                    header_.encoding = Encoding::Big;
+                    header_.encoding = PlyEncoding::Big;
                 else
                     bad("unknown format '", word[1], "'");
             } else if (word[0] == "element" && word.size() == 3) {
-                Element element;
+                PlyElement element;
                 element.name = word[1];
                 const char* end = word[2].data() + word[2].size();
                 const auto parsed = std::from_chars(word[2].data(), end, element.count);
@@ -152,14 +152,14 @@ private:
             bad("it names no format");
     }
 
-    Property property(const std::vector<std::string_view>& word, std::string_view text) const {
-        Property property;
-        std::optional<Type> type;
+    PlyProperty property(const std::vector<std::string_view>& word, std::string_view text) const {
+        PlyProperty property;
+        std::optional<PlyType> type;
         if (word.size() == 5 && word[1] == "list") {
             property.count = type_named(word[2]);
             type = type_named(word[3]);
-            if (!property.count || *property.count == Type::Float ||
-                *property.count == Type::Double)
+            if (!property.count || *property.count == PlyType::Float ||
+                *property.count == PlyType::Double)
                 bad("'", text, "'");
         } else if (word.size() == 3) {
             type = type_named(word[1]);
@@ -172,10 +172,10 @@ private:
     }
 
     /// Before anything is allocated: so many elements must fit into what is left of the file.
-    void check_count(const Element& element) const {
+    void check_count(const PlyElement& element) const {
         size_t least = 0;
-        for (const Property& property : element.properties) {
-            if (header_.encoding == Encoding::Ascii)
+        for (const PlyProperty& property : element.properties) {
+            if (header_.encoding == PlyEncoding::Ascii)
                 least += 2;  // a digit and a space
             else
                 least += size_of(property.count ? *property.count : property.type);
@@ -188,8 +188,8 @@ private:
             bad(element.count, " elements '", element.name, "' are too many");
     }
 
-    double number(Type type) {
-        return header_.encoding == Encoding::Ascii ? ascii_number() : binary_number(type);
+    double number(PlyType type) {
+        return header_.encoding == PlyEncoding::Ascii ? ascii_number() : binary_number(type);
     }
 
     double ascii_number() {
@@ -217,7 +217,7 @@ private:
     double raw() {
         std::array<char, sizeof(T)> data;
         std::memcpy(data.data(), bytes_.data() + at_, sizeof(T));
-        if (header_.encoding == Encoding::Big)
+        if (header_.encoding == PlyEncoding::Big)
             std::reverse(data.begin(), data.end());
         T value;
         std::memcpy(&value, data.data(), sizeof(T));
@@ -225,34 +225,34 @@ private:
         return static_cast<double>(value);
     }
 
-    double binary_number(Type type) {
+    double binary_number(PlyType type) {
         if (size_of(type) > bytes_.size() - at_)
             bad("it ends too early");
         switch (type) {
-            case Type::Int8:
+            case PlyType::Int8:
                 return raw<int8_t>();
-            case Type::Uint8:
+            case PlyType::Uint8:
                 return raw<uint8_t>();
-            case Type::Int16:
+            case PlyType::Int16:
                 return raw<int16_t>();
-            case Type::Uint16:
+            case PlyType::Uint16:
                 return raw<uint16_t>();
-            case Type::Int32:
+            case PlyType::Int32:
                 return raw<int32_t>();
-            case Type::Uint32:
+            case PlyType::Uint32:
                 return raw<uint32_t>();
-            case Type::Float:
+            case PlyType::Float:
                 return raw<float>();
-            case Type::Double:
+            case PlyType::Double:
                 return raw<double>();
         }
         return 0;
     }
 
     /// The length of a list, whose items are known to fit into the file.
-    uint64_t list_length(const Property& property) {
+    uint64_t list_length(const PlyProperty& property) {
         const double length = number(*property.count);
-        const size_t least = header_.encoding == Encoding::Ascii ? 2 : size_of(property.type);
+        const size_t least = header_.encoding == PlyEncoding::Ascii ? 2 : size_of(property.type);
         const size_t left = bytes_.size() - at_ + 1;
         const size_t most = left / least;
         if (!(length >= 0) || length != std::floor(length) || length > static_cast<double>(most))
@@ -260,71 +260,71 @@ private:
         return static_cast<uint64_t>(length);
     }
 
-    void skip_property(const Property& property) {
+    void skip_property(const PlyProperty& property) {
         const uint64_t count = property.count ? list_length(property) : 1;
         for (uint64_t i = 0; i < count; ++i)
             number(property.type);
     }
 
-    void skip(const Element& element) {
+    void skip(const PlyElement& element) {
         if (element.properties.empty())
             return;
         for (uint64_t i = 0; i < element.count; ++i) {
-            for (const Property& property : element.properties)
+            for (const PlyProperty& property : element.properties)
                 skip_property(property);
         }
     }
 
     /// Where a vertex property goes: 0...2 position, 3...5 normal, 6...7 uv, 8...11 color, -1
     /// nowhere.
-    static int place_of(const Property& property) {
-        struct Place {
+    static int place_of(const PlyProperty& property) {
+        struct PropertyPlace {
             std::string_view name;
             int place;
         };
-        constexpr std::array<Place, 20> kPlaces{{{"x", 0},
-                                                 {"y", 1},
-                                                 {"z", 2},
-                                                 {"nx", 3},
-                                                 {"ny", 4},
-                                                 {"nz", 5},
-                                                 {"s", 6},
-                                                 {"t", 7},
-                                                 {"u", 6},
-                                                 {"v", 7},
-                                                 {"texture_u", 6},
-                                                 {"texture_v", 7},
-                                                 {"red", 8},
-                                                 {"green", 9},
-                                                 {"blue", 10},
-                                                 {"alpha", 11},
-                                                 {"diffuse_red", 8},
-                                                 {"diffuse_green", 9},
-                                                 {"diffuse_blue", 10},
-                                                 {"diffuse_alpha", 11}}};
+        constexpr std::array<PropertyPlace, 20> kPlaces{{{"x", 0},
+                                                         {"y", 1},
+                                                         {"z", 2},
+                                                         {"nx", 3},
+                                                         {"ny", 4},
+                                                         {"nz", 5},
+                                                         {"s", 6},
+                                                         {"t", 7},
+                                                         {"u", 6},
+                                                         {"v", 7},
+                                                         {"texture_u", 6},
+                                                         {"texture_v", 7},
+                                                         {"red", 8},
+                                                         {"green", 9},
+                                                         {"blue", 10},
+                                                         {"alpha", 11},
+                                                         {"diffuse_red", 8},
+                                                         {"diffuse_green", 9},
+                                                         {"diffuse_blue", 10},
+                                                         {"diffuse_alpha", 11}}};
         if (property.count)
             return -1;
-        const auto found = std::find_if(kPlaces.begin(), kPlaces.end(), [&](const Place& place) {
-            return place.name == property.name;
-        });
+        const auto found =
+            std::find_if(kPlaces.begin(), kPlaces.end(),
+                         [&](const PropertyPlace& place) { return place.name == property.name; });
         return found == kPlaces.end() ? -1 : found->place;
     }
 
     /// Integers are display-encoded, as every program writes them; floats are linear.
-    static float channel_of(double value, Type type, bool alpha) {
+    static float channel_of(double value, PlyType type, bool alpha) {
         double most = 1;
-        if (type == Type::Uint8)
+        if (type == PlyType::Uint8)
             most = 255;
-        else if (type == Type::Uint16)
+        else if (type == PlyType::Uint16)
             most = 65535;
         const auto share = static_cast<float>(value / most);
         return most == 1 || alpha ? share : image::decode_srgb(share);
     }
 
-    void read_vertices(const Element& element) {
+    void read_vertices(const PlyElement& element) {
         std::vector<int> places;
         std::array<bool, 12> present{};
-        for (const Property& property : element.properties) {
+        for (const PlyProperty& property : element.properties) {
             places.push_back(place_of(property));
             if (places.back() >= 0)
                 present[static_cast<size_t>(places.back())] = true;
@@ -346,7 +346,7 @@ private:
         for (uint64_t i = 0; i < element.count; ++i) {
             std::array<float, 12> values{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
             for (size_t p = 0; p < places.size(); ++p) {
-                const Property& property = element.properties[p];
+                const PlyProperty& property = element.properties[p];
                 if (places[p] < 0) {
                     skip_property(property);
                     continue;
@@ -366,9 +366,9 @@ private:
         }
     }
 
-    void read_faces(const Element& element) {
+    void read_faces(const PlyElement& element) {
         for (uint64_t i = 0; i < element.count; ++i) {
-            for (const Property& property : element.properties) {
+            for (const PlyProperty& property : element.properties) {
                 if (property.count &&
                     (property.name == "vertex_indices" || property.name == "vertex_index"))
                     read_polygon(property);
@@ -380,7 +380,7 @@ private:
         }
     }
 
-    void read_polygon(const Property& property) {
+    void read_polygon(const PlyProperty& property) {
         const uint64_t count = list_length(property);
         uint32_t first = 0;
         uint32_t previous = 0;
@@ -428,7 +428,7 @@ private:
     const std::string& name_;
     Problems& problems_;
     size_t at_ = 0;
-    Header header_;
+    PlyHeader header_;
     Mesh mesh_;
     size_t bad_faces_ = 0;
 };

@@ -9,13 +9,13 @@ namespace {
 
 using Lanes = float __attribute__((vector_size(4 * FourSpots::kSize)));
 
-struct Vectors {
+struct FourVectors {
     Lanes x, y, z;
 };
-Vectors operator-(const Vectors& a, const Vectors& b) {
+FourVectors operator-(const FourVectors& a, const FourVectors& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-Lanes dot(const Vectors& a, const Vectors& b) {
+Lanes dot(const FourVectors& a, const FourVectors& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -59,7 +59,7 @@ OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const g
     return edges[best];
 }
 
-Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point) {
+TriangleSpot nearest_spot(const TrianglePoints& corners, const glm::vec3& point) {
     const glm::vec3 a = corners[0] - point;
     const glm::vec3 b = corners[1] - point;
     const glm::vec3 d = corners[2] - point;
@@ -69,21 +69,21 @@ Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point) {
 }
 
 /// As nearest_weights(), all regions at once: the last one that is written is the first there.
-void nearest_on_four(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
-                     const glm::vec3& point, FourSpots& spots) {
+void four_nearest_spots(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
+                        const glm::vec3& point, FourSpots& spots) {
     const auto corner = [&](size_t k) {
         const auto lanes = [&](int axis) {
             return Lanes{triangles[0][k][axis], triangles[1][k][axis], triangles[2][k][axis],
                          triangles[3][k][axis]} -
                    point[axis];
         };
-        return Vectors{lanes(0), lanes(1), lanes(2)};
+        return FourVectors{lanes(0), lanes(1), lanes(2)};
     };
-    const Vectors a = corner(0);
-    const Vectors b = corner(1);
-    const Vectors c = corner(2);
-    const Vectors ab = b - a;
-    const Vectors ac = c - a;
+    const FourVectors a = corner(0);
+    const FourVectors b = corner(1);
+    const FourVectors c = corner(2);
+    const FourVectors ab = b - a;
+    const FourVectors ac = c - a;
     const Lanes d1 = -dot(ab, a);
     const Lanes d2 = -dot(ac, a);
     const Lanes d3 = -dot(ab, b);
@@ -116,8 +116,8 @@ void nearest_on_four(const std::array<TrianglePoints, FourSpots::kSize>& triangl
     put(on_ab, one - t, t, kZero);
     put((d3 >= 0) & (d4 <= d3), kZero, one, kZero);
     put((d1 <= 0) & (d2 <= 0), one, kZero, kZero);
-    const Vectors off{u * a.x + v * b.x + w * c.x, u * a.y + v * b.y + w * c.y,
-                      u * a.z + v * b.z + w * c.z};
+    const FourVectors off{u * a.x + v * b.x + w * c.x, u * a.y + v * b.y + w * c.y,
+                          u * a.z + v * b.z + w * c.z};
     const Lanes squares = dot(off, off);
     std::memcpy(spots.squares.data(), &squares, sizeof(Lanes));
     std::memcpy(spots.weights[0].data(), &u, sizeof(Lanes));

@@ -29,7 +29,7 @@ inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
 using TrianglePoints = std::array<glm::vec3, 3>;
 
 /// A place on a triangle.
-struct Spot {
+struct TriangleSpot {
     float square = 1e30f;  // of the distance
     uint32_t triangle = kNoTriangle;
     glm::vec3 weights{0.0f};
@@ -74,22 +74,22 @@ glm::vec<3, Number> nearest_weights(const glm::vec<3, Number>& a, const glm::vec
 }
 
 /// The place of a triangle nearest to a point.
-Spot nearest_on(const TrianglePoints& corners, const glm::vec3& point);
+TriangleSpot nearest_spot(const TrianglePoints& corners, const glm::vec3& point);
 
-/// Places of four triangles nearest to a point: the same bits as nearest_on().
+/// Places of four triangles nearest to a point: the same bits as nearest_spot().
 struct FourSpots {
     static constexpr size_t kSize = 4;
     std::array<float, kSize> squares;
     std::array<std::array<float, kSize>, 3> weights;  // of each corner
 };
-void nearest_on_four(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
-                     const glm::vec3& point, FourSpots& spots);
+void four_nearest_spots(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
+                        const glm::vec3& point, FourSpots& spots);
 
 /// The nearest place of several triangles, the first of those that are equally near, if it is
 /// nearer than `best`. `corners(t)` are those of triangle t.
 template <typename Corners>
-void look_on(std::span<const uint32_t> triangles, const glm::vec3& point, const Corners& corners,
-             Spot& best) {
+void nearest_of_triangles(std::span<const uint32_t> triangles, const glm::vec3& point,
+                          const Corners& corners, TriangleSpot& best) {
     constexpr size_t kSize = FourSpots::kSize;
     for (size_t first = 0; first < triangles.size(); first += kSize) {
         const size_t count = std::min(kSize, triangles.size() - first);
@@ -97,7 +97,7 @@ void look_on(std::span<const uint32_t> triangles, const glm::vec3& point, const 
         for (size_t i = 0; i < kSize; ++i)
             four[i] = corners(triangles[first + std::min(i, count - 1)]);
         FourSpots spots;
-        nearest_on_four(four, point, spots);
+        four_nearest_spots(four, point, spots);
         for (size_t i = 0; i < count; ++i) {
             if (spots.squares[i] < best.square)
                 best = {spots.squares[i],

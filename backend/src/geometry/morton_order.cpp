@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kBits = 10;  // an axis; and sorted by at a time
 constexpr uint32_t kValues = 1u << kBits;
 
-struct Key {
+struct MortonKey {
     uint32_t code, point;
 };
 
@@ -26,8 +26,8 @@ uint32_t spread(uint32_t v) {  // two zeros behind each of ten bits
 
 }  // namespace
 
-std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,
-                                  std::vector<uint32_t>& first) {
+std::vector<uint32_t> morton_order(const std::vector<glm::vec3>& points,
+                                   std::vector<uint32_t>& first) {
     Box3 box;
     for (const glm::vec3& point : points) {
         if (finite(point))
@@ -43,7 +43,7 @@ std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,
     const glm::dvec3 size = box.size();
     const double reach = std::max({size.x, size.y, size.z});
     const double scale = reach > 0 ? (kValues - 1) / reach : 0;
-    std::vector<Key> keys;
+    std::vector<MortonKey> keys;
     keys.reserve(points.size());
     std::array<std::array<uint32_t, kValues>, 3> starts{};
     for (uint32_t i = 0; i < points.size(); ++i) {
@@ -58,17 +58,17 @@ std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,
         for (unsigned digit = 0; digit < 3; ++digit)
             ++starts[digit][code >> (digit * kBits) & (kValues - 1)];
     }
-    std::vector<Key> other(keys.size());
+    std::vector<MortonKey> other(keys.size());
     for (unsigned digit = 0; digit < 3; ++digit) {
         uint32_t sum = 0;
         for (uint32_t& start : starts[digit])
             start = std::exchange(sum, sum + start);
-        for (const Key& key : keys)
+        for (const MortonKey& key : keys)
             other[starts[digit][key.code >> (digit * kBits) & (kValues - 1)]++] = key;
         keys.swap(other);
     }
     order.reserve(keys.size());
-    const auto place = [&](const Key& key) {
+    const auto place = [&](const MortonKey& key) {
         const glm::vec3& p = points[key.point];
         return std::tuple(p.x, p.y, p.z, key.point);
     };
@@ -78,7 +78,7 @@ std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,
         if (end - begin > 1)
             std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin),
                       keys.begin() + static_cast<std::ptrdiff_t>(end),
-                      [&](const Key& a, const Key& b) { return place(a) < place(b); });
+                      [&](const MortonKey& a, const MortonKey& b) { return place(a) < place(b); });
         for (size_t i = begin; i < end; ++i) {
             const uint32_t point = keys[i].point;
             if (i > begin && points[point] == points[order.back()])

@@ -12,7 +12,7 @@ namespace lodestone::geometry {
 /// The finite ones of `points` in the order of a curve through the cells of their box; those of a
 /// cell by place, then by number. Of several in one place only the first by number. `first` gets
 /// for every point the number of the first one in its place (its own number when it is not finite).
-std::vector<uint32_t> along_curve(const std::vector<glm::vec3>& points,
-                                  std::vector<uint32_t>& first);
+std::vector<uint32_t> morton_order(const std::vector<glm::vec3>& points,
+                                   std::vector<uint32_t>& first);
 
 }  // namespace lodestone::geometry

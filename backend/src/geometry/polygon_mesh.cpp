@@ -14,13 +14,13 @@ constexpr uint32_t kEnd = ~uint32_t{0};
 constexpr size_t kMostTries = 256;  // for an equal vertex, the last made first
 constexpr double kRounding = 2e-5;  // given normals nearer than this are those of the faces
 
-glm::dvec3 point(const Faces& faces, size_t corner) {
+glm::dvec3 point(const PolygonMesh& faces, size_t corner) {
     const float* p = faces.positions + 3 * size_t{faces.vertices[corner]};
     return {p[0], p[1], p[2]};
 }
 
 /// Twice the area of a face times its unit normal; 0 for fewer than three corners.
-glm::dvec3 area_of(const Faces& faces, size_t begin, size_t end) {
+glm::dvec3 area_of(const PolygonMesh& faces, size_t begin, size_t end) {
     if (end < begin + 3)
         return glm::dvec3(0.0);
     const glm::dvec3 first = point(faces, begin);
@@ -40,7 +40,7 @@ glm::dvec3 unit(const glm::dvec3& v) {
 }
 
 /// True when the line between the first and third corner lies outside of a face of four.
-bool split_other_way(const Faces& faces, size_t begin) {
+bool split_other_way(const PolygonMesh& faces, size_t begin) {
     const glm::dvec3 first = point(faces, begin);
     const glm::dvec3 line = point(faces, begin + 2) - first;
     return glm::dot(glm::cross(point(faces, begin + 1) - first, line),
@@ -49,7 +49,7 @@ bool split_other_way(const Faces& faces, size_t begin) {
 
 /// Calls add(face, corner, corner, corner) for every triangle.
 template <typename Add>
-void for_each_triangle(const Faces& faces, const Add& add) {
+void for_each_triangle(const PolygonMesh& faces, const Add& add) {
     size_t face = 0;
     if (!faces.triangles.empty()) {
         for (size_t t = 0; t < faces.triangles.size(); t += 3) {
@@ -73,14 +73,14 @@ void for_each_triangle(const Faces& faces, const Add& add) {
     }
 }
 
-size_t triangle_count(const Faces& faces) {
+size_t triangle_count(const PolygonMesh& faces) {
     return faces.triangles.empty()
                ? faces.vertices.size() - 2 * std::min(faces.count(), faces.vertices.size() / 2)
                : faces.triangles.size() / 3;
 }
 
 /// Unit normals of vertices: means of the faces', weighted by their angles. 0 where there is none.
-std::vector<glm::vec3> vertex_normals(const Faces& faces) {
+std::vector<glm::vec3> vertex_normals(const PolygonMesh& faces) {
     std::vector<glm::dvec3> sums(faces.vertex_count, glm::dvec3(0.0));
     for (size_t face = 0; face < faces.count(); ++face) {
         const size_t begin = faces.begin(face);
@@ -104,9 +104,9 @@ std::vector<glm::vec3> vertex_normals(const Faces& faces) {
     return normals;
 }
 
-class Corners {
+class FaceCornerNormals {
 public:
-    explicit Corners(const Faces& faces) : faces_(faces) {
+    explicit FaceCornerNormals(const PolygonMesh& faces) : faces_(faces) {
         const bool smooth = std::find_if(faces.smooth.begin(), faces.smooth.end(),
                                          [](uint8_t s) { return s != 0; }) != faces.smooth.end();
         if (smooth)
@@ -149,7 +149,7 @@ private:
         return glm::dot(apart, apart) < static_cast<float>(kRounding * kRounding) ? made : given;
     }
 
-    const Faces& faces_;
+    const PolygonMesh& faces_;
     std::vector<glm::vec3> vertex_normals_;
     std::vector<uint8_t> flat_;
     bool has_normals_ = false;
@@ -160,7 +160,7 @@ private:
 
 }  // namespace
 
-void check(const Faces& faces) {
+void check(const PolygonMesh& faces) {
     const size_t corners = faces.vertices.size();
     constexpr size_t kMost = size_t{1} << 31u;
     if (faces.vertex_count > kMost || corners > kMost)
@@ -214,7 +214,7 @@ size_t largest_face(std::span<const uint32_t> starts, size_t corner_count) {
     return largest;
 }
 
-FaceTriangles triangulated(const Faces& faces) {
+FaceTriangles triangulated(const PolygonMesh& faces) {
     FaceTriangles out;
     out.corners.reserve(triangle_count(faces));
     out.faces.reserve(triangle_count(faces));
@@ -225,9 +225,9 @@ FaceTriangles triangulated(const Faces& faces) {
     return out;
 }
 
-Mesh mesh_of(const Faces& faces, size_t slot_count) {
+Mesh mesh_of(const PolygonMesh& faces, size_t slot_count) {
     Mesh mesh;
-    Corners corners(faces);
+    FaceCornerNormals corners(faces);
     mesh.triangles.reserve(triangle_count(faces));
     if (!faces.slots.empty() && slot_count > 1) {
         const auto last = static_cast<int32_t>(std::min<size_t>(slot_count, 65535)) - 1;

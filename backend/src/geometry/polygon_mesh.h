@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces: a mesh of polygons as modelers keep it, on its way to triangles.
+// PolygonMesh: a mesh of polygons as modelers keep it, on its way to triangles.
 #pragma once
 
 #include "model/mesh.h"
@@ -10,7 +10,7 @@ namespace lodestone {
 
 /// Views into the caller's memory. A corner is one vertex of one face; those of a face follow each
 /// other around it, those of the next face follow them.
-struct Faces {
+struct PolygonMesh {
     const float* positions = nullptr;  // [vertex_count][3]
     size_t vertex_count = 0;
     std::span<const uint32_t> vertices;    // [corner]
@@ -33,7 +33,7 @@ struct Faces {
 
 /// Throws Error(InvalidArgument) for lengths that do not fit, indices out of range, faces that do
 /// not follow each other, and a face of more than four corners without `triangles`.
-void check(const Faces& faces);
+void check(const PolygonMesh& faces);
 
 /// The most corners of one face; 0: there are no faces or they do not follow each other.
 size_t largest_face(std::span<const uint32_t> starts, size_t corner_count);
@@ -44,13 +44,13 @@ struct FaceTriangles {
     std::vector<Triangle> corners;
     std::vector<uint32_t> faces;
 };
-FaceTriangles triangulated(const Faces& faces);
+FaceTriangles triangulated(const PolygonMesh& faces);
 
 /// One vertex for every distinct (position, normal, uv, color). Without given normals a smooth face
 /// has at each vertex the mean of the normals of all faces there, weighted by their angles, and
 /// what has no smooth face has none. Given normals that are these but for rounding become these:
 /// Blender adds them up in another order each time it opens a file, and the hash of a mesh must not
 /// follow that. `slot_count` > 0: slots outside are the nearest.
-Mesh mesh_of(const Faces& faces, size_t slot_count);
+Mesh mesh_of(const PolygonMesh& faces, size_t slot_count);
 
 }  // namespace lodestone

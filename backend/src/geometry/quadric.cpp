@@ -8,10 +8,10 @@ namespace lodestone::geometry {
 namespace {
 
 /// L D L^T of a positive definite symmetric matrix.
-struct Factors {
+struct LdltFactors {
     double l10, l20, l21, d0, d1, d2;
 
-    Factors(const Quadric& q, double diagonal) {
+    LdltFactors(const Quadric& q, double diagonal) {
         d0 = 1 / (q.xx + diagonal);
         l10 = q.xy * d0;
         l20 = q.xz * d0;
@@ -34,7 +34,7 @@ struct Factors {
 
 }  // namespace
 
-double cost_at(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point) {
+double collapse_cost(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point) {
     const glm::dvec3 from_a = point - a.point;
     const glm::dvec3 from_b = point - b.point;
     const glm::dvec3 edge = b.point - a.point;
@@ -43,7 +43,7 @@ double cost_at(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point) {
            std::max(0.0, glm::dot(from_b, b.quadric * from_b)) + kEdgeLength * length;
 }
 
-Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared) {
+CollapseOptimum optimal_collapse(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared) {
     // With y from the middle m and d half the edge: q(y) = y^T Q y - 2 y^T (B d - A d) + d^T Q d.
     const glm::dvec3 middle = 0.5 * (a.point + b.point);
     const glm::dvec3 d = 0.5 * (b.point - a.point);
@@ -54,7 +54,7 @@ Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared)
         return {middle, 0};
     const glm::dvec3 linear = b.quadric * d - a.quadric * d;
     const double pull = kEdgePull * trace;
-    const Factors factors(q, pull);
+    const LdltFactors factors(q, pull);
     // The second solve starts the pull from the first answer: what the planes decide is then exact
     // to kEdgePull squared.
     glm::dvec3 y = factors.solve(linear);
@@ -72,16 +72,16 @@ Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared)
     const double reach = glm::dot(d, d);
     if (!(glm::dot(y, y) <= 9 * reach)) {
         // A nearly singular corner far away: the best of three points of the edge.
-        Optimum best{middle, cost_at(a, b, middle)};
+        CollapseOptimum best{middle, collapse_cost(a, b, middle)};
         for (const glm::dvec3& point : {a.point, b.point}) {
-            const double cost = cost_at(a, b, point);
+            const double cost = collapse_cost(a, b, point);
             if (cost < best.cost)
                 best = {point, cost};
         }
         return best;
     }
     const glm::dvec3 point = middle + y;
-    return {point, cost_at(a, b, point)};
+    return {point, collapse_cost(a, b, point)};
 }
 
 }  // namespace lodestone::geometry

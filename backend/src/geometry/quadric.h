@@ -49,16 +49,16 @@ struct EdgeEnd {
     glm::dvec3 facet;  // sum of the area vectors around it
 };
 
-struct Optimum {
+struct CollapseOptimum {
     glm::dvec3 point{0.0};
     double cost = 0;  // integral of squared distance over the surface around, m^4
 };
 
 /// Where the edge collapses to with the least squared distance to both ends' planes, keeping the
 /// enclosed volume. `shared` holds the area vectors of the triangles on both ends (counted once).
-Optimum best_point(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared);
+CollapseOptimum optimal_collapse(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& shared);
 
 /// The cost of collapsing to `point`.
-double cost_at(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point);
+double collapse_cost(const EdgeEnd& a, const EdgeEnd& b, const glm::dvec3& point);
 
 }  // namespace lodestone::geometry

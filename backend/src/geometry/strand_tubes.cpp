@@ -18,13 +18,14 @@ constexpr uint32_t kSides = 3;
 constexpr double kWiden = 2 * std::numbers::pi / (3 * std::numbers::sqrt3);
 constexpr uint64_t kMostVertices = uint64_t{1} << 31u;
 
-struct Key {
+struct StrandPoint {
     glm::dvec3 point;
     double radius;
 };
 
 /// The strand's points that can be drawn: finite, each a little away from the one before.
-void collect(const Strands& strands, size_t first, size_t count, std::vector<Key>& keys) {
+void collect(const HairStrands& strands, size_t first, size_t count,
+             std::vector<StrandPoint>& keys) {
     keys.clear();
     for (size_t i = first; i < first + count; ++i) {
         const glm::dvec3 point(strands.points[i]);
@@ -41,10 +42,10 @@ void collect(const Strands& strands, size_t first, size_t count, std::vector<Key
 
 /// Bends the line through its keys as Blender draws hair: by Catmull and Rom's curve. The ends go
 /// on as they began; radii stay between their neighbors'.
-void bend(std::vector<Key>& keys) {
+void bend(std::vector<StrandPoint>& keys) {
     if (keys.size() < 3)
         return;
-    std::vector<Key> bent;
+    std::vector<StrandPoint> bent;
     bent.reserve(keys.size() * kParts);
     for (size_t i = 0; i + 1 < keys.size(); ++i) {
         const glm::dvec3& b = keys[i].point;
@@ -65,7 +66,7 @@ void bend(std::vector<Key>& keys) {
 }
 
 /// How far a key is from the cone between two others.
-double distance(const Key& key, const Key& from, const Key& to) {
+double distance(const StrandPoint& key, const StrandPoint& from, const StrandPoint& to) {
     const glm::dvec3 along = to.point - from.point;
     const double square = glm::dot(along, along);
     const double part =
@@ -75,9 +76,9 @@ double distance(const Key& key, const Key& from, const Key& to) {
 }
 
 /// Keeps the keys that the line bends at (Douglas and Peucker); true when there is a tube to draw.
-bool straighten(std::vector<Key>& keys) {
+bool straighten(std::vector<StrandPoint>& keys) {
     double widest = 0;
-    for (const Key& key : keys)
+    for (const StrandPoint& key : keys)
         widest = std::max(widest, key.radius);
     if (keys.size() < 2 || !(widest > 0))
         return false;
@@ -129,10 +130,10 @@ class TubeMaker {
 public:
     explicit TubeMaker(Mesh& mesh) : mesh_(mesh) {}
 
-    void add(const std::vector<Key>& keys, uint16_t slot) {
+    void add(const std::vector<StrandPoint>& keys, uint16_t slot) {
         // Straightening may leave two ends in one place: the strand returns to its root.
         glm::dvec3 side(0.0);
-        Ring before;
+        TubeRing before;
         for (size_t i = 0; i < keys.size(); ++i) {
             const glm::dvec3 in = i > 0 ? way(keys[i - 1], keys[i]) : glm::dvec3(0.0);
             const glm::dvec3 out = i + 1 < keys.size() ? way(keys[i], keys[i + 1]) : in;
@@ -146,7 +147,7 @@ public:
             const double left = glm::length(side);
             side = left > 1e-6 ? side / left : any_normal_to(tangent);
             const bool end = i == 0 || i + 1 == keys.size();
-            const Ring ring = ring_at(keys[i], tangent, side);
+            const TubeRing ring = ring_at(keys[i], tangent, side);
             if (i > 0)
                 join(before, ring, slot);
             if (end && !ring.point)
@@ -156,12 +157,12 @@ public:
     }
 
 private:
-    struct Ring {
+    struct TubeRing {
         uint32_t first = 0;
         bool point = false;  // where the tube has no radius
     };
 
-    static glm::dvec3 way(const Key& from, const Key& to) {
+    static glm::dvec3 way(const StrandPoint& from, const StrandPoint& to) {
         const glm::dvec3 along = to.point - from.point;
         const double length = glm::length(along);
         return length > 0 ? along / length : glm::dvec3(0.0);
@@ -169,7 +170,7 @@ private:
 
     /// A point has a vertex for each side, with the normal of its middle: one that looked along the
     /// tube would shade all of a straight strand as if it turned to its tip.
-    Ring ring_at(const Key& key, const glm::dvec3& tangent, const glm::dvec3& side) {
+    TubeRing ring_at(const StrandPoint& key, const glm::dvec3& tangent, const glm::dvec3& side) {
         const auto first = static_cast<uint32_t>(mesh_.positions.size());
         const bool point = !(key.radius > 0);
         const glm::dvec3 other = glm::cross(tangent, side);
@@ -182,7 +183,7 @@ private:
         return {first, point};
     }
 
-    void join(const Ring& from, const Ring& to, uint16_t slot) {
+    void join(const TubeRing& from, const TubeRing& to, uint16_t slot) {
         for (uint32_t i = 0; i < kSides; ++i) {
             const uint32_t next = (i + 1) % kSides;
             if (!from.point)
@@ -194,7 +195,7 @@ private:
         }
     }
 
-    void cap(const Ring& ring, bool root, uint16_t slot) {
+    void cap(const TubeRing& ring, bool root, uint16_t slot) {
         const uint32_t at = ring.first;
         add_triangle(root ? Triangle(at, at + 2, at + 1) : Triangle(at, at + 1, at + 2), slot);
     }
@@ -209,7 +210,7 @@ private:
 
 }  // namespace
 
-Mesh tubes_of(const Strands& strands) {
+Mesh tubes_of(const HairStrands& strands) {
     if (strands.radii.size() != strands.points.size())
         fail(Status::InvalidArgument, strands.points.size(), " points of strands have ",
              strands.radii.size(), " radii");
@@ -229,7 +230,7 @@ Mesh tubes_of(const Strands& strands) {
         fail(Status::InvalidArgument, "strands of ", sum, " points are too many for one mesh");
     Mesh mesh;
     TubeMaker maker(mesh);
-    std::vector<Key> keys;
+    std::vector<StrandPoint> keys;
     size_t first = 0;
     for (size_t i = 0; i < strands.counts.size(); ++i) {
         collect(strands, first, strands.counts[i], keys);

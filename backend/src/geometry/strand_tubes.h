@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strands: hair and grass as polylines with radii, and the tapered tubes that draw them.
+// HairStrands: hair and grass as polylines with radii, and the tapered tubes that draw them.
 #pragma once
 
 #include "model/mesh.h"
@@ -9,7 +9,7 @@
 namespace lodestone {
 
 /// Points of all strands in a row, root first; strand i has counts[i] of them. Metres.
-struct Strands {
+struct HairStrands {
     std::span<const glm::vec3> points;
     std::span<const float> radii;      // one a point
     std::span<const uint32_t> counts;  // their sum is points.size()
@@ -28,6 +28,6 @@ struct Strands {
 /// directions is the cone's (Cauchy: a convex section of perimeter p is p / pi wide on average).
 /// Throws Error(InvalidArgument) when the arrays do not fit together or the mesh would be too
 /// large.
-Mesh tubes_of(const Strands& strands);
+Mesh tubes_of(const HairStrands& strands);
 
 }  // namespace lodestone

@@ -28,9 +28,9 @@ double longitude(const glm::dvec3& p) {
     return (1 - std::atan2(p.x, p.y) / kPi) / 2;
 }
 
-glm::dvec2 around(Projection projection, const glm::dvec3& point) {
+glm::dvec2 around(UvProjection projection, const glm::dvec3& point) {
     const glm::dvec3 p = 2.0 * point - 1.0;
-    if (projection == Projection::Tube)
+    if (projection == UvProjection::Tube)
         return {longitude(p), (p.z + 1) / 2};
     const double length = glm::length(p);
     if (length == 0)
@@ -66,24 +66,25 @@ void join(std::array<glm::dvec2, 3>& uvs) {
 
 }  // namespace
 
-std::array<glm::dvec2, 3> project(Projection projection, const std::array<glm::dvec3, 3>& points,
-                                  const glm::dvec3& normal) {
+std::array<glm::dvec2, 3> project_uvs(UvProjection projection,
+                                      const std::array<glm::dvec3, 3>& points,
+                                      const glm::dvec3& normal) {
     std::array<glm::dvec2, 3> uvs;
     for (size_t i = 0; i < 3; ++i) {
         switch (projection) {
-            case Projection::Flat:
+            case UvProjection::Flat:
                 uvs[i] = glm::dvec2(points[i]);
                 break;
-            case Projection::Box:
+            case UvProjection::Box:
                 uvs[i] = on_box(points[i], normal);
                 break;
-            case Projection::Sphere:
-            case Projection::Tube:
+            case UvProjection::Sphere:
+            case UvProjection::Tube:
                 uvs[i] = around(projection, points[i]);
                 break;
         }
     }
-    if (projection == Projection::Sphere || projection == Projection::Tube)
+    if (projection == UvProjection::Sphere || projection == UvProjection::Tube)
         join(uvs);
     return uvs;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Projection: texture coordinates made from positions.
+// UvProjection: texture coordinates made from positions.
 #pragma once
 
 #include "base/maths.h"
@@ -11,7 +11,7 @@
 
 namespace lodestone {
 
-enum class Projection : uint8_t {
+enum class UvProjection : uint8_t {
     Flat = 0,    // x and y
     Box = 1,     // the face of a cube that the triangle faces most
     Sphere = 2,  // longitude and latitude around (1/2, 1/2, 1/2)
@@ -22,7 +22,8 @@ enum class Projection : uint8_t {
 /// laid on and the triangle's normal (any length) in the object's. Triangles across the seam of
 /// Sphere and Tube go on beyond 1, so that a repeated picture has no seam. source: Blender's image
 /// texture node, as Cycles draws it; Box without blending
-std::array<glm::dvec2, 3> project(Projection projection, const std::array<glm::dvec3, 3>& points,
-                                  const glm::dvec3& normal);
+std::array<glm::dvec2, 3> project_uvs(UvProjection projection,
+                                      const std::array<glm::dvec3, 3>& points,
+                                      const glm::dvec3& normal);
 
 }  // namespace lodestone

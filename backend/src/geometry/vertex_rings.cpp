@@ -7,7 +7,7 @@
 
 namespace lodestone::geometry {
 
-bool Nearest::visit(uint32_t index) {
+bool NearestWalk::visit(uint32_t index) {
     uint32_t& recent = recent_[index % recent_.size()];
     if (recent == index)
         return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rings: the triangles around every vertex, and the nearest of them found by walking.
+// VertexRings: the triangles around every vertex, and the nearest of them found by walking.
 #pragma once
 
 #include "model/mesh.h"
@@ -12,11 +12,11 @@
 namespace lodestone::geometry {
 
 /// Triangles by a number that their corners have: their vertex, or what several vertices share.
-class Rings {
+class VertexRings {
 public:
-    Rings() = default;
+    VertexRings() = default;
     template <typename NumberOf>
-    Rings(std::span<const Triangle> all, size_t numbers, const NumberOf& number_of)
+    VertexRings(std::span<const Triangle> all, size_t numbers, const NumberOf& number_of)
         : first_(numbers + 2, 0), triangles_(3 * all.size()) {
         for (const Triangle& t : all) {
             for (int corner = 0; corner < 3; ++corner)
@@ -49,12 +49,12 @@ private:
 
 /// Looks for the nearest point of some triangles; among equally near ones the lowest. Triangles
 /// with corners that are no numbers are passed over.
-class Nearest {
+class NearestWalk {
 public:
     static constexpr uint32_t kNone = ~uint32_t{0};
 
-    Nearest(const std::vector<glm::vec3>& points, std::span<const Triangle> triangles,
-            const glm::dvec3& from)
+    NearestWalk(const std::vector<glm::vec3>& points, std::span<const Triangle> triangles,
+                const glm::dvec3& from)
         : points_(points), triangles_(triangles), from_(from) {
         recent_.fill(kNone);
     }
@@ -65,7 +65,7 @@ public:
     /// Visits what is around the corner of a triangle that has least around it: the triangle
     /// itself, or what it has become where its polygon is cut another way.
     template <typename NumberOf>
-    void start(const Rings& rings, const NumberOf& number_of, const Triangle& corners) {
+    void start(const VertexRings& rings, const NumberOf& number_of, const Triangle& corners) {
         std::span<const uint32_t> least = rings.some_around(number_of(corners.x));
         for (const uint32_t corner : {corners.y, corners.z}) {
             const std::span<const uint32_t> around = rings.some_around(number_of(corner));
@@ -80,7 +80,7 @@ public:
     /// along vertices, which is cheap, then along triangles. `number_of` a vertex is its number in
     /// the rings.
     template <typename NumberOf>
-    void walk(const Rings& rings, const NumberOf& number_of, int steps) {
+    void walk(const VertexRings& rings, const NumberOf& number_of, int steps) {
         if (triangle_ == kNone)
             return;
         const uint32_t start = triangles_[triangle_].x;

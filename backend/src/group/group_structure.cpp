@@ -39,9 +39,9 @@ Hash members_of(std::vector<Hash>& members) {
 }
 
 /// Makes objects of a tree's groups.
-class Maker {
+class GroupMaker {
 public:
-    Maker(Model& model, ObjectIndex group)
+    GroupMaker(Model& model, ObjectIndex group)
         : model_(model), group_(group), placements_(assembly_of(model, group).placements) {
         for (const Object& object : model.objects)
             uids_.insert(object.uid);
@@ -50,16 +50,16 @@ public:
     const std::vector<Placement>& placements() const { return placements_; }
     size_t made() const { return count_; }
 
-    struct Child {
+    struct GroupChild {
         uint32_t first;  // place in the group's assembly of the first thing in it
         Hash members;
         Placement placement;
     };
 
     /// What a tree's root holds; `places` are the items' in the group's assembly.
-    std::vector<Child> children_of(const Tree& tree, uint32_t node,
-                                   const std::vector<uint32_t>& places) {
-        std::vector<Child> out;
+    std::vector<GroupChild> children_of(const GroupingTree& tree, uint32_t node,
+                                        const std::vector<uint32_t>& places) {
+        std::vector<GroupChild> out;
         for (const uint32_t child : tree.nodes[node].children) {
             if (tree.is_item(child))
                 out.push_back(item(places[child]));
@@ -67,11 +67,11 @@ public:
                 out.push_back(group(children_of(tree, child, places)));
         }
         std::sort(out.begin(), out.end(),
-                  [](const Child& a, const Child& b) { return a.first < b.first; });
+                  [](const GroupChild& a, const GroupChild& b) { return a.first < b.first; });
         return out;
     }
 
-    Child item(uint32_t place) const {
+    GroupChild item(uint32_t place) const {
         const Placement& placement = placements_[place];
         const Hash members = Hasher()
                                  .text(model_.objects[placement.object].uid)
@@ -81,10 +81,10 @@ public:
     }
 
 private:
-    Child group(std::vector<Child>&& children) {
+    GroupChild group(std::vector<GroupChild>&& children) {
         std::vector<Hash> members;
         auto assembly = std::make_shared<Assembly>();
-        for (Child& child : children) {
+        for (GroupChild& child : children) {
             members.push_back(child.members);
             assembly->placements.push_back(std::move(child.placement));
         }
@@ -99,7 +99,7 @@ private:
         finest.summary.kind = Kind::Assembly;
         finest.payload = std::shared_ptr<const Assembly>(std::move(assembly));
         made.representations.push_back(std::move(finest));
-        Child out{children.front().first, all, {}};
+        GroupChild out{children.front().first, all, {}};
         out.placement.object = static_cast<ObjectIndex>(model_.objects.size());
         out.placement.name = made.name;
         model_.objects.push_back(std::move(made));
@@ -115,15 +115,16 @@ private:
 
 }  // namespace
 
-Sorted sorted_children(const Model& model, ObjectIndex group, const std::vector<Traits>& traits) {
-    Sorted out;
+SortedChildren sorted_children(const Model& model, ObjectIndex group,
+                               const std::vector<ObjectTraits>& traits) {
+    SortedChildren out;
     out.classes.resize(2);
     out.items.resize(2);
     const std::vector<Placement>& placements = assembly_of(model, group).placements;
     for (uint32_t at = 0; at < placements.size(); ++at) {
-        const Traits& child = traits[placements[at].object];
-        const Item item = item_of(child, placements[at]);
-        if (child.never || placements[at].hidden != 0 || placements[at].decided() ||
+        const ObjectTraits& child = traits[placements[at].object];
+        const GroupingItem item = item_of(child, placements[at]);
+        if (child.never || placements[at].hidden != 0 || placements[at].has_overrides() ||
             !finite(item.box)) {
             continue;
         }
@@ -134,11 +135,11 @@ Sorted sorted_children(const Model& model, ObjectIndex group, const std::vector<
     return out;
 }
 
-size_t apply(Model& model, ObjectIndex group, const Sorted& sorted,
-             const std::vector<Tree>& trees) {
+size_t apply_grouping(Model& model, ObjectIndex group, const SortedChildren& sorted,
+                      const std::vector<GroupingTree>& trees) {
     const size_t before = model.objects.size();
-    Maker maker(model, group);
-    std::vector<Maker::Child> top;
+    GroupMaker maker(model, group);
+    std::vector<GroupMaker::GroupChild> top;
     std::vector<uint8_t> grouped(maker.placements().size(), 0);
     for (const std::vector<uint32_t>& places : sorted.classes) {
         for (const uint32_t place : places)
@@ -151,13 +152,16 @@ size_t apply(Model& model, ObjectIndex group, const Sorted& sorted,
     for (size_t i = 0; i < trees.size(); ++i) {
         if (trees[i].root == kNoNode)
             continue;
-        for (Maker::Child& child : maker.children_of(trees[i], trees[i].root, sorted.classes[i]))
+        for (GroupMaker::GroupChild& child :
+             maker.children_of(trees[i], trees[i].root, sorted.classes[i]))
             top.push_back(std::move(child));
     }
     std::sort(top.begin(), top.end(),
-              [](const Maker::Child& a, const Maker::Child& b) { return a.first < b.first; });
+              [](const GroupMaker::GroupChild& a, const GroupMaker::GroupChild& b) {
+                  return a.first < b.first;
+              });
     auto assembly = std::make_shared<Assembly>();
-    for (Maker::Child& child : top)
+    for (GroupMaker::GroupChild& child : top)
         assembly->placements.push_back(std::move(child.placement));
     model.objects[group].representations[0].payload =
         std::shared_ptr<const Assembly>(std::move(assembly));
@@ -179,16 +183,17 @@ StructureReport structure_groups(Model& model, std::span<const ObjectIndex> grou
     StructureReport report;
     if (flat.empty())
         return report;
-    job.stage(Stage::Group);
-    const std::vector<Traits> traits = traits_of(model, flat, job);
-    std::vector<Sorted> sorted;
-    std::vector<std::vector<Tree>> trees;
+    job.stage(JobStage::Group);
+    const std::vector<ObjectTraits> traits = traits_of(model, flat, job);
+    std::vector<SortedChildren> sorted;
+    std::vector<std::vector<GroupingTree>> trees;
     for (size_t i = 0; i < flat.size(); ++i) {
         sorted.push_back(sorted_children(model, flat[i], traits));
         trees.emplace_back();
-        for (const std::vector<Item>& items : sorted.back().items) {
-            trees.back().push_back(items.size() > kLeastChildren ? insert_all(items, options, job)
-                                                                 : flat_tree(items.size()));
+        for (const std::vector<GroupingItem>& items : sorted.back().items) {
+            trees.back().push_back(items.size() > kLeastChildren
+                                       ? group_by_insertion(items, options, job)
+                                       : flat_tree(items.size()));
             report.cost_before += expected_cost(flat_tree(items.size()), items);
             report.cost_after += expected_cost(trees.back().back(), items);
         }
@@ -197,7 +202,7 @@ StructureReport structure_groups(Model& model, std::span<const ObjectIndex> grou
     const size_t before = model.objects.size();
     for (size_t i = 0; i < flat.size(); ++i) {
         const size_t first = model.objects.size();
-        apply(model, flat[i], sorted[i], trees[i]);
+        apply_grouping(model, flat[i], sorted[i], trees[i]);
         report.structured += model.objects.size() > first ? 1 : 0;
         // What is forced into a full group, and what cannot be grouped.
         for (size_t made = model.objects.size(); made-- > first;)
@@ -247,7 +252,7 @@ Hash dissolved(const Model& model, const Object& whole, const Placement& placeme
 
 }  // namespace
 
-size_t dissolve_made(Model& model, ObjectIndex group) {
+size_t dissolve_made_groups(Model& model, ObjectIndex group) {
     const Object& whole = model.objects.at(group);
     std::vector<Placement> out;
     size_t count = 0;

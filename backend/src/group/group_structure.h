@@ -32,18 +32,20 @@ StructureReport structure_groups(Model& model, std::span<const ObjectIndex> grou
 std::vector<ObjectIndex> flat_groups(const Model& model, size_t fewest);
 
 /// Takes groups that structure_groups() made out of a group again. Returns how many.
-size_t dissolve_made(Model& model, ObjectIndex group);
+size_t dissolve_made_groups(Model& model, ObjectIndex group);
 
 /// The children of a group that are grouped with each other, and where they are in its assembly:
 /// ordinary things, and environment.
-struct Sorted {
-    std::vector<std::vector<uint32_t>> classes;  // places in the assembly, rising
-    std::vector<std::vector<Item>> items;        // of each
+struct SortedChildren {
+    std::vector<std::vector<uint32_t>> classes;    // places in the assembly, rising
+    std::vector<std::vector<GroupingItem>> items;  // of each
 };
-Sorted sorted_children(const Model& model, ObjectIndex group, const std::vector<Traits>& traits);
+SortedChildren sorted_children(const Model& model, ObjectIndex group,
+                               const std::vector<ObjectTraits>& traits);
 
 /// Puts a group's placements into groups as trees of their classes say; what is in no class stays.
 /// Returns the number of groups made.
-size_t apply(Model& model, ObjectIndex group, const Sorted& sorted, const std::vector<Tree>& trees);
+size_t apply_grouping(Model& model, ObjectIndex group, const SortedChildren& sorted,
+                      const std::vector<GroupingTree>& trees);
 
 }  // namespace lodestone::group

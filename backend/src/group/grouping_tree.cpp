@@ -7,7 +7,7 @@ namespace lodestone::group {
 namespace {
 
 /// Reachable nodes, parents before children.
-std::vector<uint32_t> top_down(const Tree& tree) {
+std::vector<uint32_t> top_down(const GroupingTree& tree) {
     std::vector<uint32_t> order;
     if (tree.root == kNoNode)
         return order;
@@ -21,8 +21,8 @@ std::vector<uint32_t> top_down(const Tree& tree) {
 
 }  // namespace
 
-Tree flat_tree(size_t item_count) {
-    Tree tree;
+GroupingTree flat_tree(size_t item_count) {
+    GroupingTree tree;
     tree.item_count = item_count;
     tree.nodes.resize(item_count + 1);
     tree.root = static_cast<uint32_t>(item_count);
@@ -34,7 +34,7 @@ Tree flat_tree(size_t item_count) {
     return tree;
 }
 
-size_t group_count(const Tree& tree) {
+size_t group_count(const GroupingTree& tree) {
     size_t groups = 0;
     for (const uint32_t node : top_down(tree))
         groups += tree.is_item(node) || node == tree.root ? 0 : 1;
@@ -46,7 +46,7 @@ double half_area(const Box3& box) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-std::vector<Box3> boxes_of(const Tree& tree, std::span<const Item> items) {
+std::vector<Box3> boxes_of(const GroupingTree& tree, std::span<const GroupingItem> items) {
     std::vector<Box3> boxes(tree.nodes.size());
     const std::vector<uint32_t> order = top_down(tree);
     for (auto at = order.rbegin(); at != order.rend(); ++at) {
@@ -58,7 +58,7 @@ std::vector<Box3> boxes_of(const Tree& tree, std::span<const Item> items) {
     return boxes;
 }
 
-double expected_cost(const Tree& tree, std::span<const Item> items) {
+double expected_cost(const GroupingTree& tree, std::span<const GroupingItem> items) {
     if (tree.root == kNoNode)
         return 0;
     const std::vector<Box3> boxes = boxes_of(tree, items);

@@ -21,13 +21,13 @@ constexpr double kAsCheap = 1 - 1e-9;  // what costs as little but for rounding 
 constexpr double kWorthAPass = 1e-3;   // of the cost
 
 /// What a group's cost depends on; sums over its items.
-struct Sums {
+struct GroupSums {
     Box3 box;
     double weight = 0;
     double squares = 0;  // of the features' lengths
     Features features{};
 
-    void add(const Sums& other) {
+    void add(const GroupSums& other) {
         box.add(other.box);
         weight += other.weight;
         squares += other.squares;
@@ -44,8 +44,8 @@ struct Sums {
     }
 };
 
-Sums sums_of(const Item& item) {
-    Sums sums;
+GroupSums sums_of(const GroupingItem& item) {
+    GroupSums sums;
     sums.box = item.box;
     sums.weight = item.weight;
     for (size_t i = 0; i < kFeatures; ++i) {
@@ -56,21 +56,21 @@ Sums sums_of(const Item& item) {
 }
 
 /// Where something could go: with `child` into a new group in its place, or into `child`.
-struct Place {
+struct InsertionPlace {
     double cost = std::numeric_limits<double>::infinity();
     uint32_t node = kNoNode;
     bool pair = false;
 };
 
-struct Step {
+struct InsertionStep {
     double least;  // what anything below costs at least
     uint32_t node;
     uint32_t depth;
 };
 
-class Inserter {
+class ItemInserter {
 public:
-    Inserter(std::span<const Sums> items, const StructureOptions& options, const Job& job)
+    ItemInserter(std::span<const GroupSums> items, const StructureOptions& options, const Job& job)
         : options_(options), job_(job) {
         tree_.item_count = items.size();
         tree_.nodes.resize(items.size() + 1);
@@ -81,7 +81,7 @@ public:
         tree_.root = static_cast<uint32_t>(items.size());
     }
 
-    Tree run(const std::vector<uint32_t>& order) {
+    GroupingTree run(const std::vector<uint32_t>& order) {
         for (const uint32_t item : order)
             insert(item);
         double before = total();
@@ -103,9 +103,9 @@ public:
     }
 
 private:
-    using Node = Tree::Node;
+    using GroupingNode = GroupingTree::GroupingNode;
 
-    double cost_of(const Sums& sums, size_t children) const {
+    double cost_of(const GroupSums& sums, size_t children) const {
         const double area = half_area(sums.box) + kLeastArea;
         return area * (static_cast<double>(children) + options_.group_cost) *
                (1 + options_.similarity * sums.spread());
@@ -116,7 +116,7 @@ private:
     void insert(uint32_t node) {
         if ((++inserted_ & 255u) == 0)
             job_.check();
-        const Place place = best_for(node);
+        const InsertionPlace place = best_for(node);
         if (place.pair)
             pair(place.node, node);
         else
@@ -134,30 +134,30 @@ private:
         insert(node);
     }
 
-    Place best_for(uint32_t inserted) {
-        const Sums& added = sums_[inserted];
+    InsertionPlace best_for(uint32_t inserted) {
+        const GroupSums& added = sums_[inserted];
         const uint32_t height = heights_[inserted];
-        Place best;
-        Place forced;  // where there is room when all groups are full or too deep
+        InsertionPlace best;
+        InsertionPlace forced;  // where there is room when all groups are full or too deep
         steps_.clear();
-        const Node& root = tree_.nodes[tree_.root];
+        const GroupingNode& root = tree_.nodes[tree_.root];
         if (root.children.empty())
             return {0, tree_.root, false};
         // What going somewhere adds at least: a child of a group no smaller than it is itself.
         const double last = cost_of(added, 1) - cost_of(added, 0);
         const double paired = cost_of(added, 2);  // ... where nothing else is possible
         steps_.push_back({grown(tree_.root, added) - costs_[tree_.root], tree_.root, 0});
-        const auto later = [](const Step& a, const Step& b) {
+        const auto later = [](const InsertionStep& a, const InsertionStep& b) {
             return std::tie(a.least, a.node) > std::tie(b.least, b.node);
         };
         for (uint32_t count = 0; count < kExpansions && !steps_.empty(); ++count) {
             std::pop_heap(steps_.begin(), steps_.end(), later);
-            const Step step = steps_.back();
+            const InsertionStep step = steps_.back();
             steps_.pop_back();
             if (step.least + last >= best.cost * kAsCheap)
                 break;
-            const Node& node = tree_.nodes[step.node];
-            Sums with = sums_[step.node];
+            const GroupingNode& node = tree_.nodes[step.node];
+            GroupSums with = sums_[step.node];
             with.add(added);
             const double one_more = step.least + cost_of(with, 1) - cost_of(with, 0);
             if (node.children.size() < options_.most)
@@ -168,7 +168,7 @@ private:
             if (deep)
                 continue;
             for (const uint32_t child : node.children) {
-                Sums both = sums_[child];
+                GroupSums both = sums_[child];
                 both.add(added);
                 const bool room = step.depth + heights_[child] + 2 < kDeepest;
                 if (room)
@@ -199,14 +199,14 @@ private:
         }
     }
 
-    static void take(Place& best, const Place& place) {
+    static void take(InsertionPlace& best, const InsertionPlace& place) {
         if (place.cost < best.cost)
             best = place;
     }
 
     /// A group's cost with more in it, but no more children.
-    double grown(uint32_t node, const Sums& added) const {
-        Sums with = sums_[node];
+    double grown(uint32_t node, const GroupSums& added) const {
+        GroupSums with = sums_[node];
         with.add(added);
         return cost_of(with, tree_.nodes[node].children.size());
     }
@@ -264,7 +264,7 @@ private:
     /// Brings a group and those around it up to date.
     void refresh(uint32_t group) {
         for (; group != kNoNode; group = tree_.nodes[group].parent) {
-            Sums sums;
+            GroupSums sums;
             uint32_t height = 0;
             for (const uint32_t child : tree_.nodes[group].children) {
                 sums.add(sums_[child]);
@@ -280,26 +280,26 @@ private:
 
     const StructureOptions& options_;
     const Job& job_;
-    Tree tree_;
-    std::vector<Sums> sums_;
+    GroupingTree tree_;
+    std::vector<GroupSums> sums_;
     std::vector<uint32_t> heights_;
     std::vector<double> costs_;
     std::vector<uint32_t> free_;
-    std::vector<Step> steps_;
+    std::vector<InsertionStep> steps_;
     uint32_t inserted_ = 0;
 };
 
 /// In the unit cube: areas neither overflow nor vanish, and scale and origin do not matter.
-std::vector<Sums> normalized(std::span<const Item> items) {
+std::vector<GroupSums> normalized(std::span<const GroupingItem> items) {
     Box3 whole;
-    for (const Item& item : items)
+    for (const GroupingItem& item : items)
         whole.add(item.box);
     const glm::dvec3 half = 0.5 * whole.high - 0.5 * whole.low;
     const double extent = 2 * std::max({half.x, half.y, half.z});
-    std::vector<Sums> out;
+    std::vector<GroupSums> out;
     out.reserve(items.size());
-    for (const Item& item : items) {
-        Sums sums = sums_of(item);
+    for (const GroupingItem& item : items) {
+        GroupSums sums = sums_of(item);
         if (extent > 0 && std::isfinite(extent))
             sums.box = {(item.box.low - whole.low) / extent, (item.box.high - whole.low) / extent};
         else
@@ -310,7 +310,7 @@ std::vector<Sums> normalized(std::span<const Item> items) {
 }
 
 /// A number for each item that does not depend on their order, as far as they differ.
-std::vector<uint32_t> ranks_of(std::span<const Sums> items) {
+std::vector<uint32_t> ranks_of(std::span<const GroupSums> items) {
     std::vector<uint32_t> order(items.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](uint32_t i) {
@@ -341,17 +341,18 @@ std::vector<uint32_t> random_order(const std::vector<uint32_t>& ranks, uint64_t 
 
 }  // namespace
 
-Tree insert_all(std::span<const Item> items, const StructureOptions& options, const Job& job) {
+GroupingTree group_by_insertion(std::span<const GroupingItem> items,
+                                const StructureOptions& options, const Job& job) {
     if (items.size() <= 2)
         return flat_tree(items.size());
-    const std::vector<Sums> sums = normalized(items);
+    const std::vector<GroupSums> sums = normalized(items);
     const std::vector<uint32_t> ranks = ranks_of(sums);
     const uint32_t orders = std::max(1u, options.orders);
-    std::vector<Tree> trees(orders);
+    std::vector<GroupingTree> trees(orders);
     std::vector<double> costs(orders);
     parallel_for(orders, [&](size_t i) {
         const uint64_t seed = Hasher().value(options.seed).value(i).result();
-        trees[i] = Inserter(sums, options, job).run(random_order(ranks, seed));
+        trees[i] = ItemInserter(sums, options, job).run(random_order(ranks, seed));
         costs[i] = expected_cost(trees[i], items);
     });
     const auto best = std::min_element(costs.begin(), costs.end());  // the first of the lowest

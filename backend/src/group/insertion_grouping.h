@@ -26,6 +26,7 @@ struct StructureOptions {
 /// Items in equal places are told apart by their order alone; else the result does not depend on
 /// it, nor on the number of threads, nor (but for rounding) on scale and distance from the origin.
 /// Throws Error(Cancelled). cost: about n log n an order.
-Tree insert_all(std::span<const Item> items, const StructureOptions& options, const Job& job);
+GroupingTree group_by_insertion(std::span<const GroupingItem> items,
+                                const StructureOptions& options, const Job& job);
 
 }  // namespace lodestone::group

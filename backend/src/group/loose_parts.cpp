@@ -26,7 +26,7 @@ constexpr size_t kFewestClusters = 8;  // of fewer no groups are made
 constexpr int kBins = 32;
 constexpr uint32_t kDeepestCut = 64;  // cuts one inside the other; then by number
 
-struct Part {
+struct LoosePart {
     Box3 box;
     size_t triangles = 0;
     glm::dvec3 middle{0.0};
@@ -38,46 +38,46 @@ double extent_of(const Box3& box) {
     return std::max({size.x, size.y, size.z});
 }
 
-std::vector<Part> measured(const Mesh& mesh, const std::vector<uint32_t>& part_of) {
-    std::vector<Part> parts(1 + *std::max_element(part_of.begin(), part_of.end()));
+std::vector<LoosePart> measured(const Mesh& mesh, const std::vector<uint32_t>& part_of) {
+    std::vector<LoosePart> parts(1 + *std::max_element(part_of.begin(), part_of.end()));
     for (size_t i = 0; i < part_of.size(); ++i) {
-        Part& part = parts[part_of[i]];
+        LoosePart& part = parts[part_of[i]];
         ++part.triangles;
         for (int corner = 0; corner < 3; ++corner)
             part.box.add(glm::dvec3(mesh.positions[mesh.triangles[i][corner]]));
     }
-    for (Part& part : parts) {
+    for (LoosePart& part : parts) {
         part.middle = part.box.center();
         part.extent = extent_of(part.box);
     }
     return parts;
 }
 
-bool pays(const std::vector<Part>& parts, size_t triangles) {
+bool pays(const std::vector<LoosePart>& parts, size_t triangles) {
     if (triangles <= kManyTriangles || parts.size() <= kManyParts)
         return false;
     Box3 whole;
-    for (const Part& part : parts)
+    for (const LoosePart& part : parts)
         whole.add(part.box);
     const double small = kSmallPart * extent_of(whole);
     size_t in_small = 0;
-    for (const Part& part : parts)
+    for (const LoosePart& part : parts)
         in_small += part.extent <= small ? part.triangles : 0;
     return 2 * in_small >= triangles;
 }
 
 /// Cuts lists of parts in two until each has few triangles: where the sum of (surface of the bound)
 /// x (triangles) of both sides is least, so that what is near shares a cluster (4.5.3).
-class Cutter {
+class PartCutter {
 public:
-    Cutter(const std::vector<Part>& parts, size_t triangles, const Job& job)
+    PartCutter(const std::vector<LoosePart>& parts, size_t triangles, const Job& job)
         : parts_(parts), wanted_(triangles), job_(job) {}
 
     void cut(std::vector<uint32_t> all) {
-        std::vector<Piece> waiting;
+        std::vector<PartList> waiting;
         waiting.push_back({std::move(all), 0});
         while (!waiting.empty()) {
-            Piece piece = std::move(waiting.back());
+            PartList piece = std::move(waiting.back());
             waiting.pop_back();
             if (piece.list.empty())
                 continue;
@@ -95,14 +95,14 @@ public:
     std::vector<std::vector<uint32_t>> take() { return std::move(clusters_); }
 
 private:
-    struct Piece {
+    struct PartList {
         std::vector<uint32_t> list;
         uint32_t depth;
     };
-    struct Bin {
+    struct PartBin {
         Box3 box;
         size_t triangles = 0;
-        void add(const Bin& other) {
+        void add(const PartBin& other) {
             box.add(other.box);
             triangles += other.triangles;
         }
@@ -133,17 +133,17 @@ private:
         for (int axis = 0; axis < 3 && depth < kDeepestCut; ++axis) {
             if (!(middles.size()[axis] > 0))
                 continue;
-            std::array<Bin, kBins> bins;
+            std::array<PartBin, kBins> bins;
             for (const uint32_t part : list)
                 bins[static_cast<size_t>(bin_of(part, axis))].add(
                     {parts_[part].box, parts_[part].triangles});
-            std::array<Bin, kBins> above;  // bins from here on
+            std::array<PartBin, kBins> above;  // bins from here on
             for (size_t i = kBins; i-- > 0;) {
                 above[i] = bins[i];
                 if (i + 1 < kBins)
                     above[i].add(above[i + 1]);
             }
-            Bin below;
+            PartBin below;
             for (size_t i = 1; i < kBins; ++i) {
                 below.add(bins[i - 1]);
                 if (below.triangles == 0 || above[i].triangles == 0)
@@ -168,27 +168,27 @@ private:
         return high;
     }
 
-    static double weighed(const Bin& bin) {
+    static double weighed(const PartBin& bin) {
         return half_area(bin.box) * static_cast<double>(bin.triangles);
     }
 
-    const std::vector<Part>& parts_;
+    const std::vector<LoosePart>& parts_;
     size_t wanted_;
     const Job& job_;
     std::vector<std::vector<uint32_t>> clusters_;
 };
 
-std::vector<std::vector<uint32_t>> clusters_of(const std::vector<Part>& parts, size_t triangles,
-                                               const Job& job) {
+std::vector<std::vector<uint32_t>> clusters_of(const std::vector<LoosePart>& parts,
+                                               size_t triangles, const Job& job) {
     Box3 whole;
-    for (const Part& part : parts)
+    for (const LoosePart& part : parts)
         whole.add(part.box);
     const double large = kLargePart * extent_of(whole);
     std::vector<uint32_t> small_ones;
     std::vector<uint32_t> large_ones;
     for (uint32_t i = 0; i < parts.size(); ++i)
         (parts[i].extent > large ? large_ones : small_ones).push_back(i);
-    Cutter cutter(parts, triangles, job);
+    PartCutter cutter(parts, triangles, job);
     cutter.cut(std::move(small_ones));
     cutter.cut(std::move(large_ones));
     return cutter.take();
@@ -277,14 +277,14 @@ bool may_split(const Model& model, const Object& object) {
 }
 
 /// What a mesh becomes; no clusters: it stays one.
-struct Found {
+struct SplitMesh {
     size_t parts = 0;
     std::vector<Representation> clusters;
 };
 
-Found found_in(const Model& model, const Object& object, const LooseOptions& options,
-               const Job& job) {
-    Found found;
+SplitMesh found_in(const Model& model, const Object& object, const LooseOptions& options,
+                   const Job& job) {
+    SplitMesh found;
     const Representation& finest = object.representations[0];
     const Mesh& mesh = finest.mesh();
     const size_t count = mesh.triangles.size();
@@ -292,8 +292,8 @@ Found found_in(const Model& model, const Object& object, const LooseOptions& opt
         return found;
     const std::vector<uint32_t> part_of = loose_parts(mesh);
     job.check();
-    const std::vector<Part> parts = measured(mesh, part_of);
-    const bool finite = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
+    const std::vector<LoosePart> parts = measured(mesh, part_of);
+    const bool finite = std::all_of(parts.begin(), parts.end(), [](const LoosePart& part) {
         return std::isfinite(part.extent) && std::isfinite(glm::dot(part.middle, part.middle));
     });
     if (!finite)
@@ -362,8 +362,8 @@ LooseReport split_loose_parts(Model& model, std::span<const ObjectIndex> leaves,
     LooseReport report;
     if (wanted.empty())
         return report;
-    job.stage(Stage::Group);
-    std::vector<Found> found(wanted.size());
+    job.stage(JobStage::Group);
+    std::vector<SplitMesh> found(wanted.size());
     parallel_for(wanted.size(), [&](size_t i) {
         found[i] = found_in(model, model.objects[wanted[i]], options, job);
     });
@@ -393,7 +393,7 @@ LooseReport split_loose_parts(Model& model, std::span<const ObjectIndex> leaves,
             next.objects.push_back(std::move(part));
         }
         Object& group = next.objects[wanted[i]];
-        group.of_parts = true;
+        group.made_of_parts = true;
         group.attributes.reset();
         group.pose.reset();
         group.representations.assign(1, {});

@@ -26,7 +26,7 @@ struct LooseReport {
 };
 
 /// Turns leaves with a mesh of many loose parts into groups of clusters of neighboring parts, in
-/// place: the object keeps its index, uid and name, Object::of_parts is set, and it is one
+/// place: the object keeps its index, uid and name, Object::made_of_parts is set, and it is one
 /// occurrence as before. Every cluster has its triangles, normals, texture coordinates, colors and
 /// materials exactly as they were, in the frame and order they had.
 ///

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kMostAround = 64;  // faces of one edge that are told apart
 
 /// A triangle's edge.
-struct Side {
+struct EdgeSide {
     uint64_t edge;  // its welded vertices, the lower one first
     uint32_t triangle;
     uint32_t opposite;  // vertex
@@ -28,7 +28,7 @@ struct Side {
 /// Where several surfaces meet in one edge, a face goes on in the first that closes the same solid:
 /// boxes that touch stay apart, and so do the two sides of a sheet.
 template <typename Join>
-void join_surfaces(const Mesh& mesh, std::span<Side> around, const Join& join) {
+void join_surfaces(const Mesh& mesh, std::span<EdgeSide> around, const Join& join) {
     constexpr double kSamePlane = 1e-4;  // radians
     constexpr double kTurn = 2 * std::numbers::pi;
     const glm::dvec3 from(mesh.positions[around[0].edge >> 32u]);
@@ -41,24 +41,24 @@ void join_surfaces(const Mesh& mesh, std::span<Side> around, const Join& join) {
     const glm::dvec3 off = std::abs(along.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(along, off));
     const glm::dvec3 up = glm::cross(along, right);
-    for (Side& side : around) {
+    for (EdgeSide& side : around) {
         const glm::dvec3 arm = glm::dvec3(mesh.positions[side.opposite]) - from;
         side.angle = std::atan2(glm::dot(arm, up), glm::dot(arm, right));
     }
     // A face that goes forward has its inside where angles fall.
-    const auto inside = [&](const Side& face, const Side& other) {
+    const auto inside = [&](const EdgeSide& face, const EdgeSide& other) {
         const double turn = std::fmod(face.angle - other.angle + kTurn, kTurn);
         return turn < kSamePlane ? turn + kTurn : turn;
     };
-    for (const Side& face : around) {
+    for (const EdgeSide& face : around) {
         if (!face.forward)
             continue;
         double least = std::numeric_limits<double>::infinity();
-        for (const Side& other : around) {
+        for (const EdgeSide& other : around) {
             if (!other.forward)
                 least = std::min(least, inside(face, other));
         }
-        for (const Side& other : around) {
+        for (const EdgeSide& other : around) {
             if (!other.forward && inside(face, other) < least + kSamePlane)
                 join(face, other);
         }
@@ -69,7 +69,7 @@ void join_surfaces(const Mesh& mesh, std::span<Side> around, const Join& join) {
 
 std::vector<uint32_t> loose_parts(const Mesh& mesh) {
     const std::vector<uint32_t> welded = weld(mesh);
-    std::vector<Side> sides;
+    std::vector<EdgeSide> sides;
     sides.reserve(3 * mesh.triangles.size());
     std::vector<uint32_t> parents(mesh.triangles.size());
     std::iota(parents.begin(), parents.end(), 0u);
@@ -82,19 +82,19 @@ std::vector<uint32_t> loose_parts(const Mesh& mesh) {
                 {std::min(a, b) << 32u | std::max(a, b), i, t[(corner + 2) % 3], a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
         return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
     });
-    const auto join_sides = [&](const Side& x, const Side& y) {
+    const auto join_sides = [&](const EdgeSide& x, const EdgeSide& y) {
         join(parents, x.triangle, y.triangle);
     };
     for (size_t begin = 0; begin < sides.size();) {
         size_t end = begin + 1;
         while (end < sides.size() && sides[end].edge == sides[begin].edge)
             ++end;
-        const std::span<Side> around(&sides[begin], end - begin);
+        const std::span<EdgeSide> around(&sides[begin], end - begin);
         if (around.size() <= 3) {
-            for (const Side& side : around.subspan(1))
+            for (const EdgeSide& side : around.subspan(1))
                 join_sides(around[0], side);
         } else if (around.size() <= kMostAround) {
             join_surfaces(mesh, around, join_sides);

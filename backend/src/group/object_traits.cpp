@@ -56,7 +56,7 @@ glm::dvec4 mean_look(const Mesh& mesh, const Model& model, const Representation&
 }
 
 /// By its bound alone.
-void set_from_bound(Traits& traits) {
+void set_from_bound(ObjectTraits& traits) {
     const glm::dvec3 size = traits.bound.box.size();
     traits.area = 2 * half_area(traits.bound.box);
     traits.center = traits.bound.box.center();
@@ -64,12 +64,12 @@ void set_from_bound(Traits& traits) {
         traits.spread[i][i] = size[i] * size[i] / 12;
 }
 
-void set_leaf(Traits& traits, const Model& model, const Object& object) {
+void set_leaf(ObjectTraits& traits, const Model& model, const Object& object) {
     const Representation& finest = object.representations[0];
     const auto* held = std::get_if<std::shared_ptr<const Mesh>>(&finest.payload);
     if (held != nullptr && *held) {
         traits.look = mean_look(**held, model, finest);
-        const measure::SurfaceInertia inertia = measure::of_mesh(**held);
+        const measure::SurfaceInertia inertia = measure::inertia_of_mesh(**held);
         if (!inertia.empty()) {
             traits.area = inertia.area;
             traits.center = inertia.center;
@@ -94,11 +94,12 @@ double area_scale(const glm::dmat3& linear) {
     return std::pow(std::abs(glm::determinant(linear)), 2.0 / 3);
 }
 
-void set_group(Traits& traits, const Assembly& assembly, const std::vector<Traits>& all) {
+void set_group(ObjectTraits& traits, const Assembly& assembly,
+               const std::vector<ObjectTraits>& all) {
     glm::dvec3 moment(0.0);
     double area = 0;
     for (const Placement& placement : assembly.placements) {
-        const Traits& child = all[placement.object];
+        const ObjectTraits& child = all[placement.object];
         const double own = child.area * area_scale(placement.transform.linear);
         if (!(own > 0) || !std::isfinite(own))
             continue;
@@ -114,7 +115,7 @@ void set_group(Traits& traits, const Assembly& assembly, const std::vector<Trait
     traits.center = moment / area;
     traits.look /= area;
     for (const Placement& placement : assembly.placements) {
-        const Traits& child = all[placement.object];
+        const ObjectTraits& child = all[placement.object];
         const double own = child.area * area_scale(placement.transform.linear);
         if (!(own > 0) || !std::isfinite(own))
             continue;
@@ -154,17 +155,17 @@ void add_below(const Model& model, ObjectIndex index, std::vector<uint8_t>& seen
 
 }  // namespace
 
-std::vector<Traits> traits_of(const Model& model, std::span<const ObjectIndex> groups,
-                              const Job& job) {
+std::vector<ObjectTraits> traits_of(const Model& model, std::span<const ObjectIndex> groups,
+                                    const Job& job) {
     std::vector<ObjectIndex> order;
     std::vector<uint8_t> seen(model.objects.size(), 0);
     for (const ObjectIndex group : groups)
         add_below(model, group, seen, order, 0);
-    std::vector<Traits> all(model.objects.size());
+    std::vector<ObjectTraits> all(model.objects.size());
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
-        Traits& traits = all[index];
-        traits.environment = object.role == Role::Environment;
+        ObjectTraits& traits = all[index];
+        traits.environment = object.role == ObjectRole::Environment;
         traits.never = object.deforms;
         if (object.representations.empty())
             continue;
@@ -173,7 +174,7 @@ std::vector<Traits> traits_of(const Model& model, std::span<const ObjectIndex> g
             continue;
         }
         for (const Placement& placement : object.representations[0].assembly().placements) {
-            const Traits& child = all[placement.object];
+            const ObjectTraits& child = all[placement.object];
             traits.environment = traits.environment || child.environment;
             traits.never = traits.never || child.never || placement.hidden != 0;
             if (!child.bound.empty())
@@ -196,8 +197,8 @@ std::vector<Traits> traits_of(const Model& model, std::span<const ObjectIndex> g
     return all;
 }
 
-Item item_of(const Traits& traits, const Placement& placement) {
-    Item item;
+GroupingItem item_of(const ObjectTraits& traits, const Placement& placement) {
+    GroupingItem item;
     item.box = transformed(traits.bound, placement.transform).box;
     const glm::dmat3 spread = placed(traits.spread, placement.transform.linear);
     const double total = trace(spread);
@@ -209,7 +210,7 @@ Item item_of(const Traits& traits, const Placement& placement) {
         return item;
     const glm::dmat3 shares = spread / total;
     item.features[4] = std::log2(size) / kSizeApart;
-    const Eigen eigen = eigen_symmetric(shares);
+    const SymmetricEigen eigen = eigen_symmetric(shares);
     size_t at = 5;
     for (int i = 0; i < 3; ++i)
         item.features[at++] = eigen.values[i] / kShapeApart;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Traits: what objects are grouped by, quickly taken from their finest representations.
+// Object traits: what objects are grouped by, quickly taken from their finest representations.
 #pragma once
 
 #include "base/job.h"
@@ -11,7 +11,7 @@
 namespace lodestone::group {
 
 /// Of one object, in its own frame. What is not resident counts by its bound.
-struct Traits {
+struct ObjectTraits {
     Bound bound;               // may be empty, or not finite
     double area = 0;           // of the surface, m^2; hidden surface counts
     glm::dmat3 spread{0.0};    // covariance of the surface's points, m^2
@@ -23,10 +23,10 @@ struct Traits {
 
 /// Of all objects below some groups (others stay empty), by surface traversal (A.1).
 /// cost: O(triangles); parallel over meshes.
-std::vector<Traits> traits_of(const Model& model, std::span<const ObjectIndex> groups,
-                              const Job& job);
+std::vector<ObjectTraits> traits_of(const Model& model, std::span<const ObjectIndex> groups,
+                                    const Job& job);
 
 /// A placement of something, as it is grouped.
-Item item_of(const Traits& traits, const Placement& placement);
+GroupingItem item_of(const ObjectTraits& traits, const Placement& placement);
 
 }  // namespace lodestone::group

@@ -16,9 +16,9 @@ using Items = std::vector<uint32_t>;  // places in the group's assembly, rising
 constexpr int kLevels = 32;
 constexpr int kDigits = 50;  // a cell's number must stay exact
 
-class Grouper {
+class PositionGrouper {
 public:
-    Grouper(Model& model, ObjectIndex group, size_t most)
+    PositionGrouper(Model& model, ObjectIndex group, size_t most)
         : model_(model), group_(group), most_(most), placements_(assembly().placements) {
         for (const Object& object : model.objects)
             uids_.insert(object.uid);
@@ -192,7 +192,7 @@ size_t group_by_position(Model& model, ObjectIndex group, size_t most) {
              " or more expected");
     if (model.objects[group].representations[0].assembly().placements.size() <= most)
         return 0;
-    return Grouper(model, group, most).run();
+    return PositionGrouper(model, group, most).run();
 }
 
 }  // namespace lodestone::group

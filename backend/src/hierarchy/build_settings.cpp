@@ -3,7 +3,7 @@
 
 namespace lodestone::hierarchy {
 
-Hash hash_of(const Settings& settings) {
+Hash hash_of(const BuildSettings& settings) {
     constexpr uint32_t kAlgorithms = 27;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)

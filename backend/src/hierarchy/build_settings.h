@@ -19,12 +19,12 @@ struct Model;
 namespace lodestone::hierarchy {
 
 /// What a build is for when there is no time for all of it.
-struct Demand {
+struct BuildDemand {
     View view;           // with the Pixel Error its picture is taken at
     double share = 0.2;  // most time to build, over what the picture takes as things are (a guess)
 };
 
-struct Settings {
+struct BuildSettings {
     /// Triangles of a level over those of the next finer one. Larger: a closer fit to every
     /// distance, more time and disk.
     double level_ratio = 0.4;
@@ -45,13 +45,13 @@ struct Settings {
     std::vector<const Model*> poses;
     /// Build only what one picture gains most from, in a share of its time. What is left keeps its
     /// finest level alone, and stays stale. Not part of the hash.
-    std::optional<Demand> demand;
+    std::optional<BuildDemand> demand;
     /// What is finished goes to the store about this often, so that a build that is stopped or
     /// killed is gone on with, not begun again. Not part of the hash.
     double keep_every_s = 20;
 };
 
 /// Of everything that changes a result, and of the version of the algorithms.
-Hash hash_of(const Settings& settings);
+Hash hash_of(const BuildSettings& settings);
 
 }  // namespace lodestone::hierarchy

@@ -8,7 +8,7 @@
 
 namespace lodestone::hierarchy {
 
-uint64_t bytes_of(const Candidate& candidate) {
+uint64_t bytes_of(const StandInCandidate& candidate) {
     switch (candidate.kind) {
         case Kind::Mesh:
             return candidate.mesh->triangles.size() * kBytesPerTriangle;
@@ -19,7 +19,7 @@ uint64_t bytes_of(const Candidate& candidate) {
     }
 }
 
-double tracing_of(const Candidate& candidate) {
+double tracing_of(const StandInCandidate& candidate) {
     constexpr double kBytesPerCrossing = 150;
     const auto clear_area = [&](const Primitive& primitive, bool box, uint16_t slot) {
         if (slot >= candidate.materials.size() || !(candidate.error > 0))
@@ -47,30 +47,32 @@ double tracing_of(const Candidate& candidate) {
     return kBytesPerCrossing * 0.5 * area / (candidate.error * candidate.error);
 }
 
-double bytes_of(const Candidate& candidate, uint64_t uses) {
+double bytes_of(const StandInCandidate& candidate, uint64_t uses) {
     const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
-    return count * (bytes_each(candidate.kind, bytes_of(candidate), uses) + tracing_of(candidate));
+    return count * (bytes_per_occurrence(candidate.kind, bytes_of(candidate), uses) +
+                    tracing_of(candidate));
 }
 
-double bytes_within(const std::vector<Candidate>& candidates, double error, uint64_t uses) {
+double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses) {
     double out = std::numeric_limits<double>::infinity();
-    for (const Candidate& candidate : candidates) {
+    for (const StandInCandidate& candidate : candidates) {
         if (candidate.error <= error)
             out = std::min(out, bytes_of(candidate, uses));
     }
     return out;
 }
 
-void keep_useful(std::vector<Candidate>& candidates, uint64_t finest_bytes, uint64_t uses) {
+void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
+                       uint64_t uses) {
     // A level that saves less than this over a better one is not worth its place on disk.
     constexpr double kSameCost = 1.02;
-    const auto bytes = [&](const Candidate& candidate) { return bytes_of(candidate, uses); };
+    const auto bytes = [&](const StandInCandidate& candidate) { return bytes_of(candidate, uses); };
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [&](const Candidate& a, const Candidate& b) {
+                     [&](const StandInCandidate& a, const StandInCandidate& b) {
                          return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;
                      });
-    std::vector<Candidate> front;  // cheapest first, errors falling
-    for (Candidate& candidate : candidates) {
+    std::vector<StandInCandidate> front;  // cheapest first, errors falling
+    for (StandInCandidate& candidate : candidates) {
         if (bytes(candidate) >= static_cast<double>(finest_bytes) ||
             (!front.empty() && candidate.error >= front.back().error))
             continue;

@@ -9,7 +9,7 @@ namespace lodestone::hierarchy {
 namespace {
 
 /// Whether both stand for one thing that was tried.
-bool is_same(const Candidate& a, const Candidate& b) {
+bool is_same(const StandInCandidate& a, const StandInCandidate& b) {
     return a.kind == b.kind && a.mesh == b.mesh && a.composite == b.composite &&
            a.primitive.center == b.primitive.center &&
            a.primitive.half_size == b.primitive.half_size;
@@ -17,13 +17,13 @@ bool is_same(const Candidate& a, const Candidate& b) {
 
 }  // namespace
 
-bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
-           const Job& job) {
+bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCandidate>& all,
+                      const StandInEvaluator& judge, const Job& job) {
     bool changed = false;
     for (size_t i = some.size(); i-- > 0;) {
         if (!some[i].unproven)
             continue;
-        Candidate proven = some[i];
+        StandInCandidate proven = some[i];
         const double next =
             i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
         const bool good = judge.prove(proven, next, job);
@@ -44,24 +44,25 @@ bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judg
     return changed;
 }
 
-std::vector<Candidate> kept_of(std::vector<Candidate>& all, const Keep& keep, Judge& judge,
-                               const Mesh& finest, const Job& job) {
+std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& all,
+                                                const Keep& keep, StandInEvaluator& judge,
+                                                const Mesh& finest, const Job& job) {
     for (;;) {
-        std::vector<Candidate> kept = all;
+        std::vector<StandInCandidate> kept = all;
         keep(kept);
-        if (prove(kept, all, judge, job))
+        if (prove_candidates(kept, all, judge, job))
             continue;
         bool farther = false;
         for (size_t i = 0; i < kept.size(); ++i) {
             const bool last = i + 1 == kept.size();
-            const Candidate before = kept[i];
+            const StandInCandidate before = kept[i];
             judge.match_brightness(
                 kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
                 job);
             farther = farther || kept[i].error > before.error;
             if (before.kind != Kind::Mesh || before.matched == kept[i].matched)
                 continue;
-            for (Candidate& candidate : all) {
+            for (StandInCandidate& candidate : all) {
                 if (candidate.mesh == before.mesh)
                     candidate = kept[i];
             }
@@ -71,9 +72,10 @@ std::vector<Candidate> kept_of(std::vector<Candidate>& all, const Keep& keep, Ju
     }
 }
 
-void paint(std::vector<Candidate>& kept, const Keep& keep, const Judge& judge) {
-    std::vector<Candidate> painted = kept;
-    for (Candidate& candidate : painted)
+void paint_boxes(std::vector<StandInCandidate>& kept, const Keep& keep,
+                 const StandInEvaluator& judge) {
+    std::vector<StandInCandidate> painted = kept;
+    for (StandInCandidate& candidate : painted)
         judge.paint(candidate);
     keep(painted);
     if (!painted.empty())

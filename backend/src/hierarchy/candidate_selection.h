@@ -10,19 +10,21 @@
 namespace lodestone::hierarchy {
 
 /// Drops what is of no use beside the others, and sorts the rest, finest first.
-using Keep = std::function<void(std::vector<Candidate>&)>;
+using Keep = std::function<void(std::vector<StandInCandidate>&)>;
 
 /// Looks at those of `some` that nobody has looked at: what shows too little is in neither list any
 /// more, and what does not look like the finest is farther off. Whether anything changed.
-bool prove(std::vector<Candidate>& some, std::vector<Candidate>& all, const Judge& judge,
-           const Job& job);
+bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCandidate>& all,
+                      const StandInEvaluator& judge, const Job& job);
 
 /// Those that `keep` leaves of all (finest first), as bright as the finest. What turns out to be
 /// farther off than it was thought is one among all again, what shows too little is gone.
-std::vector<Candidate> kept_of(std::vector<Candidate>& all, const Keep& keep, Judge& judge,
-                               const Mesh& finest, const Job& job);
+std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& all,
+                                                const Keep& keep, StandInEvaluator& judge,
+                                                const Mesh& finest, const Job& job);
 
 /// Gives boxes the colors of their sides, if something is of use then: they cost more.
-void paint(std::vector<Candidate>& kept, const Keep& keep, const Judge& judge);
+void paint_boxes(std::vector<StandInCandidate>& kept, const Keep& keep,
+                 const StandInEvaluator& judge);
 
 }  // namespace lodestone::hierarchy

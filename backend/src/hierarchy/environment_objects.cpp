@@ -32,7 +32,7 @@ std::vector<uint8_t> marked_environment(const Model& model, const std::vector<Ob
     std::vector<uint8_t> out(model.objects.size(), 0);
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
-        out[index] = object.role == Role::Environment ? 1 : 0;
+        out[index] = object.role == ObjectRole::Environment ? 1 : 0;
         if (out[index] != 0 || !object.group())
             continue;
         const std::vector<Placement>& placements = placements_of(object);
@@ -48,11 +48,11 @@ std::vector<uint8_t> marked_environment(const Model& model, const std::vector<Ob
 
 std::optional<size_t> ground_of(const Model& model, ObjectIndex group,
                                 const std::vector<uint8_t>& marked) {
-    struct Thing {
+    struct PlacedBox {
         size_t placement;
         Box3 box;
     };
-    std::vector<Thing> things;
+    std::vector<PlacedBox> things;
     const std::vector<Placement>& placements = placements_of(model.objects[group]);
     for (size_t i = 0; i < placements.size(); ++i) {
         const Object& child = model.objects[placements[i].object];
@@ -63,15 +63,15 @@ std::optional<size_t> ground_of(const Model& model, ObjectIndex group,
     }
     const auto widest = std::max_element(
         things.begin(), things.end(),
-        [](const Thing& a, const Thing& b) { return footprint(a.box) < footprint(b.box); });
+        [](const PlacedBox& a, const PlacedBox& b) { return footprint(a.box) < footprint(b.box); });
     if (things.size() < 2 ||
-        model.objects[placements[widest->placement].object].role != Role::Automatic)
+        model.objects[placements[widest->placement].object].role != ObjectRole::Automatic)
         return std::nullopt;
     const glm::dvec3 size = widest->box.size();
     if (!(size.z <= kMostHeight * std::min(size.x, size.y)))
         return std::nullopt;
     size_t above = 0;
-    for (const Thing& thing : things) {
+    for (const PlacedBox& thing : things) {
         if (thing.placement == widest->placement)
             continue;
         if (!(footprint(thing.box) <= kMostFootprint * footprint(widest->box)))

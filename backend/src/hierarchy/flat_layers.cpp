@@ -24,7 +24,7 @@ constexpr int kSamples = 32;
 constexpr double kNearLayers = 1.0 / 16;  // over the width: see kLayerWidth of the judge
 
 /// The surface of a leaf.
-struct Shape {
+struct LeafSurface {
     std::shared_ptr<const Mesh> mesh;
     double width = 0;  // across, m
     bool flat = false;
@@ -32,22 +32,22 @@ struct Shape {
     std::vector<glm::dvec3> samples;  // of its surface; made when asked for
 };
 
-struct Place {
+struct PlacedLeaf {
     ObjectIndex object;
     Affine world;
     Box3 box;
     double width;
 };
 
-Shape shape_of(std::shared_ptr<const Mesh> mesh, Role role) {
-    Shape shape;
-    const measure::SurfaceInertia inertia = measure::of_mesh(*mesh);
+LeafSurface shape_of(std::shared_ptr<const Mesh> mesh, ObjectRole role) {
+    LeafSurface shape;
+    const measure::SurfaceInertia inertia = measure::inertia_of_mesh(*mesh);
     if (inertia.empty())
         return shape;
-    const Eigen variances = measure::principal_variances(inertia);
+    const SymmetricEigen variances = measure::principal_variances(inertia);
     shape.width = std::sqrt(12 * std::max(0.0, variances.values[1]));
     shape.flat = is_flat(variances.values[1], variances.values[2]);
-    shape.asked = shape.flat && role != Role::Environment;
+    shape.asked = shape.flat && role != ObjectRole::Environment;
     shape.mesh = std::move(mesh);
     return shape;
 }
@@ -62,7 +62,7 @@ std::vector<glm::dvec3> samples_of(const Mesh& mesh) {
         up_to.push_back(all);
     }
     std::vector<glm::dvec3> samples;
-    Random random(1, 5);
+    PcgRandom random(1, 5);
     for (int i = 0; i < kSamples; ++i) {
         const double at = (i + random.uniform()) / kSamples * all;
         const auto found = std::upper_bound(up_to.begin(), up_to.end(), at);
@@ -87,10 +87,10 @@ bool overlap(const Box3& a, const Box3& b, double gap) {
     return true;
 }
 
-class Search {
+class LayerSearch {
 public:
-    Search(const Model& model, const std::vector<ObjectIndex>& order, const MeshSource& source,
-           const Job& job)
+    LayerSearch(const Model& model, const std::vector<ObjectIndex>& order, const MeshSource& source,
+                const Job& job)
         : model_(model), job_(job), shapes_(model.objects.size()) {
         std::vector<ObjectIndex> leaves;
         for (const ObjectIndex index : order) {
@@ -110,7 +110,7 @@ public:
     std::vector<Hash> run() {
         std::vector<Hash> out(shapes_.size(), 0);
         if (std::none_of(shapes_.begin(), shapes_.end(),
-                         [](const Shape& shape) { return shape.asked; }))
+                         [](const LeafSurface& shape) { return shape.asked; }))
             return out;
         collect();
         bool known = places_.size() < kMostOccurrences;
@@ -153,27 +153,28 @@ private:
     void sort() {
         constexpr double kLong = 1.0 / 64;
         Box3 all;
-        for (const Place& place : places_) {
+        for (const PlacedLeaf& place : places_) {
             all.add(place.box.low);
             all.add(place.box.high);
         }
         longest_ = kLong * all.size().x;
-        const auto is_long = [&](const Place& place) {
+        const auto is_long = [&](const PlacedLeaf& place) {
             return place.box.high.x - place.box.low.x > longest_;
         };
         const auto middle = std::stable_partition(places_.begin(), places_.end(), is_long);
         first_short_ = static_cast<size_t>(middle - places_.begin());
-        std::stable_sort(middle, places_.end(),
-                         [](const Place& a, const Place& b) { return a.box.low.x < b.box.low.x; });
+        std::stable_sort(middle, places_.end(), [](const PlacedLeaf& a, const PlacedLeaf& b) {
+            return a.box.low.x < b.box.low.x;
+        });
     }
 
     void look_around(size_t number, std::vector<Hash>& out) {
         job_.check();
-        const Place& place = places_[number];
+        const PlacedLeaf& place = places_[number];
         const double gap = kNearLayers * place.width;
         const auto visit = [&](size_t i) {
             ++work_;
-            const Place& other = places_[i];
+            const PlacedLeaf& other = places_[i];
             if (i == number || !overlap(place.box, other.box, gap) || !in_layers(place, other))
                 return false;
             out[place.object] = 1;
@@ -188,7 +189,7 @@ private:
         const auto from =
             std::lower_bound(places_.begin() + static_cast<std::ptrdiff_t>(first_short_),
                              places_.end(), place.box.low.x - gap - longest_,
-                             [](const Place& other, double x) { return other.box.low.x < x; });
+                             [](const PlacedLeaf& other, double x) { return other.box.low.x < x; });
         for (auto i = static_cast<size_t>(from - places_.begin());
              i < places_.size() && places_[i].box.low.x <= place.box.high.x + gap &&
              work_ < kMostWork;
@@ -198,16 +199,16 @@ private:
         }
     }
 
-    bool in_layers(const Place& a, const Place& b) {
-        const Place& narrow = a.width <= b.width ? a : b;
-        const Place& wide = a.width <= b.width ? b : a;
+    bool in_layers(const PlacedLeaf& a, const PlacedLeaf& b) {
+        const PlacedLeaf& narrow = a.width <= b.width ? a : b;
+        const PlacedLeaf& wide = a.width <= b.width ? b : a;
         const double volume = glm::determinant(wide.world.linear);
         if (!(std::abs(volume) > 0) || !std::isfinite(1 / volume))
             return false;
         const glm::dmat3 back = glm::inverse(wide.world.linear);
         const double gap = kNearLayers * narrow.width / stretch(wide.world);
         const Box3& box = model_.objects[wide.object].bound().box;
-        Shape& shape = shapes_[narrow.object];
+        LeafSurface& shape = shapes_[narrow.object];
         if (shape.samples.empty())
             shape.samples = samples_of(*shape.mesh);
         const size_t wanted = (shape.samples.size() + 1) / 2;
@@ -241,8 +242,8 @@ private:
 
     const Model& model_;
     const Job& job_;
-    std::vector<Shape> shapes_;  // by object
-    std::vector<Place> places_;
+    std::vector<LeafSurface> shapes_;  // by object
+    std::vector<PlacedLeaf> places_;
     size_t first_short_ = 0;
     double longest_ = 0;  // of the short ones, along x
     uint64_t work_ = 0;
@@ -252,7 +253,7 @@ private:
 
 std::vector<Hash> layers_of(const Model& model, const std::vector<ObjectIndex>& order,
                             const MeshSource& source, const Job& job) {
-    std::vector<Hash> out = Search(model, order, source, job).run();
+    std::vector<Hash> out = LayerSearch(model, order, source, job).run();
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (!object.group())

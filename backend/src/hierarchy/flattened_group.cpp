@@ -19,8 +19,9 @@ Material without_textures(Material material) {
 
 }  // namespace
 
-Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const Job& job) {
-    Flat flat;
+FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource& source,
+                             const Job& job) {
+    FlattenedGroup flat;
     const Model& model = group.model();
     const choose::Cut cut = group.cut(error, job);
     std::map<std::pair<uint32_t, bool>, uint16_t> slots;  // by material, and whether it is plain
@@ -35,7 +36,7 @@ Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const J
     };
     for (const uint32_t index : cut.chosen) {
         job.check();
-        const choose::Node& node = cut.nodes[index];
+        const choose::CutNode& node = cut.nodes[index];
         const Object& object = model.objects[node.object];
         const Representation& representation = object.representations[node.lod];
         flat.child_error =
@@ -61,7 +62,7 @@ Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const J
         for (uint32_t at = index; cut.nodes[at].parent != choose::kNoParent;
              at = cut.nodes[at].parent) {
             flat.placement.back() = cut.nodes[at].placement;
-            if (model.objects[cut.nodes[at].object].role == Role::Environment)
+            if (model.objects[cut.nodes[at].object].role == ObjectRole::Environment)
                 flat.environment.back() = 1;
         }
     }
@@ -91,7 +92,7 @@ double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, cons
         enough = std::max(most, drawn_at(kCoarsest - 1).triangles);
     double reference = kLeast * size;
     for (int power = kFinest - 1; power < kCoarsest; ++power) {
-        const Drawn drawn = drawn_at(power);
+        const DrawnCosts drawn = drawn_at(power);
         const double stand_in =
             static_cast<double>(drawn.triangles * kBytesPerTriangle) / (kJoined * sharing) +
             static_cast<double>(kBytesPerOccurrence);

@@ -7,7 +7,7 @@
 
 namespace lodestone::hierarchy {
 
-struct Flat {
+struct FlattenedGroup {
     Mesh mesh;                         // in the group's frame
     std::vector<Material> materials;   // by slot
     std::vector<uint32_t> occurrence;  // a triangle: which of the drawn things it is of
@@ -19,7 +19,8 @@ struct Flat {
 
 /// Children are drawn by their cheapest representation within `error` metres (0: the finest);
 /// primitives as triangles.
-Flat flatten(OpenedGroup& group, double error, const MeshSource& source, const Job& job);
+FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource& source,
+                             const Job& job);
 
 /// At which error to flatten a group: much below that of the finest stand-in that could cost less
 /// than the children do at its error, and at most a sixteenth of the size. Flat meshes of what its

@@ -36,10 +36,10 @@ MeshSource mesh_source_of(const segment::Store& store) {
     };
 }
 
-void add(Object& object, std::vector<Candidate>&& made, Model& model, Palette& palette,
-         Hash build_hash) {
+void add(Object& object, std::vector<StandInCandidate>&& made, Model& model,
+         MaterialPalette& palette, Hash build_hash) {
     object.build_hash = build_hash;
-    for (Candidate& candidate : made) {
+    for (StandInCandidate& candidate : made) {
         Representation representation;
         representation.summary.kind = candidate.kind;
         representation.summary.error = candidate.error;
@@ -72,15 +72,15 @@ std::vector<size_t> heights_of(const Model& model, const std::vector<ObjectIndex
 }
 
 /// An object that deforms, and what its levels come from.
-struct Following {
+struct FollowingObject {
     ObjectIndex index;
-    Bind bind;
+    PoseBinding bind;
 };
 
-class Builder {
+class HierarchyBuilder {
 public:
-    Builder(Model& model, const segment::Store& store, const Settings& settings, Problems& problems,
-            const Job& job)
+    HierarchyBuilder(Model& model, const segment::Store& store, const BuildSettings& settings,
+                     Problems& problems, const Job& job)
         : model_(model),
           store_(store),
           settings_(settings),
@@ -88,8 +88,8 @@ public:
           job_(job),
           palette_(model) {}
 
-    Report run() {
-        Report report;
+    BuildReport run() {
+        BuildReport report;
         const double wall = wall_seconds();
         const double cpu = cpu_seconds();
         const std::vector<ObjectIndex> order = bottom_up(model_);
@@ -98,10 +98,10 @@ public:
             own.resize(std::min<size_t>(own.size(), 1));
         }
         summarize_assemblies(model_, order);
-        const Shelf shelf(store_, settings_.rebuild);
+        const StoredStandIns shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
         surroundings_ = surroundings_of(model_, order, mesh_source(), job_);
-        Plan plan = plan_of(model_, order, surroundings_, shelf, settings_);
+        BuildPlan plan = plan_build(model_, order, surroundings_, shelf, settings_);
         report.objects = plan.objects;
         for (const ObjectIndex index : plan.not_followed)
             problems_.push_back(
@@ -110,25 +110,25 @@ public:
             shelf.adopt(model_.objects[index], *stored, palette_);
         wanted_ = std::move(plan.wanted);
 
-        std::vector<Task>& tasks = plan.tasks;
+        std::vector<BuildTask>& tasks = plan.tasks;
         const size_t all = stale_in(tasks);
         if (settings_.demand)
             keep_called_for(tasks);
         report.left = all - stale_in(tasks);
 
         std::map<size_t, std::vector<ObjectIndex>> stale;  // by height
-        std::map<size_t, std::vector<Moved>> moved;        // likewise
+        std::map<size_t, std::vector<MovedCopy>> moved;    // likewise
         std::vector<std::pair<ObjectIndex, ObjectIndex>> copies;
         const auto count = [&](ObjectIndex index) {
             ++report.built;
             total_ += weight(model_.objects[index]);
         };
-        for (const Moved& one : plan.moved)
+        for (const MovedCopy& one : plan.moved)
             count(one.index);
-        for (Task& task : tasks) {
+        for (BuildTask& task : tasks) {
             for (const ObjectIndex copy : task.copies)
                 copies.emplace_back(copy, task.index);
-            for (const Moved& one : task.moved) {
+            for (const MovedCopy& one : task.moved) {
                 moved[heights[task.index]].push_back(one);
                 count(one.index);
             }
@@ -143,13 +143,13 @@ public:
                 report.triangles += object.representations[0].summary.cost.triangles;
         }
         follow(report);
-        for (const Moved& one : plan.moved)
+        for (const MovedCopy& one : plan.moved)
             finish(one);
         for (auto& [height, objects] : stale) {
             // Copies of lower objects must be complete before a group above them is flattened.
             copy_lists(copies, heights, height);
             build(objects);
-            for (const Moved& one : moved[height])
+            for (const MovedCopy& one : moved[height])
                 finish(one);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
@@ -171,21 +171,21 @@ private:
     }
 
     /// How many objects and groups are built for themselves or as others moved.
-    static size_t stale_in(const std::vector<Task>& tasks) {
+    static size_t stale_in(const std::vector<BuildTask>& tasks) {
         size_t count = tasks.size();
-        for (const Task& task : tasks)
+        for (const BuildTask& task : tasks)
             count += task.moved.size();
         return count;
     }
 
     /// Leaves what a demand does not call for as it is.
-    void keep_called_for(std::vector<Task>& tasks) const {
-        std::vector<Stale> stale(tasks.begin(), tasks.end());
+    void keep_called_for(std::vector<BuildTask>& tasks) const {
+        std::vector<StaleObject> stale(tasks.begin(), tasks.end());
         for (size_t i = 0; i < tasks.size(); ++i) {
-            for (const Moved& one : tasks[i].moved)
+            for (const MovedCopy& one : tasks[i].moved)
                 stale[i].copies.push_back(one.index);
         }
-        const std::vector<uint8_t> called = called_for(model_, stale, settings_, job_);
+        const std::vector<uint8_t> called = select_demanded(model_, stale, settings_, job_);
         size_t kept = 0;
         for (size_t i = 0; i < tasks.size(); ++i) {
             if (called[i] != 0)
@@ -240,10 +240,10 @@ private:
 
     /// What deforms: its levels are collapsed where that has not been done yet, and put where the
     /// object has them now.
-    void follow(Report& report) {
+    void follow(BuildReport& report) {
         std::map<Hash, segment::BoundLevels> levels;
-        std::vector<const Following*> missing;
-        for (const Following& one : following_) {
+        std::vector<const FollowingObject*> missing;
+        for (const FollowingObject& one : following_) {
             const auto [at, fresh] = levels.try_emplace(one.bind.hash);
             if (!fresh)
                 continue;
@@ -253,7 +253,7 @@ private:
             else
                 missing.push_back(&one);
         }
-        for (const Following* one : missing) {
+        for (const FollowingObject* one : missing) {
             ++report.built;
             const Object& object = model_.objects[one->index];
             report.triangles += object.representations[0].summary.cost.triangles;
@@ -264,7 +264,7 @@ private:
         const MeshSource source = mesh_source();
         parallel_for(missing.size(), [&](size_t i) {
             job_.check();
-            job_.stage(Stage::Simplify);
+            job_.stage(JobStage::Simplify);
             const Object& object = model_.objects[missing[i]->index];
             try {
                 made[i] = bound_levels_of_leaf(missing[i]->bind, settings_, source, texels_, job_);
@@ -279,7 +279,7 @@ private:
             report.bytes_written += store_.save_bound(missing[i]->bind.hash, *made[i]);
             levels[missing[i]->bind.hash] = std::move(*made[i]);
         }
-        std::vector<std::vector<Candidate>> followed(following_.size());
+        std::vector<std::vector<StandInCandidate>> followed(following_.size());
         parallel_for(following_.size(), [&](size_t i) {
             job_.check();
             const Object& object = model_.objects[following_[i].index];
@@ -325,9 +325,9 @@ private:
     }
 
     /// What is another one moved, once that is built.
-    void finish(const Moved& moved) {
+    void finish(const MovedCopy& moved) {
         if (model_.objects[moved.original].build_hash != 0) {
-            add_moved(model_, moved, mesh_source());
+            add_moved_copy(model_, moved, mesh_source());
             model_.objects[moved.index].build_hash = wanted_[moved.index];
         }
         advance(weight(model_.objects[moved.index]));
@@ -341,7 +341,7 @@ private:
             job_.check();
             const Object& object = model_.objects[objects[i]];
             const bool group = object.group();
-            job_.stage(group ? Stage::Group : Stage::Simplify);
+            job_.stage(group ? JobStage::Group : JobStage::Simplify);
             try {
                 made[i] = group ? stand_ins_of_group(model_, objects[i], surroundings_, settings_,
                                                      source, texels_, job_)
@@ -364,13 +364,13 @@ private:
 
     Model& model_;
     const segment::Store& store_;
-    const Settings& settings_;
+    const BuildSettings& settings_;
     Problems& problems_;
     const Job& job_;
-    Palette palette_;
+    MaterialPalette palette_;
     std::vector<Hash> wanted_;  // build hashes, by object
-    std::vector<Following> following_;
-    Surroundings surroundings_;
+    std::vector<FollowingObject> following_;
+    StandInSurroundings surroundings_;
     image::TexelCache texels_;
     double total_ = 0;
     std::atomic<double> done_{0};
@@ -380,17 +380,19 @@ private:
 
 }  // namespace
 
-Report estimate(Model& model, const segment::Store& store, const Settings& settings) {
-    Report report;
+BuildReport estimate_build(Model& model, const segment::Store& store,
+                           const BuildSettings& settings) {
+    BuildReport report;
     const std::vector<ObjectIndex> order = bottom_up(model);
     summarize_assemblies(model, order);
-    const Shelf shelf(store, settings.rebuild);
-    const Surroundings surroundings = surroundings_of(model, order, mesh_source_of(store), {});
-    const Plan plan = plan_of(model, order, surroundings, shelf, settings);
+    const StoredStandIns shelf(store, settings.rebuild);
+    const StandInSurroundings surroundings =
+        surroundings_of(model, order, mesh_source_of(store), {});
+    const BuildPlan plan = plan_build(model, order, surroundings, shelf, settings);
     report.objects = plan.objects;
     std::set<Hash> binds;  // counted already
     double seconds = 0;
-    for (const Task& task : plan.tasks) {
+    for (const BuildTask& task : plan.tasks) {
         if (task.bind && (!binds.insert(task.bind->hash).second ||
                           (!settings.rebuild && store.load_bound(task.bind->hash))))
             continue;
@@ -406,8 +408,8 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
     return report;
 }
 
-Report build_hierarchy(Model& model, const segment::Store& store, const Settings& settings,
-                       Problems& problems, const Job& job) {
+BuildReport build_hierarchy(Model& model, const segment::Store& store,
+                            const BuildSettings& settings, Problems& problems, const Job& job) {
     // Work on a copy of the lists (payloads are shared), so that a cancelled build changes nothing.
     Model next = model;
     for (Object& object : next.objects) {
@@ -416,7 +418,7 @@ Report build_hierarchy(Model& model, const segment::Store& store, const Settings
         object.build_hash = 0;
         object.bind_hash = 0;
     }
-    const Report report = Builder(next, store, settings, problems, job).run();
+    const BuildReport report = HierarchyBuilder(next, store, settings, problems, job).run();
     model = std::move(next);
     return report;
 }

@@ -9,7 +9,7 @@
 
 namespace lodestone::hierarchy {
 
-struct Report {
+struct BuildReport {
     uint64_t objects = 0;  // reachable from the root
     uint64_t built = 0;    // of these, new or changed
     uint64_t left = 0;     // stale still: what settings.demand does not call for
@@ -21,7 +21,8 @@ struct Report {
 };
 
 /// What build_hierarchy would do; wall_s is a guess from the triangles.
-Report estimate(Model& model, const segment::Store& store, const Settings& settings);
+BuildReport estimate_build(Model& model, const segment::Store& store,
+                           const BuildSettings& settings);
 
 /// `model` has its finest representations resident, what else it has is replaced; afterwards every
 /// reachable object has its list and the store holds it. Objects are matched with the store's by
@@ -29,7 +30,7 @@ Report estimate(Model& model, const segment::Store& store, const Settings& setti
 /// Throws Error(Cancelled): then the model's lists are as before, and the store has what was
 /// finished by settings.keep_every_s before. A broken object gets a problem and only its finest
 /// level.
-Report build_hierarchy(Model& model, const segment::Store& store, const Settings& settings,
-                       Problems& problems, const Job& job);
+BuildReport build_hierarchy(Model& model, const segment::Store& store,
+                            const BuildSettings& settings, Problems& problems, const Job& job);
 
 }  // namespace lodestone::hierarchy

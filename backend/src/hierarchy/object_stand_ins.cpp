@@ -28,10 +28,10 @@ constexpr size_t kManyChildren = 32;
 constexpr int kRaysPerTriangle = 16;
 
 /// What a group's children cost within rising errors.
-class Children {
+class ChildCosts {
 public:
     /// From `error` on.
-    Children(OpenedGroup& group, double error, const Job& job) {
+    ChildCosts(OpenedGroup& group, double error, const Job& job) {
         constexpr int kFinest = -10;  // powers of two, over the radius
         constexpr int kCoarsest = 3;
         const auto add = [&](double at) {
@@ -50,7 +50,7 @@ public:
     /// The error from which on they cost no more than `bytes`; a step too large rather than too
     /// small.
     double cheaper_from(double bytes) const {
-        for (const Step& step : steps_) {
+        for (const CostStep& step : steps_) {
             if (step.bytes <= bytes)
                 return step.error;
         }
@@ -58,11 +58,11 @@ public:
     }
 
 private:
-    struct Step {
+    struct CostStep {
         double error;
         double bytes;
     };
-    std::vector<Step> steps_;
+    std::vector<CostStep> steps_;
 };
 
 /// What no ray from outside reaches is left out (of the occurrences too); everything stays when
@@ -86,11 +86,11 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
 /// Of a group: leaves and the like where that is what its children are made of, else the children.
 prune::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
     constexpr size_t kPartsOfFoliage = 16;  // of an occurrence, in the mean
-    prune::Crowd parts = prune::crowd_of(mesh);
+    prune::Crowd parts = prune::find_crowd(mesh);
     const std::set<uint32_t> drawn(occurrence.begin(), occurrence.end());
     if (parts.parts.size() >= kPartsOfFoliage * drawn.size())
         return parts;
-    return prune::crowd_of(mesh, occurrence);
+    return prune::find_crowd(mesh, occurrence);
 }
 
 /// Whether one flat thing lies under most of a group, as a road lies under its markings; a town of
@@ -102,8 +102,8 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
         return false;
     const Object& object = model.objects[index];
     if (!object.group())
-        return (layers[index] != 0 || object.role == Role::Environment) && object.attributes &&
-               is_flat(*object.attributes);
+        return (layers[index] != 0 || object.role == ObjectRole::Environment) &&
+               object.attributes && is_flat(*object.attributes);
     const std::vector<Placement>& placements = object.representations[0].assembly().placements;
     return std::any_of(placements.begin(), placements.end(), [&](const Placement& placement) {
         const Object& child = model.objects[placement.object];
@@ -117,8 +117,8 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
 /// less, but do not look like the group where the next level takes over. The same children serve
 /// from less error on, where they look no worse.
-void seal(std::vector<Candidate>& levels, OpenedGroup& group, const Mesh& finest,
-          const MeshSource& source, Judge& judge, const Job& job) {
+void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const Mesh& finest,
+          const MeshSource& source, StandInEvaluator& judge, const Job& job) {
     constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
     double next = kFarthest * group.model().objects[group.index()].bound().radius;
     for (size_t i = levels.size(); i-- > 0;) {
@@ -127,21 +127,21 @@ void seal(std::vector<Candidate>& levels, OpenedGroup& group, const Mesh& finest
         const auto own = static_cast<double>(bytes_of(levels[i]) + kBytesPerOccurrence);
         if (group.drawn_within(error, job).alone >= own)
             continue;
-        const Flat children = flatten(group, error, source, job);
+        const FlattenedGroup children = flatten_group(group, error, source, job);
         levels[i].sealed =
             !judge.looks_alike(children.mesh, children.materials, finest, error, job);
     }
 }
 
-uint64_t seed_of(const Object& object, const Settings& settings) {
+uint64_t seed_of(const Object& object, const BuildSettings& settings) {
     return Hasher().value(object.source_hash).value(settings.seed).result();
 }
 
 }  // namespace
 
-StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
-                           const Settings& settings, const MeshSource& source,
-                           image::TexelCache& texels, const Job& job) {
+StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
+                           const StandInSurroundings& surroundings, const BuildSettings& settings,
+                           const MeshSource& source, image::TexelCache& texels, const Job& job) {
     StandIns out;
     const Object& object = model.objects[leaf];
     const uint64_t uses = surroundings.uses[leaf];
@@ -150,61 +150,63 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundi
     if (mesh->empty())
         return out;
     const std::vector<Material> materials = materials_of(model, finest);
-    Judge judge(*mesh, materials, texels, settings, object.role == Role::Environment,
-                seed_of(object, settings), 0, job);
+    StandInEvaluator judge(*mesh, materials, texels, settings,
+                           object.role == ObjectRole::Environment, seed_of(object, settings), 0,
+                           job);
     judge.measure_finest(*mesh, job);
     if (surroundings.layers[leaf] != 0)
         judge.count_layers();
     out.attributes = judge.attributes();
     if (out.attributes.empty())
         return out;
-    Wanted wanted{[](size_t) { return std::numeric_limits<double>::infinity(); }};
-    Whole whole{finest.summary.bound, uses};
+    LevelLimits wanted{[](size_t) { return std::numeric_limits<double>::infinity(); }};
+    ReplacedObject whole{finest.summary.bound, uses};
     whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
-    whole.most = bytes_each(Kind::Mesh, finest.summary.cost.bytes, uses);
+    whole.most = bytes_per_occurrence(Kind::Mesh, finest.summary.cost.bytes, uses);
     whole.ground = surroundings.ground[leaf] != 0;
-    std::optional<Replacements> replacements;
-    if (object.role != Role::Environment) {
+    std::optional<SolidCandidates> replacements;
+    if (object.role != ObjectRole::Environment) {
         replacements.emplace(
-            *mesh, [&] { return prune::crowd_of(*mesh); }, whole, judge, job);
+            *mesh, [&] { return prune::find_crowd(*mesh); }, whole, judge, job);
         wanted.solid = replacements->nearest_solid();
         wanted.told = kOff * whole.bound.radius;
     }
     add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), wanted, judge, job);
     if (replacements)
         replacements->add(out.candidates, materials, settings, seed_of(object, settings), job);
-    const auto keep = [&](std::vector<Candidate>& candidates) {
-        keep_useful(candidates, finest.summary.cost.bytes, uses);
+    const auto keep = [&](std::vector<StandInCandidate>& candidates) {
+        keep_pareto_front(candidates, finest.summary.cost.bytes, uses);
     };
-    out.candidates = kept_of(out.candidates, keep, judge, *mesh, job);
-    for (Candidate& candidate : out.candidates)
+    out.candidates = select_candidates(out.candidates, keep, judge, *mesh, job);
+    for (StandInCandidate& candidate : out.candidates)
         judge.settle(candidate, *mesh, whole.bound.box.low.z, job);
-    paint(out.candidates, keep, judge);
-    if (object.role != Role::Environment)
-        widen(out.candidates, *mesh, materials, texels, seed_of(object, settings), judge, job);
+    paint_boxes(out.candidates, keep, judge);
+    if (object.role != ObjectRole::Environment)
+        widen_thin_parts(out.candidates, *mesh, materials, texels, seed_of(object, settings), judge,
+                         job);
     return out;
 }
 
-StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
-                            const Settings& settings, const MeshSource& source,
-                            image::TexelCache& texels, const Job& job) {
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
+                            const StandInSurroundings& surroundings, const BuildSettings& settings,
+                            const MeshSource& source, image::TexelCache& texels, const Job& job) {
     StandIns out;
     if (surroundings.hidden[group] != 0)
         return out;  // always opened: rays of one class see other parts of it than those of another
     const Object& object = model.objects[group];
-    const Summary& finest = object.representations.at(0).summary;
+    const RepresentationSummary& finest = object.representations.at(0).summary;
     const std::vector<uint64_t>& uses = surroundings.uses;
     const bool environment = surroundings.environment[group] != 0;
     const uint64_t budget =
         std::min(settings.group_triangles, std::max<uint64_t>(1000, finest.cost.triangles / 3));
     OpenedGroup opened(model, group, uses);
     const double fine = error_to_flatten(opened, budget, settings.group_triangles, job);
-    const Flat reference = flatten(opened, fine, source, job);
+    const FlattenedGroup reference = flatten_group(opened, fine, source, job);
     if (reference.mesh.empty())
         return out;
     const uint64_t seed = seed_of(object, settings);
-    Judge judge(reference.mesh, reference.materials, texels, settings, environment, seed,
-                reference.child_error, job, kRaysPerTriangle);
+    StandInEvaluator judge(reference.mesh, reference.materials, texels, settings, environment, seed,
+                           reference.child_error, job, kRaysPerTriangle);
     judge.measure_roughly();
     judge.measure_finest(reference.mesh, job);
     if (std::set<ObjectIndex> asked; lies_on_a_layer(model, group, surroundings.layers, asked))
@@ -218,8 +220,8 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     const double floor = bound_of(shell.positions).box.low.z;
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.
-    const Children children(opened, reference.child_error, job);
-    Whole whole{finest.bound, uses[group]};
+    const ChildCosts children(opened, reference.child_error, job);
+    ReplacedObject whole{finest.bound, uses[group]};
     whole.bytes = static_cast<double>(shell.triangles.size() * kBytesPerTriangle);
     whole.most = children.bytes() - static_cast<double>(kBytesPerOccurrence);
     whole.many = reference.occurrences >= kManyChildren;
@@ -235,14 +237,14 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     if (!environment && !whole.many && first < fifth)
         targets.insert(targets.begin(), fifth);  // tells whether it is a crowd
     const size_t coarsest = targets.empty() ? 0 : targets.back();
-    Wanted wanted;
+    LevelLimits wanted;
     wanted.told = kOff * finest.bound.radius;
-    std::optional<Replacements> replacements;
+    std::optional<SolidCandidates> replacements;
     if (!environment) {
         replacements.emplace(
             shell, [&] { return crowd_in(shell, occurrence); }, whole, judge, job);
         const double nearest = replacements->nearest_solid();
-        const double own = bytes_each(Kind::Box, kBytesPerPrimitive, uses[group]) +
+        const double own = bytes_per_occurrence(Kind::Box, kBytesPerPrimitive, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
         if (std::isfinite(nearest) && own < opened.drawn_within(nearest, job).bytes)
             wanted.solid = nearest;
@@ -254,7 +256,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         if (triangles <= coarsest)
             return std::numeric_limits<double>::infinity();
         return whole.cheaper_from(
-            bytes_each(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]));
+            bytes_per_occurrence(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]));
     };
     add_levels(out.candidates, shell, reference.materials, targets, wanted, judge, job);
     if (replacements)
@@ -263,18 +265,18 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
     for (const uint32_t one : reference.occurrence)
         around.push_back(reference.environment[one] != 0 || reference.placement[one] == ground ? 1
                                                                                                : 0);
-    add_beside_environment(out.candidates, reference.mesh, around, reference.materials, settings,
-                           seed, judge, job);
+    add_environment_stand_ins(out.candidates, reference.mesh, around, reference.materials, settings,
+                              seed, judge, job);
 
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
     // to the next one's; what children cost is asked for half way, on a scale of powers.
-    const auto keep = [&](std::vector<Candidate>& candidates) {
-        keep_useful(candidates, finest.cost.bytes, uses[group]);
+    const auto keep = [&](std::vector<StandInCandidate>& candidates) {
+        keep_pareto_front(candidates, finest.cost.bytes, uses[group]);
         double next = 0;  // 0: nothing is coarser
         for (size_t i = candidates.size(); i-- > 0;) {
             const double own =
-                bytes_each(candidates[i].kind, bytes_of(candidates[i]), uses[group]) +
+                bytes_per_occurrence(candidates[i].kind, bytes_of(candidates[i]), uses[group]) +
                 tracing_of(candidates[i]) + static_cast<double>(kBytesPerOccurrence);
             const double error = candidates[i].error;
             const double used = next > 0 ? std::sqrt(error * next) : error;
@@ -284,19 +286,20 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
                 candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(i));
         }
     };
-    std::vector<Candidate> useful = kept_of(out.candidates, keep, judge, reference.mesh, job);
+    std::vector<StandInCandidate> useful =
+        select_candidates(out.candidates, keep, judge, reference.mesh, job);
     const bool saves = !useful.empty();
     if (!saves) {
         // Every group has a stand-in, even one that saves nothing but the occurrences: the
         // cheapest.
         while (useful.empty() && !out.candidates.empty()) {
             useful = out.candidates;
-            keep_useful(useful, ~uint64_t{0});
+            keep_pareto_front(useful, ~uint64_t{0});
             useful = {useful.back()};
-            prove(useful, out.candidates, judge, job);
+            prove_candidates(useful, out.candidates, judge, job);
         }
         if (useful.empty()) {
-            Candidate all;
+            StandInCandidate all;
             all.mesh = std::make_shared<Mesh>(std::move(shell));
             all.materials = reference.materials;
             judge.measure_mesh(all, job);
@@ -305,12 +308,12 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroun
         judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
                                job);
     }
-    for (Candidate& candidate : useful) {
+    for (StandInCandidate& candidate : useful) {
         if (candidate.kind == Kind::Composite)
             judge.settle(candidate, reference.mesh, floor, job);
     }
     if (saves) {  // else children are the cheaper choice, however they look
-        paint(useful, keep, judge);
+        paint_boxes(useful, keep, judge);
         seal(useful, opened, reference.mesh, source, judge, job);
     }
     out.candidates = std::move(useful);

@@ -14,10 +14,10 @@ namespace lodestone::hierarchy {
 
 struct StandIns {
     Attributes attributes;
-    std::vector<Candidate> candidates;  // errors rise strictly, costs fall
+    std::vector<StandInCandidate> candidates;  // errors rise strictly, costs fall
 };
 
-struct Surroundings;  // hierarchy/run/stand_in_surroundings.h
+struct StandInSurroundings;  // hierarchy/run/stand_in_surroundings.h
 
 /// Gives the mesh of a representation, resident or not. Called from several threads.
 using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
@@ -25,15 +25,15 @@ using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representatio
 /// Levels and primitives of an object whose finest representation is a mesh. Something see-through
 /// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
 /// all objects of a build.
-StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf, const Surroundings& surroundings,
-                           const Settings& settings, const MeshSource& source,
-                           image::TexelCache& texels, const Job& job);
+StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
+                           const StandInSurroundings& surroundings, const BuildSettings& settings,
+                           const MeshSource& source, image::TexelCache& texels, const Job& job);
 
 /// Of a group whose children have theirs: flattened as finely as a stand-in can pay,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
 /// below can be drawn.
-StandIns stand_ins_of_group(const Model& model, ObjectIndex group, const Surroundings& surroundings,
-                            const Settings& settings, const MeshSource& source,
-                            image::TexelCache& texels, const Job& job);
+StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
+                            const StandInSurroundings& surroundings, const BuildSettings& settings,
+                            const MeshSource& source, image::TexelCache& texels, const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -21,7 +21,7 @@ View view_within(double error) {
 uint64_t triangles_of(const Model& model, const choose::Cut& cut) {
     uint64_t triangles = cut.triangles;
     for (const uint32_t index : cut.chosen) {
-        const choose::Node& node = cut.nodes[index];
+        const choose::CutNode& node = cut.nodes[index];
         const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
         if (kind == Kind::Box)
             triangles += kTrianglesOfBox;
@@ -44,17 +44,18 @@ choose::Cut OpenedGroup::cut(double error, const Job& job) {
     return choose::choose_below(table_, group_, view_within(error), job);
 }
 
-Drawn OpenedGroup::drawn_within(double error, const Job& job) {
+DrawnCosts OpenedGroup::drawn_within(double error, const Job& job) {
     if (const auto known = drawn_.find(error); known != drawn_.end())
         return known->second;
-    Drawn drawn;
+    DrawnCosts drawn;
     const choose::Cut cut = this->cut(error, job);
     drawn.triangles = triangles_of(model(), cut);
     for (const uint32_t index : cut.chosen) {
-        const choose::Node& node = cut.nodes[index];
-        const Summary& summary = model().objects[node.object].representations[node.lod].summary;
+        const choose::CutNode& node = cut.nodes[index];
+        const RepresentationSummary& summary =
+            model().objects[node.object].representations[node.lod].summary;
         drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
-                       bytes_each(summary.kind, summary.cost.bytes, uses_[node.object]);
+                       bytes_per_occurrence(summary.kind, summary.cost.bytes, uses_[node.object]);
         drawn.alone += static_cast<double>(kBytesPerOccurrence + summary.cost.bytes);
     }
     drawn_.emplace(error, drawn);

@@ -12,7 +12,7 @@ namespace lodestone::hierarchy {
 inline constexpr int kDrawnSubdivisions = 1;
 
 /// What an occurrence of the group's children is within an error.
-struct Drawn {
+struct DrawnCosts {
     uint64_t triangles = 0;  // of the flat mesh
     double bytes = 0;        // in POV-Ray
     double alone = 0;        // likewise, with all of each representation's: as the cut counts
@@ -33,13 +33,13 @@ public:
     choose::Cut cut(double error, const Job& job);
     /// Bytes: a share of every representation (its bytes over its object's uses, for all
     /// occurrences share it) and the occurrences themselves.
-    Drawn drawn_within(double error, const Job& job);
+    DrawnCosts drawn_within(double error, const Job& job);
 
 private:
-    choose::Table table_;
+    choose::ChoiceTable table_;
     ObjectIndex group_;
     const std::vector<uint64_t>& uses_;
-    std::map<double, Drawn> drawn_;  // by error
+    std::map<double, DrawnCosts> drawn_;  // by error
 };
 
 }  // namespace lodestone::hierarchy

@@ -18,19 +18,20 @@ namespace {
 // How much finer than its coarser neighbor the levels tried for an error are.
 constexpr double kStep = 0.7;
 
-struct Reduced {
+struct ReducedMesh {
     std::shared_ptr<const Mesh> mesh;
-    std::optional<measure::Deviation> deviation;
+    std::optional<measure::SurfaceDeviation> deviation;
 };
 
 /// What is transparent is neither missed nor matched; what it looks like does not count.
-measure::Deviation deviation_of(const measure::DeviationReference& reference, const Mesh& level,
-                                const ray::SkinPtr& skin, const Job& job) {
+measure::SurfaceDeviation deviation_of(const measure::DeviationReference& reference,
+                                       const Mesh& level, const ray::SkinPtr& skin,
+                                       const Job& job) {
     return reference.of(level, {{}, nullptr, skin}, job);
 }
 
 measure::DeviationReference reference_of(const Mesh& mesh, const ray::SkinPtr& skin,
-                                         const Reduction& wanted, const Job& job) {
+                                         const ReductionOptions& wanted, const Job& job) {
     return {mesh, {8192, 8192, wanted.seed}, {{}, nullptr, skin}, job};
 }
 
@@ -47,7 +48,7 @@ private:
     double start_;
 };
 
-simplify::SimplifyOptions options_of(const Reduction& wanted) {
+simplify::SimplifyOptions options_of(const ReductionOptions& wanted) {
     simplify::SimplifyOptions options;
     options.mode = wanted.mode == ReductionMode::Best ? simplify::SimplifyMode::Best
                                                       : simplify::SimplifyMode::Fast;
@@ -65,12 +66,12 @@ Mesh clustered(const Mesh& mesh, size_t count, const Job& job) {
         if (const auto grid = simplify::find_grid(mesh))
             return simplify::subsample(mesh, *grid, count, job);
     }
-    return simplify::cluster(mesh, count, job);
+    return simplify::cluster_vertices(mesh, count, job);
 }
 
-Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const Reduction& wanted,
-                 double& cpu_s, const Job& job) {
-    Reduced out;
+ReducedMesh to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count,
+                     const ReductionOptions& wanted, double& cpu_s, const Job& job) {
+    ReducedMesh out;
     {
         const Stopwatch watch(cpu_s);
         out.mesh = std::make_shared<Mesh>(
@@ -84,8 +85,8 @@ Reduced to_count(const Mesh& mesh, const ray::SkinPtr& skin, size_t count, const
 }
 
 /// The coarsest level of a fine chain whose measured error is within the wanted one.
-Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const Reduction& wanted,
-                 double& cpu_s, const Job& job) {
+ReducedMesh to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error,
+                     const ReductionOptions& wanted, double& cpu_s, const Job& job) {
     std::vector<size_t> targets;
     double target = kStep * static_cast<double>(mesh.triangles.size());
     while (target >= 1) {
@@ -100,7 +101,7 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const
         levels = simplify::simplify_chain(mesh, targets, options_of(wanted), job);
     }
     const measure::DeviationReference reference = reference_of(mesh, skin, wanted, job);
-    Reduced best{std::make_shared<Mesh>(mesh), measure::Deviation{0, 0}};
+    ReducedMesh best{std::make_shared<Mesh>(mesh), measure::SurfaceDeviation{0, 0}};
     for (size_t i = 0; i < targets.size(); ++i) {
         job.check();
         Mesh level;
@@ -112,7 +113,7 @@ Reduced to_error(const Mesh& mesh, const ray::SkinPtr& skin, double error, const
         } else {
             break;
         }
-        const measure::Deviation deviation = deviation_of(reference, level, skin, job);
+        const measure::SurfaceDeviation deviation = deviation_of(reference, level, skin, job);
         if (deviation.error > error)
             break;
         best = {std::make_shared<Mesh>(std::move(level)), deviation};
@@ -143,7 +144,7 @@ double largest_side(const Model& model) {
     return std::max({size.x, size.y, size.z});
 }
 
-void check_targets(const Reduction& wanted) {
+void check_targets(const ReductionOptions& wanted) {
     const int given = (wanted.ratio != 0 ? 1 : 0) + (wanted.triangles != 0 ? 1 : 0) +
                       (wanted.error != 0 ? 1 : 0) + (wanted.pixels != 0 ? 1 : 0);
     if (given != 1)
@@ -167,9 +168,9 @@ void check_targets(const Reduction& wanted) {
 
 }  // namespace
 
-ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
+ReductionReport reduce_model(Model& model, const ReductionOptions& wanted, const Job& job) {
     check_targets(wanted);
-    job.stage(Stage::Simplify);
+    job.stage(JobStage::Simplify);
     ReductionReport report;
     std::vector<ObjectIndex> leaves;
     const std::vector<ObjectIndex> order = bottom_up(model);
@@ -188,7 +189,7 @@ ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
         wanted.triangles != 0 && report.triangles_before > 0
             ? static_cast<double>(wanted.triangles) / static_cast<double>(report.triangles_before)
             : wanted.ratio;
-    std::vector<Reduced> made;
+    std::vector<ReducedMesh> made;
     image::TexelCache texels;
     for (size_t i = 0; i < leaves.size(); ++i) {
         job.check();
@@ -196,7 +197,7 @@ ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job) {
         const Mesh& mesh = finest.mesh();
         ray::SkinPtr skin;  // only what measures needs one
         if (by_error || wanted.measure)
-            skin = std::make_shared<const ray::Skin>(materials_of(model, finest), texels);
+            skin = std::make_shared<const ray::MeshSkin>(materials_of(model, finest), texels);
         const auto count = static_cast<size_t>(
             std::max(1.0, std::round(share * static_cast<double>(mesh.triangles.size()))));
         const double within = error / std::max(stretches[leaves[i]], 1e-300);

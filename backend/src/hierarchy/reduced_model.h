@@ -17,7 +17,7 @@ enum class ReductionMode : int32_t {
 };
 
 /// Exactly one of the first four is set.
-struct Reduction {
+struct ReductionOptions {
     double ratio = 0;        // of each object's triangles, 0...1
     uint64_t triangles = 0;  // in the whole model, shared in proportion
     double error = 0;        // metres in the model's frame: the fewest triangles within it
@@ -40,6 +40,6 @@ struct ReductionReport {
 /// Finest meshes must be resident; for `pixels` the root's bound must be known. Each object's error
 /// counts as large as its largest occurrence makes it. Throws Error(InvalidArgument) when not
 /// exactly one target is set.
-ReductionReport reduce(Model& model, const Reduction& wanted, const Job& job);
+ReductionReport reduce_model(Model& model, const ReductionOptions& wanted, const Job& job);
 
 }  // namespace lodestone::hierarchy

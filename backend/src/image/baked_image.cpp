@@ -121,7 +121,7 @@ Hash hash_of_bake(const std::vector<BakeStep>& steps, const std::vector<Texture>
 }
 
 /// The newest bakes by what they were made from.
-class Remembered {
+class RecentBakes {
 public:
     PicturePtr find(Hash key) {
         const std::scoped_lock lock(mutex_);
@@ -221,7 +221,7 @@ Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textu
     check(steps, textures.size());
     if (width < 1 || height < 1 || width > kMostBakeSide || height > kMostBakeSide)
         fail(Status::InvalidArgument, "a bake of ", width, " x ", height, " texels");
-    std::vector<Sampler> samplers;
+    std::vector<TextureSampler> samplers;
     samplers.reserve(textures.size());
     for (const Texture& texture : textures) {
         job.check();
@@ -266,7 +266,7 @@ Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textu
 PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
                         int width, int height, ColorSpace space, const std::string& name,
                         const Job& job) {
-    static Remembered remembered;
+    static RecentBakes remembered;
     const Hash key = hash_of_bake(steps, textures, width, height, space);
     PicturePtr made = remembered.find(key);
     if (made == nullptr) {

@@ -139,7 +139,7 @@ double mean_ssim(const Image& a, const Image& b, const std::vector<uint8_t>& cov
 
 }  // namespace
 
-Difference compare(const Image& a, const Image& b, const Image* mask) {
+ImageDifference compare(const Image& a, const Image& b, const Image* mask) {
     check_size(a, a);
     check_size(b, a);
     if (mask != nullptr)
@@ -147,7 +147,7 @@ Difference compare(const Image& a, const Image& b, const Image* mask) {
     const Image left = over_black(a);
     const Image right = over_black(b);
     const std::vector<uint8_t> covered = covered_pixels(left, right, mask);
-    Difference out;
+    ImageDifference out;
     std::vector<float> largest;
     double sum = 0;
     for (size_t i = 0; i < covered.size(); ++i) {

@@ -8,7 +8,7 @@ namespace lodestone::image {
 
 /// Values are display-encoded, 0...1, as a viewer shows them over black (color times alpha), so
 /// that a wrong silhouette counts.
-struct Difference {
+struct ImageDifference {
     double mean = 0;    // of the mean of |a - b| over R, G, B
     double p999 = 0;    // 99.9 % quantile (nearest rank) of the largest |a - b| of R, G, B
     double max = 0;     // the largest of those
@@ -22,6 +22,6 @@ struct Difference {
 /// averaged over the covered ones. The same on any number of threads. Throws
 /// Error(InvalidArgument) when sizes differ.
 /// source: Wang et al. 2004, "Image Quality Assessment", eq. 13.
-Difference compare(const Image& a, const Image& b, const Image* mask = nullptr);
+ImageDifference compare(const Image& a, const Image& b, const Image* mask = nullptr);
 
 }  // namespace lodestone::image

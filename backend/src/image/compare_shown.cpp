@@ -73,15 +73,15 @@ void add_differences(const Image& a, const Image& b, const std::vector<uint32_t>
 }
 
 std::array<float, 3> difference_color(float difference) {
-    struct Stop {
+    struct ColorStop {
         float at;
         std::array<float, 3> color;
     };
-    static constexpr std::array<Stop, 5> kStops{{{0, {0, 0, 0}},
-                                                 {0.02f, {0.02f, 0.06f, 0.6f}},
-                                                 {0.05f, {0.02f, 0.5f, 0.15f}},
-                                                 {0.1f, {0.9f, 0.8f, 0.05f}},
-                                                 {0.25f, {0.85f, 0.03f, 0.02f}}}};
+    static constexpr std::array<ColorStop, 5> kStops{{{0, {0, 0, 0}},
+                                                      {0.02f, {0.02f, 0.06f, 0.6f}},
+                                                      {0.05f, {0.02f, 0.5f, 0.15f}},
+                                                      {0.1f, {0.9f, 0.8f, 0.05f}},
+                                                      {0.25f, {0.85f, 0.03f, 0.02f}}}};
     const float value = std::isfinite(difference) ? std::clamp(difference, 0.0f, 0.25f) : 0.25f;
     for (size_t i = 1; i < kStops.size(); ++i) {
         if (value > kStops[i].at)

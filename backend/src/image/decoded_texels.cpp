@@ -49,7 +49,7 @@ void reduce(Image& image, int step) {
 }
 
 TexelsPtr reduced(Image&& image, int most_side) {
-    auto out = std::make_shared<Texels>();
+    auto out = std::make_shared<DecodedTexels>();
     const int step = (std::max(image.width, image.height) + most_side - 1) / most_side;
     if (step > 1) {
         reduce(image, step);
@@ -71,7 +71,7 @@ TexelsPtr texels_of(const Picture& picture, int most_side) {
     return reduced(decoded(picture), most_side);
 }
 
-TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side) {
+TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_side) {
     Image image = decoded(*texture.picture);
     for (size_t i = 0; i < image.pixels.size(); i += 4) {
         float* const at = image.pixels.data() + i;
@@ -80,7 +80,7 @@ TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side) 
         at[3] = 1;  // equal weights
     }
     TexelsPtr out = reduced(std::move(image), most_side);
-    auto gray = std::make_shared<Texels>(*out);
+    auto gray = std::make_shared<DecodedTexels>(*out);
     for (size_t i = 0; i < gray->rgba.size(); i += 4)
         gray->rgba[i + 3] = gray->rgba[i];
     gray->least = glm::dvec4(gray->least.x);
@@ -89,16 +89,16 @@ TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side) 
 
 template <typename Make>
 TexelsPtr TexelCache::find_or_make(Hash key, const Picture& picture, const Make& make) {
-    std::shared_ptr<Entry> entry;
+    std::shared_ptr<CachedTexels> entry;
     {
         const std::lock_guard lock(mutex_);
-        std::shared_ptr<Entry>& known = entries_[key];
+        std::shared_ptr<CachedTexels>& known = entries_[key];
         if (known && known->texels) {
             by_use_.splice(by_use_.begin(), by_use_, known->place);
             return known->texels;
         }
         if (!known)
-            known = std::make_shared<Entry>();
+            known = std::make_shared<CachedTexels>();
         entry = known;
     }
     const std::lock_guard making(entry->making);
@@ -147,7 +147,8 @@ TexelsPtr TexelCache::at_least(const Texture& texture, double cutoff) {
                          .value(texture.offset.x)
                          .value(cutoff)
                          .result();
-    return find_or_make(key, picture, [&] { return texels_at_least(texture, cutoff, most_side_); });
+    return find_or_make(key, picture,
+                        [&] { return texels_with_cutoff(texture, cutoff, most_side_); });
 }
 
 size_t TexelCache::bytes() const {

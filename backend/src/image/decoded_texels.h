@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texels: decoded pictures, made small by averaging and shared, for measuring.
+// DecodedTexels: decoded pictures, made small by averaging and shared, for measuring.
 #pragma once
 
 #include "model/texture.h"
@@ -14,7 +14,7 @@
 
 namespace lodestone::image {
 
-struct Texels {
+struct DecodedTexels {
     int width = 0;
     int height = 0;
     std::vector<float> rgba;  // linear, straight alpha, top row first
@@ -23,7 +23,7 @@ struct Texels {
 };
 
 /// Never changed once made; shared by all that look things up.
-using TexelsPtr = std::shared_ptr<const Texels>;
+using TexelsPtr = std::shared_ptr<const DecodedTexels>;
 
 /// A picture with at most `most_side` texels a side, each the mean of a block (colors weighted by
 /// alpha). Throws Error(BadFile).
@@ -31,7 +31,7 @@ TexelsPtr texels_of(const Picture& picture, int most_side);
 
 /// Where a texture's number is at least `cutoff`: every channel is the share of the block that is.
 /// Means of the number itself would lose what is thinner than a block.
-TexelsPtr texels_at_least(const Texture& texture, double cutoff, int most_side);
+TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_side);
 
 /// Decodes every picture once, as long as all fit into `most_bytes`; the least used go first. What
 /// is in use elsewhere stays alive there. Any thread; nothing depends on their order.
@@ -48,7 +48,7 @@ public:
     size_t bytes() const;
 
 private:
-    struct Entry {
+    struct CachedTexels {
         std::mutex making;
         TexelsPtr texels;
         std::list<Hash>::iterator place;
@@ -60,7 +60,7 @@ private:
     size_t most_bytes_;
     mutable std::mutex mutex_;
     std::mutex one_large_;  // pictures are decoded as floats: not several huge ones at a time
-    std::unordered_map<Hash, std::shared_ptr<Entry>> entries_;
+    std::unordered_map<Hash, std::shared_ptr<CachedTexels>> entries_;
     std::list<Hash> by_use_;  // made ones, the last used first
     size_t bytes_ = 0;
 };

@@ -18,23 +18,23 @@
 namespace lodestone::image {
 namespace {
 
-struct Window {
+struct PixelWindow {
     int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  // inclusive
 
     int64_t width() const { return int64_t{x1} - x0 + 1; }
     int64_t height() const { return int64_t{y1} - y0 + 1; }
 };
 
-struct Layout {
-    Window data;
-    Window display;
+struct ExrLayout {
+    PixelWindow data;
+    PixelWindow display;
     uint64_t tile_pixels = 0;
     uint64_t channels = 0;
 };
 
-class Memory : public Imf::IStream {
+class ExrMemoryStream : public Imf::IStream {
 public:
-    Memory(std::string_view bytes, const std::string& name)
+    ExrMemoryStream(std::string_view bytes, const std::string& name)
         : Imf::IStream(name.c_str()), bytes_(bytes) {}
 
     bool read(char out[], int size) override {
@@ -74,14 +74,14 @@ std::string_view word(std::string_view bytes, size_t& at) {
 }
 
 /// source: openexr.com, "OpenEXR File Layout" (magic, version and flags, attributes).
-Layout layout_of(std::string_view bytes) {
+ExrLayout layout_of(std::string_view bytes) {
     constexpr uint32_t kDeep = 0x800;
     constexpr uint32_t kManyParts = 0x1000;
     if (bytes.size() < 8)
         throw std::runtime_error("the header ends too early");
     if ((value_at<uint32_t>(bytes, 4) & (kDeep | kManyParts)) != 0)
         throw std::runtime_error("deep pictures and pictures of several parts are not read");
-    Layout layout;
+    ExrLayout layout;
     size_t at = 8;
     for (std::string_view name = word(bytes, at); !name.empty(); name = word(bytes, at)) {
         word(bytes, at);  // the type
@@ -92,7 +92,8 @@ Layout layout_of(std::string_view bytes) {
         if (size > bytes.size() - at)
             throw std::runtime_error("the header ends too early");
         if ((name == "dataWindow" || name == "displayWindow") && size == 16) {
-            (name == "dataWindow" ? layout.data : layout.display) = value_at<Window>(bytes, at);
+            (name == "dataWindow" ? layout.data : layout.display) =
+                value_at<PixelWindow>(bytes, at);
         } else if (name == "tiles" && size >= 8) {
             layout.tile_pixels =
                 uint64_t{value_at<uint32_t>(bytes, at)} * value_at<uint32_t>(bytes, at + 4);
@@ -106,11 +107,11 @@ Layout layout_of(std::string_view bytes) {
 
 constexpr int kRowsAtOnce = 256;  // the largest block of any compression (DWAB)
 
-void check_layout(const Layout& layout, int64_t most_pixels) {
+void check_layout(const ExrLayout& layout, int64_t most_pixels) {
     constexpr int64_t kMostSide = 1 << 16;
     constexpr uint64_t kMostChannels = 256;
     constexpr uint64_t kMostBufferBytes = uint64_t{1} << 30u;
-    for (const Window& window : {layout.data, layout.display}) {
+    for (const PixelWindow& window : {layout.data, layout.display}) {
         if (window.width() < 1 || window.height() < 1 || window.width() > kMostSide ||
             window.height() > kMostSide || window.width() * window.height() > most_pixels)
             throw std::runtime_error(text("a window of ", window.width(), " x ", window.height(),
@@ -124,14 +125,15 @@ void check_layout(const Layout& layout, int64_t most_pixels) {
         throw std::runtime_error("too many channels, or tiles too large");
 }
 
-bool same(const Window& ours, const Imath::Box2i& theirs) {
+bool same(const PixelWindow& ours, const Imath::Box2i& theirs) {
     return ours.x0 == theirs.min.x && ours.y0 == theirs.min.y && ours.x1 == theirs.max.x &&
            ours.y1 == theirs.max.y;
 }
 
 /// The part within the display window; without one, all of that.
-Window window_of(const Layout& layout, const std::optional<Part>& part, const std::string& name) {
-    const Window& all = layout.display;
+PixelWindow window_of(const ExrLayout& layout, const std::optional<ImageRegion>& part,
+                      const std::string& name) {
+    const PixelWindow& all = layout.display;
     if (!part)
         return all;
     if (part->left < 0 || part->top < 0 || part->width < 1 || part->height < 1 ||
@@ -147,7 +149,7 @@ Window window_of(const Layout& layout, const std::optional<Part>& part, const st
 
 /// Reads what `data` holds of `window` into `pixels` (RGBA, the window's rows), a few rows at a
 /// time.
-void read_rows(Imf::InputFile& file, const Window& data, const Window& window, bool gray,
+void read_rows(Imf::InputFile& file, const PixelWindow& data, const PixelWindow& window, bool gray,
                std::vector<float>& pixels) {
     const int32_t first = std::max(window.x0, data.x0);
     const int64_t columns = int64_t{std::min(window.x1, data.x1)} - first + 1;
@@ -185,11 +187,12 @@ void read_rows(Imf::InputFile& file, const Window& data, const Window& window, b
     }
 }
 
-Image decode(std::string_view bytes, const std::string& name, const std::optional<Part>& part) {
-    const Layout layout = layout_of(bytes);
+Image decode(std::string_view bytes, const std::string& name,
+             const std::optional<ImageRegion>& part) {
+    const ExrLayout layout = layout_of(bytes);
     check_layout(layout,
                  part ? std::numeric_limits<int64_t>::max() : static_cast<int64_t>(kMostPixels));
-    Memory memory(bytes, name);
+    ExrMemoryStream memory(bytes, name);
     Imf::InputFile file(memory, 0);
     if (!same(layout.data, file.header().dataWindow()) ||
         !same(layout.display, file.header().displayWindow()))
@@ -200,7 +203,7 @@ Image decode(std::string_view bytes, const std::string& name, const std::optiona
         throw std::runtime_error("it has neither a channel R nor Y");
     if (channels.findChannel("RY") != nullptr)
         throw std::runtime_error("luminance and chroma are not read");
-    const Window window = window_of(layout, part, name);
+    const PixelWindow window = window_of(layout, part, name);
     Image image;
     image.width = static_cast<int>(window.width());
     image.height = static_cast<int>(window.height());
@@ -220,7 +223,8 @@ Image decode(std::string_view bytes, const std::string& name, const std::optiona
 
 }  // namespace
 
-Image decode_exr(std::string_view bytes, const std::string& name, const std::optional<Part>& part) {
+Image decode_exr(std::string_view bytes, const std::string& name,
+                 const std::optional<ImageRegion>& part) {
     try {
         return decode(bytes, name, part);
     } catch (const std::bad_alloc&) {

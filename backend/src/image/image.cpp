@@ -28,7 +28,7 @@ float decode_srgb(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-Image blank(int64_t width, int64_t height, bool linear, const std::string& name) {
+Image blank_image(int64_t width, int64_t height, bool linear, const std::string& name) {
     constexpr auto kMost = static_cast<int64_t>(kMostPixels);
     if (width < 1 || height < 1 || width > kMost || height > kMost || width * height > kMost)
         fail(Status::BadFile, "'", name, "': a picture of ", width, " x ", height,
@@ -56,7 +56,7 @@ Image read(const std::filesystem::path& path) {
     return read(read_file(path, kMostBytes), path.string());
 }
 
-Image read_part(const std::filesystem::path& path, const Part& part) {
+Image read_region(const std::filesystem::path& path, const ImageRegion& part) {
     return decode_exr(read_file(path), path.string(), part);
 }
 

@@ -23,7 +23,7 @@ struct Image {
 };
 
 /// Pixels of a picture, from its upper left corner.
-struct Part {
+struct ImageRegion {
     int left = 0;
     int top = 0;
     int width = 0;
@@ -38,7 +38,7 @@ Image read(const std::filesystem::path& path);
 Image read(std::string_view bytes, const std::string& name);
 /// A part of an OpenEXR picture, which may have more than kMostPixels, as may the part: memory is
 /// taken for that alone. Throws as read() and Error(InvalidArgument) for what is not within it.
-Image read_part(const std::filesystem::path& path, const Part& part);
+Image read_region(const std::filesystem::path& path, const ImageRegion& part);
 
 /// 8 bit, RGB when every alpha is 1, else RGBA; a linear image is encoded first. All or nothing.
 void write_png(const std::filesystem::path& path, const Image& image);

@@ -12,12 +12,12 @@ Image decode_png(std::string_view bytes, const std::string& name);
 Image decode_jpeg(std::string_view bytes, const std::string& name);
 /// Without a part: all of it, of at most kMostPixels.
 Image decode_exr(std::string_view bytes, const std::string& name,
-                 const std::optional<Part>& part = std::nullopt);
+                 const std::optional<ImageRegion>& part = std::nullopt);
 
 /// `rows` holds height rows of width * channels bytes; 3 or 4 channels. The file's bytes.
 std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels);
 
 /// An image of that size, all 0. Throws Error(BadFile) when it is empty or above kMostPixels.
-Image blank(int64_t width, int64_t height, bool linear, const std::string& name);
+Image blank_image(int64_t width, int64_t height, bool linear, const std::string& name);
 
 }  // namespace lodestone::image

@@ -92,7 +92,7 @@ Image decode_jpeg(std::string_view bytes, const std::string& name) {
         fail(Status::BadFile, "'", name, "' is a CMYK JPEG; save it as RGB");
     if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr)
         fail(Status::BadFile, "'", name, "' is a JPEG of an unknown color space");
-    Image image = blank(reader.jpeg.image_width, reader.jpeg.image_height, false, name);
+    Image image = blank_image(reader.jpeg.image_width, reader.jpeg.image_height, false, name);
     reader.jpeg.out_color_space = space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
     if (!begin_rows(reader))
         fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);

@@ -13,17 +13,17 @@
 namespace lodestone::image {
 namespace {
 
-struct Source {
+struct PngSource {
     const char* at;
     size_t left;
 };
 
-struct Complaint {
+struct PngMessage {
     char text[160] = "";
 };
 
 void on_error(png_structp png, png_const_charp message) {
-    auto* complaint = static_cast<Complaint*>(png_get_error_ptr(png));
+    auto* complaint = static_cast<PngMessage*>(png_get_error_ptr(png));
     std::strncpy(complaint->text, message, sizeof complaint->text - 1);
     png_longjmp(png, 1);
 }
@@ -31,7 +31,7 @@ void on_error(png_structp png, png_const_charp message) {
 void on_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep out, size_t size) {
-    auto* source = static_cast<Source*>(png_get_io_ptr(png));
+    auto* source = static_cast<PngSource*>(png_get_io_ptr(png));
     if (size > source->left)
         png_error(png, "the file ends too early");
     std::memcpy(out, source->at, size);
@@ -54,8 +54,8 @@ void on_write(png_structp png, png_bytep data, size_t size) {
 void on_flush(png_structp) {}
 
 struct PngReader {
-    Complaint complaint;
-    Source source;
+    PngMessage complaint;
+    PngSource source;
     png_structp png = nullptr;
     png_infop info = nullptr;
     size_t packed_row = 0;  // bytes of a row as the file packs it
@@ -98,13 +98,13 @@ bool read_rows(PngReader& reader, png_bytepp rows) {
     return true;
 }
 
-struct Writer {
-    Complaint complaint;
+struct PngWriter {
+    PngMessage complaint;
     std::string bytes;
     png_structp png = nullptr;
     png_infop info = nullptr;
 
-    Writer() {
+    PngWriter() {
         png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, on_error, on_warning);
         if (png != nullptr)
             info = png_create_info_struct(png);
@@ -113,12 +113,12 @@ struct Writer {
             throw std::bad_alloc();
         }
     }
-    ~Writer() { png_destroy_write_struct(&png, &info); }
-    Writer(const Writer&) = delete;
-    Writer& operator=(const Writer&) = delete;
+    ~PngWriter() { png_destroy_write_struct(&png, &info); }
+    PngWriter(const PngWriter&) = delete;
+    PngWriter& operator=(const PngWriter&) = delete;
 };
 
-bool write_rows(Writer& writer, png_bytepp rows, int width, int height, int channels) {
+bool write_rows(PngWriter& writer, png_bytepp rows, int width, int height, int channels) {
     if (setjmp(png_jmpbuf(writer.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     png_set_write_fn(writer.png, &writer.bytes, on_write, on_flush);
@@ -150,7 +150,8 @@ Image decode_png(std::string_view bytes, const std::string& name) {
     // memory is spent on it.
     if (reader.packed_row * height / 1032 > bytes.size())
         fail(Status::BadFile, "'", name, "' is too short for ", width, " x ", height, " pixels");
-    Image image = blank(static_cast<int64_t>(width), static_cast<int64_t>(height), false, name);
+    Image image =
+        blank_image(static_cast<int64_t>(width), static_cast<int64_t>(height), false, name);
     std::vector<unsigned char> data(row_bytes * height);
     std::vector<png_bytep> rows(height);
     for (size_t y = 0; y < height; ++y)
@@ -166,7 +167,7 @@ Image decode_png(std::string_view bytes, const std::string& name) {
 
 std::string encode_png(const std::vector<unsigned char>& rows, int width, int height,
                        int channels) {
-    Writer writer;
+    PngWriter writer;
     std::vector<unsigned char> data = rows;  // libpng wants rows it could write to
     std::vector<png_bytep> starts(static_cast<size_t>(height));
     for (size_t y = 0; y < starts.size(); ++y)

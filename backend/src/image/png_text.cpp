@@ -46,7 +46,7 @@ void append_number(std::string& out, uint32_t value) {
         out += static_cast<char>(value >> shift & 0xffu);
 }
 
-struct Chunk {
+struct PngChunk {
     std::string_view type;
     std::string_view data;
     std::string_view whole;
@@ -57,7 +57,7 @@ struct Chunk {
 };
 
 void for_each_chunk(std::string_view png, const std::string& name,
-                    const std::function<void(const Chunk&)>& visit) {
+                    const std::function<void(const PngChunk&)>& visit) {
     if (!png.starts_with(kSignature))
         fail(Status::BadFile, "'", name, "' is not a PNG");
     for (size_t at = kSignature.size(); at < png.size();) {
@@ -79,7 +79,7 @@ std::string printable(const std::string& text) {
 
 }  // namespace
 
-std::string with_text(std::string_view png, const TextLines& lines, const std::string& name) {
+std::string with_png_text(std::string_view png, const TextLines& lines, const std::string& name) {
     std::string added;
     std::vector<std::string> keywords;
     for (const auto& [keyword, text] : lines) {
@@ -98,7 +98,7 @@ std::string with_text(std::string_view png, const TextLines& lines, const std::s
     std::string out(kSignature);
     out.reserve(png.size() + added.size());
     bool header = true;  // it comes first
-    for_each_chunk(png, name, [&](const Chunk& chunk) {
+    for_each_chunk(png, name, [&](const PngChunk& chunk) {
         if (std::find(keywords.begin(), keywords.end(), chunk.keyword()) == keywords.end())
             out += chunk.whole;
         if (header)
@@ -110,9 +110,9 @@ std::string with_text(std::string_view png, const TextLines& lines, const std::s
     return out;
 }
 
-TextLines text_of(std::string_view png, const std::string& name) {
+TextLines png_text(std::string_view png, const std::string& name) {
     TextLines lines;
-    for_each_chunk(png, name, [&](const Chunk& chunk) {
+    for_each_chunk(png, name, [&](const PngChunk& chunk) {
         const std::string_view keyword = chunk.keyword();
         if (!keyword.empty() && keyword.size() < chunk.data.size())
             lines.emplace_back(keyword, chunk.data.substr(keyword.size() + 1));

@@ -36,50 +36,50 @@ PictureFormat format_of(std::string_view bytes) {
 }
 
 /// Where a texel of a row of `size` is looked up; -1: outside, clipped.
-int64_t wrapped(int64_t at, int64_t size, Extension extension) {
+int64_t wrapped(int64_t at, int64_t size, TextureExtension extension) {
     switch (extension) {
-        case Extension::Extend:
+        case TextureExtension::Extend:
             return std::clamp<int64_t>(at, 0, size - 1);
-        case Extension::Clip:
+        case TextureExtension::Clip:
             return at >= 0 && at < size ? at : -1;
-        case Extension::Mirror: {
+        case TextureExtension::Mirror: {
             const int64_t twice = ((at % (2 * size)) + 2 * size) % (2 * size);
             return twice < size ? twice : 2 * size - 1 - twice;
         }
-        case Extension::Repeat:
+        case TextureExtension::Repeat:
             break;
     }
     return ((at % size) + size) % size;
 }
 
-double pick(Channel channel, const glm::dvec4& texel) {
+double pick(TextureChannel channel, const glm::dvec4& texel) {
     switch (channel) {
-        case Channel::Red:
+        case TextureChannel::Red:
             return texel.x;
-        case Channel::Green:
+        case TextureChannel::Green:
             return texel.y;
-        case Channel::Blue:
+        case TextureChannel::Blue:
             return texel.z;
-        case Channel::Alpha:
+        case TextureChannel::Alpha:
             return texel.w;
-        case Channel::Color:
-        case Channel::Luma:
+        case TextureChannel::Color:
+        case TextureChannel::Luma:
             break;
     }
     return 0.2126 * texel.x + 0.7152 * texel.y + 0.0722 * texel.z;
 }
 
 /// What only decoding tells.
-struct Facts {
+struct PictureFacts {
     PictureFormat format = PictureFormat::Png;
     int width = 0;
     int height = 0;
     glm::dvec4 mean{0.0};
 };
 
-Facts facts_of(const Picture& picture) {
+PictureFacts facts_of(const Picture& picture) {
     const Image image = decoded(picture);
-    Facts facts;
+    PictureFacts facts;
     facts.format = format_of(picture.bytes);
     facts.width = image.width;
     facts.height = image.height;
@@ -115,7 +115,7 @@ Image decoded(const Picture& picture) {
 
 PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name) {
     static std::mutex mutex;
-    static std::unordered_map<Hash, Facts> known;
+    static std::unordered_map<Hash, PictureFacts> known;
     auto picture = std::make_shared<Picture>();
     picture->name = name;
     picture->space = space;
@@ -125,7 +125,7 @@ PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& 
     auto found = known.find(picture->hash);
     if (found == known.end()) {
         lock.unlock();
-        const Facts facts = facts_of(*picture);
+        const PictureFacts facts = facts_of(*picture);
         lock.lock();
         found = known.emplace(picture->hash, facts).first;
     }
@@ -137,7 +137,7 @@ PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& 
 }
 
 glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel) {
-    if (texture.channel == Channel::Color)
+    if (texture.channel == TextureChannel::Color)
         return texture.offset + texture.scale * glm::dvec3(texel);
     return texture.offset + texture.scale * pick(texture.channel, texel);
 }
@@ -146,23 +146,25 @@ double number_of(const Texture& texture, const glm::dvec4& texel) {
     return texture.offset.x + texture.scale.x * pick(texture.channel, texel);
 }
 
-Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise, int most_side)
-    : Sampler(texture, otherwise, texture ? texels_of(*texture.picture, most_side) : nullptr) {}
+TextureSampler::TextureSampler(const Texture& texture, const glm::dvec3& otherwise, int most_side)
+    : TextureSampler(texture, otherwise,
+                     texture ? texels_of(*texture.picture, most_side) : nullptr) {}
 
-Sampler::Sampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels)
+TextureSampler::TextureSampler(const Texture& texture, const glm::dvec3& otherwise,
+                               TexelsPtr texels)
     : texture_(texture), otherwise_(otherwise), texels_(std::move(texels)) {
     if (texels_ && texels_->rgba.empty())
         texels_ = nullptr;
 }
 
-glm::dvec4 Sampler::at(int column, int row) const {
+glm::dvec4 TextureSampler::at(int column, int row) const {
     const float* from =
         texels_->rgba.data() + 4 * (static_cast<size_t>(row) * static_cast<size_t>(texels_->width) +
                                     static_cast<size_t>(column));
     return {from[0], from[1], from[2], from[3]};
 }
 
-glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
+glm::dvec4 TextureSampler::texel(glm::dvec2 uv) const {
     const int width = texels_->width;
     const int height = texels_->height;
     glm::dvec2 at = to_picture(texture_, uv);
@@ -170,7 +172,7 @@ glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
         at = glm::dvec2(0);
     // Far away nothing can be told apart, and the numbers must fit.
     at = glm::clamp(at, -1e6, 1e6);
-    const bool closest = texture_.interpolation == Interpolation::Closest;
+    const bool closest = texture_.interpolation == TextureInterpolation::Closest;
     const double shift = closest ? 0 : 0.5;
     const double x = at.x * width - shift;
     const double y = (1 - at.y) * height - shift;
@@ -193,11 +195,11 @@ glm::dvec4 Sampler::texel(glm::dvec2 uv) const {
     return sum;
 }
 
-glm::dvec3 Sampler::color(glm::dvec2 uv) const {
+glm::dvec3 TextureSampler::color(glm::dvec2 uv) const {
     return texels_ ? color_of(texture_, texel(uv)) : otherwise_;
 }
 
-double Sampler::number(glm::dvec2 uv) const {
+double TextureSampler::number(glm::dvec2 uv) const {
     return texels_ ? number_of(texture_, texel(uv)) : otherwise_.x;
 }
 

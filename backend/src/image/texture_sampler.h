@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sampler: a texture's values at texture coordinates.
+// TextureSampler: a texture's values at texture coordinates.
 #pragma once
 
 #include "image/decoded_texels.h"
@@ -27,14 +27,14 @@ double number_of(const Texture& texture, const glm::dvec4& texel);
 
 /// Looks up the texels of one texture, reduced to at most `most_side` a side by averaging: for
 /// measuring, not for pictures. Threads may share it.
-class Sampler {
+class TextureSampler {
 public:
     static constexpr int kMostSide = 1024;
 
     /// Without a picture every value is `otherwise`.
-    Sampler(const Texture& texture, const glm::dvec3& otherwise, int most_side = kMostSide);
+    TextureSampler(const Texture& texture, const glm::dvec3& otherwise, int most_side = kMostSide);
     /// With texels of its picture that others may share; null: as without a picture.
-    Sampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels);
+    TextureSampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels);
 
     explicit operator bool() const { return texels_ != nullptr; }
     glm::dvec3 color(glm::dvec2 uv) const;

@@ -24,7 +24,7 @@ double luma(const glm::dvec3& color) {
     return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
-struct Texel {
+struct SkyTexel {
     glm::dvec3 direction{0.0};  // it is seen in, in the world
     glm::dvec3 radiance{0.0};
     double solid_angle = 0;
@@ -32,9 +32,10 @@ struct Texel {
     glm::dvec3 power() const { return radiance * solid_angle; }
 };
 
-class Sky {
+class EnvironmentSky {
 public:
-    Sky(const World& world, const image::Image& picture) : width_(kWidth), height_(kHeight) {
+    EnvironmentSky(const World& world, const image::Image& picture)
+        : width_(kWidth), height_(kHeight) {
         width_ = std::min(kWidth, picture.width);
         height_ = std::min(kHeight, picture.height);
         const bool turned = std::abs(glm::determinant(world.environment_turn)) > 1e-12;
@@ -44,7 +45,7 @@ public:
             const double low = kPi * y / height_;  // from the zenith
             const double high = kPi * (y + 1) / height_;
             for (int x = 0; x < width_; ++x) {
-                Texel& texel = at(x, y);
+                SkyTexel& texel = at(x, y);
                 const glm::dvec3 own =
                     equirectangular_direction((x + 0.5) / width_, 1 - (y + 0.5) / height_);
                 texel.direction = glm::normalize(to_world * own);
@@ -56,14 +57,14 @@ public:
 
     int width() const { return width_; }
     int height() const { return height_; }
-    Texel& at(int x, int y) {
+    SkyTexel& at(int x, int y) {
         return texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) +
                        static_cast<size_t>(x)];
     }
-    const std::vector<Texel>& texels() const { return texels_; }
+    const std::vector<SkyTexel>& texels() const { return texels_; }
 
     /// Power of a texel without the uniform sky; of one that is darker, negative.
-    glm::dvec3 above(const Texel& texel) const {
+    glm::dvec3 above(const SkyTexel& texel) const {
         return (texel.radiance - uniform_) * texel.solid_angle;
     }
 
@@ -115,7 +116,7 @@ private:
     int width_;
     int height_;
     glm::dvec3 uniform_{0.0};
-    std::vector<Texel> texels_;
+    std::vector<SkyTexel> texels_;
 };
 
 struct SkyRegion {
@@ -126,19 +127,19 @@ struct SkyRegion {
 };
 
 /// Width and height as seen from the middle, radians.
-glm::dvec2 extent(const Sky& sky, const SkyRegion& region) {
+glm::dvec2 extent(const EnvironmentSky& sky, const SkyRegion& region) {
     const double middle = kPi * (0.5 * (region.top + region.bottom) / sky.height() - 0.5);
     return {2 * kPi * (region.right - region.left) / sky.width() * std::cos(middle),
             kPi * (region.bottom - region.top) / sky.height()};
 }
 
 /// How wrong one sun for all of it is: what it sends, times its size squared.
-double badness(const Sky& sky, const SkyRegion& region) {
+double badness(const EnvironmentSky& sky, const SkyRegion& region) {
     const glm::dvec2 size = extent(sky, region);
     return region.divisible() ? region.brightness * glm::dot(size, size) : -1;
 }
 
-double brightness(Sky& sky, const SkyRegion& region) {
+double brightness(EnvironmentSky& sky, const SkyRegion& region) {
     double sum = 0;
     for (int y = region.top; y < region.bottom; ++y) {
         for (int x = region.left; x < region.right; ++x)
@@ -148,7 +149,7 @@ double brightness(Sky& sky, const SkyRegion& region) {
 }
 
 /// Cuts across the longer side, where half of the light is on each.
-std::pair<SkyRegion, SkyRegion> cut(Sky& sky, const SkyRegion& region) {
+std::pair<SkyRegion, SkyRegion> cut(EnvironmentSky& sky, const SkyRegion& region) {
     const glm::dvec2 size = extent(sky, region);
     const bool columns =
         region.bottom - region.top < 2 || (size.x > size.y && region.right - region.left > 1);
@@ -176,12 +177,12 @@ std::pair<SkyRegion, SkyRegion> cut(Sky& sky, const SkyRegion& region) {
     return halves;
 }
 
-EnvironmentLight light_of(Sky& sky, const SkyRegion& region) {
+EnvironmentLight light_of(EnvironmentSky& sky, const SkyRegion& region) {
     EnvironmentLight light;
     glm::dvec3 middle(0.0);
     for (int y = region.top; y < region.bottom; ++y) {
         for (int x = region.left; x < region.right; ++x) {
-            const Texel& texel = sky.at(x, y);
+            const SkyTexel& texel = sky.at(x, y);
             middle += texel.direction * std::max(0.0, luma(sky.above(sky.at(x, y))));
             light.irradiance += sky.above(texel);
         }
@@ -195,13 +196,13 @@ EnvironmentLight light_of(Sky& sky, const SkyRegion& region) {
 /// Lloyd's iteration: every texel goes to its nearest sun, every sun to the middle of its texels'
 /// light. What is left of the error of suns for regions, light times distance squared, falls with
 /// each round; the regions' straight cuts are no longer seen.
-void spread(Sky& sky, std::vector<EnvironmentLight>& lights) {
+void spread(EnvironmentSky& sky, std::vector<EnvironmentLight>& lights) {
     std::vector<size_t> nearest(sky.texels().size(), 0);
     std::vector<glm::dvec3> middles(lights.size());
     for (int round = 0; round < kRounds; ++round) {
         std::fill(middles.begin(), middles.end(), glm::dvec3(0.0));
         for (size_t t = 0; t < nearest.size(); ++t) {
-            const Texel& texel = sky.texels()[t];
+            const SkyTexel& texel = sky.texels()[t];
             double closest = -2;
             for (size_t i = 0; i < lights.size(); ++i) {
                 const double cosine = -glm::dot(lights[i].direction, texel.direction);
@@ -239,14 +240,14 @@ std::vector<glm::dvec3> normals() {
 
 /// Non-negative least squares, one strength at a time: what each normal receives from the suns and
 /// the uniform sky (the last unknown) against what it receives from the picture.
-void fit(const Sky& sky, EnvironmentLights& lights) {
+void fit(const EnvironmentSky& sky, EnvironmentLights& lights) {
     const size_t count = lights.lights.size() + 1;
     std::vector<double> gram(count * count, 0.0);
     std::vector<glm::dvec3> wanted(count, glm::dvec3(0.0));
     std::vector<double> received(count, kPi);
     for (const glm::dvec3& normal : normals()) {
         glm::dvec3 target(0.0);
-        for (const Texel& texel : sky.texels())
+        for (const SkyTexel& texel : sky.texels())
             target += texel.power() * std::max(0.0, glm::dot(normal, texel.direction));
         for (size_t i = 0; i + 1 < count; ++i)
             received[i] = std::max(0.0, -glm::dot(normal, lights.lights[i].direction));
@@ -285,7 +286,7 @@ EnvironmentLights environment_lights(const World& world, size_t count) {
     EnvironmentLights out;
     if (!world.environment)
         return out;
-    Sky sky(world, image::decoded(*world.environment));
+    EnvironmentSky sky(world, image::decoded(*world.environment));
     out.ambient = sky.take_uniform();
     std::vector<SkyRegion> regions{{0, 0, sky.width(), sky.height()}};
     regions[0].brightness = brightness(sky, regions[0]);

@@ -51,7 +51,7 @@ double extent_of(const Light& light) {
     return std::max(0.0, light.radius);
 }
 
-bool lamp(const Light& light) {
+bool is_lamp(const Light& light) {
     const glm::dvec3 energy = energy_of(light);
     if (light.kind == LightKind::Sun || !finite(energy) || !finite(light.position) ||
         std::min({energy.x, energy.y, energy.z}) < 0 ||
@@ -65,7 +65,8 @@ bool lamp(const Light& light) {
     return light.kind == LightKind::Spot || glm::length(glm::cross(light.edge_u, light.edge_v)) > 0;
 }
 
-glm::dvec3 arriving(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
+glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point,
+                             const glm::dvec3& normal) {
     const glm::dvec3 way = light.position - point;
     const double square = glm::dot(way, way);
     const double distance = std::sqrt(square);
@@ -88,7 +89,7 @@ glm::dvec3 arriving(const Light& light, const glm::dvec3& point, const glm::dvec
            (cosine * sent * in_spread(light, sent) / (4 * kPi * (square + size / kPi)));
 }
 
-double step_at(double radiance) {
+double display_step(double radiance) {
     constexpr double kStep = 1.0 / 255;
     const double shown = std::min(radiance, 1.0);
     if (!(shown > 0.0031308))

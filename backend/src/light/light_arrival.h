@@ -14,13 +14,13 @@ double luminance(const glm::dvec3& color);
 double extent_of(const Light& light);
 
 /// A lamp that can be judged at all: no sun, finite, shining, not taking light away.
-bool lamp(const Light& light);
+bool is_lamp(const Light& light);
 
 /// What a matte white surface that faces `normal` (unit) sends back of an unhidden lamp's light
 /// (linear radiance). The lamp is taken for its middle.
-glm::dvec3 arriving(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
+glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
 /// Change of linear radiance that one step of an 8-bit display shows at such a radiance.
-double step_at(double radiance);
+double display_step(double radiance);
 
 }  // namespace lodestone::light

@@ -18,10 +18,10 @@ constexpr double kSameWay = 0.25;  // cosine of what faces about the same way
 
 using Cells = std::vector<std::vector<uint32_t>>;  // points of each cell of a grid
 
-class Cover {
+class CoverageSearch {
 public:
-    Cover(const LitScene& scene, const View& view, std::span<const uint8_t> divisible,
-          LitGrid& grid)
+    CoverageSearch(const LitScene& scene, const View& view, std::span<const uint8_t> divisible,
+                   LitGrid& grid)
         : scene_(scene), view_(view), divisible_(divisible), grid_(grid) {
         const double pixels = static_cast<double>(view.width) * view.height;
         const double part = std::min(kFiner, std::sqrt(kMostLooks / pixels));
@@ -29,16 +29,16 @@ public:
         columns_ = std::max(grid.columns, static_cast<size_t>(view.width * part));
     }
 
-    std::vector<Sighting> run(const Job& job) {
-        std::vector<std::vector<Look>> looks(rows_);
+    std::vector<PointSighting> run(const Job& job) {
+        std::vector<std::vector<CoverageLook>> looks(rows_);
         parallel_for(rows_, [&](size_t row) {
             job.check();
             look(row, looks[row]);
         });
-        std::vector<Look> alone;
-        std::vector<Sighting> sightings;
-        for (std::vector<Look>& some : looks) {
-            for (Look& one : some) {
+        std::vector<CoverageLook> alone;
+        std::vector<PointSighting> sightings;
+        for (std::vector<CoverageLook>& some : looks) {
+            for (CoverageLook& one : some) {
                 if (one.speaker == kNobody)
                     alone.push_back(std::move(one));
                 else if (divisible_[one.point.region] != 0)
@@ -53,7 +53,7 @@ public:
 private:
     static constexpr uint32_t kNobody = ~uint32_t{0};
 
-    struct Look {
+    struct CoverageLook {
         LitPoint point;
         size_t cell = 0;
         uint32_t speaker = kNobody;
@@ -61,13 +61,13 @@ private:
 
     /// Once in every part of a row; where that is alone, some more times, at most twice as many in
     /// all.
-    void look(size_t row, std::vector<Look>& out) const {
-        Random random(2, row);
+    void look(size_t row, std::vector<CoverageLook>& out) const {
+        PcgRandom random(2, row);
         size_t more = columns_;
         for (size_t column = 0; column < columns_; ++column) {
             const size_t before = out.size();
             look(row, column, random, out);
-            const auto alone = [](const Look& one) { return one.speaker == kNobody; };
+            const auto alone = [](const CoverageLook& one) { return one.speaker == kNobody; };
             if (std::none_of(out.begin() + static_cast<ptrdiff_t>(before), out.end(), alone))
                 continue;
             for (int i = 0; i < kCloser && more > 0; ++i, --more)
@@ -75,13 +75,13 @@ private:
         }
     }
 
-    void look(size_t row, size_t column, Random& random, std::vector<Look>& out) const {
+    void look(size_t row, size_t column, PcgRandom& random, std::vector<CoverageLook>& out) const {
         const double x =
             (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns_);
         const double y = (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows_);
         const size_t cell = cell_at(x, y);
         for (LitPoint& point : scene_.seen(view_, x, y)) {
-            Look one{std::move(point), cell, kNobody};
+            CoverageLook one{std::move(point), cell, kNobody};
             one.speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
                 for (uint32_t i = grid_.first[there]; i < grid_.first[there + 1]; ++i) {
                     if (speaks(i))
@@ -102,7 +102,7 @@ private:
     /// A point of its cell, else of those around it, that is near it and sees it. `among(cell,
     /// speaks)` tries those of one cell.
     template <typename Among>
-    uint32_t speaker_of(const Look& one, const Among& among) const {
+    uint32_t speaker_of(const CoverageLook& one, const Among& among) const {
         const double most = reach_beside(view_, grid_, one.point);
         const auto speaks = [&](uint32_t index) {
             const LitPoint& a = grid_.points[index];
@@ -124,7 +124,7 @@ private:
         return kNobody;
     }
 
-    void find_beside(Look& one) const {
+    void find_beside(CoverageLook& one) const {
         const double most = reach_beside(view_, grid_, one.point);
         for (const size_t cell :
              around(grid_, one.cell / grid_.columns, one.cell % grid_.columns)) {
@@ -135,14 +135,15 @@ private:
         }
     }
 
-    void add(std::vector<Look>& alone, std::vector<Sighting>& sightings, const Job& job) {
+    void add(std::vector<CoverageLook>& alone, std::vector<PointSighting>& sightings,
+             const Job& job) {
         const size_t most = std::max<size_t>(1, grid_.points.size());
         const size_t step = (alone.size() + most - 1) / most;
         std::vector<std::vector<uint32_t>> added(grid_.first.size());
         for (size_t i = 0; i < alone.size(); i += step) {
             if ((i & 1023u) < step)
                 job.check();
-            Look& one = alone[i];
+            CoverageLook& one = alone[i];
             const uint32_t region = one.point.region;
             const glm::dvec3 at = one.point.position;
             uint32_t speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
@@ -173,13 +174,14 @@ private:
 
 }  // namespace
 
-std::vector<Sighting> cover(const LitScene& scene, const View& view,
-                            std::span<const uint8_t> divisible, LitGrid& grid, const Job& job) {
-    return Cover(scene, view, divisible, grid).run(job);
+std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const View& view,
+                                                  std::span<const uint8_t> divisible, LitGrid& grid,
+                                                  const Job& job) {
+    return CoverageSearch(scene, view, divisible, grid).run(job);
 }
 
-void lend(std::span<const Sighting> sightings, const LightRegions& regions,
-          std::vector<LitPoint>& points, LightShares& shares) {
+void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
+                     std::vector<LitPoint>& points, LightShares& shares) {
     // Pieces are in the order of what is drawn.
     std::vector<size_t> first;
     for (size_t i = 0; i < regions.pieces.size(); ++i) {
@@ -188,9 +190,9 @@ void lend(std::span<const Sighting> sightings, const LightRegions& regions,
     }
     first.push_back(regions.pieces.size());
     std::set<std::pair<uint32_t, uint32_t>> lent;  // region, point
-    for (const Sighting& seen : sightings) {
+    for (const PointSighting& seen : sightings) {
         for (size_t i = first[seen.drawn]; i < first[seen.drawn + 1]; ++i) {
-            const Piece& piece = regions.pieces[i];
+            const LitPiece& piece = regions.pieces[i];
             if (!piece.within || !piece.within->contains(seen.position))
                 continue;
             if (piece.group != points[seen.point].region)

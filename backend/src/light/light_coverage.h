@@ -10,7 +10,7 @@
 namespace lodestone::light {
 
 /// A point that is seen, and the lit point that stands for it.
-struct Sighting {
+struct PointSighting {
     glm::dvec3 position{0.0};
     uint32_t drawn = 0;
     uint32_t point = 0;
@@ -22,12 +22,13 @@ struct Sighting {
 /// are alone become lit points, at most as many as there were (then evenly chosen ones). Returns
 /// the sightings of things that `divisible` allows to be cut. The same on any number of threads.
 /// cost: two rays a look.
-std::vector<Sighting> cover(const LitScene& scene, const View& view,
-                            std::span<const uint8_t> divisible, LitGrid& grid, const Job& job);
+std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const View& view,
+                                                  std::span<const uint8_t> divisible, LitGrid& grid,
+                                                  const Job& job);
 
 /// Where a thing is cut between a sighting and its point, lends the point to the piece that is
 /// seen: copies of it in that region, and of its shares.
-void lend(std::span<const Sighting> sightings, const LightRegions& regions,
-          std::vector<LitPoint>& points, LightShares& shares);
+void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
+                     std::vector<LitPoint>& points, LightShares& shares);
 
 }  // namespace lodestone::light

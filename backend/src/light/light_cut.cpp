@@ -21,7 +21,7 @@ constexpr size_t kStrip =
 
 /// Radiance a point sends to the eye of an unhidden light.
 glm::dvec3 sent(const Light& light, const LitPoint& point) {
-    const glm::dvec3 arrives = arriving(light, point.position, point.normal);
+    const glm::dvec3 arrives = arriving_radiance(light, point.position, point.normal);
     if (!(arrives.x + arrives.y + arrives.z > 0))
         return glm::dvec3(0.0);
     glm::dvec3 albedo = point.albedo;
@@ -54,7 +54,7 @@ public:
         step_.assign(count, glm::dvec3(1.0));
         sum_lamps();
         for (const uint32_t root : tree_.roots) {
-            if (lamp(tree_.nodes[root].light))
+            if (is_lamp(tree_.nodes[root].light))
                 take(root);
         }
         while (!good(pixel_error) && !closed_.empty()) {
@@ -134,7 +134,7 @@ private:
             for (const std::vector<glm::vec3>& here : sent_)
                 radiance += glm::dvec3(here[k]);
             for (int i = 0; i < 3; ++i)
-                step_[k][i] = step_at(radiance[i]);
+                step_[k][i] = display_step(radiance[i]);
         }
     }
 
@@ -234,7 +234,7 @@ LightShares find_shares(const LightTree& tree, std::span<const LitPoint> points,
         ++lamps;
     std::vector<uint32_t> lit_by;
     for (uint32_t k = 0; k < lamps; ++k) {
-        if (lamp(tree.nodes[k].light))
+        if (is_lamp(tree.nodes[k].light))
             lit_by.push_back(k);
     }
     LightShares shares(points.size());
@@ -246,7 +246,8 @@ LightShares find_shares(const LightTree& tree, std::span<const LitPoint> points,
             shares[i].assign(lamps, 0);
             for (const uint32_t k : lit_by) {
                 const Light& light = tree.nodes[k].light;
-                const glm::dvec3 all = arriving(light, points[i].position, points[i].normal);
+                const glm::dvec3 all =
+                    arriving_radiance(light, points[i].position, points[i].normal);
                 if (all.x + all.y + all.z > 0)
                     shares[i][k] = static_cast<float>(reaches(light, points[i], blockers[k]));
             }

@@ -25,10 +25,10 @@ constexpr uint64_t kMostTriangles = 2'000'000;  // distinct: 130 bytes each
 // whose shadows cost it up to 2.4 times as much.
 constexpr double kWorth = 0.6;
 
-uint64_t distinct_triangles(std::span<const Lit> drawn) {
+uint64_t distinct_triangles(std::span<const DrawnThing> drawn) {
     std::unordered_set<Hash> known;
     uint64_t count = 0;
-    for (const Lit& lit : drawn) {
+    for (const DrawnThing& lit : drawn) {
         if (known.insert(lit.representation->summary.hash).second)
             count += lit.representation->summary.cost.triangles;
     }
@@ -39,7 +39,7 @@ LightPlan plan_of(const LightTree& tree, const LightCut& cut, std::span<const Li
                   const LightRegions& regions) {
     std::vector<uint32_t> all;
     for (uint32_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {
-        if (lamp(tree.nodes[i].light))
+        if (is_lamp(tree.nodes[i].light))
             all.push_back(i);
     }
     double sum = 0;
@@ -70,7 +70,7 @@ LightPlan plan_of(const LightTree& tree, const LightCut& cut, std::span<const Li
         }
     }
     plan.pieces = regions.pieces;
-    for (Piece& piece : plan.pieces)
+    for (LitPiece& piece : plan.pieces)
         piece.group = piece.group == kNoRegion ? 0 : group_of[piece.group];
     return plan;
 }
@@ -78,10 +78,10 @@ LightPlan plan_of(const LightTree& tree, const LightCut& cut, std::span<const Li
 }  // namespace
 
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
-                      std::span<const Lit> drawn, const View& view, double pixel_error, int bounces,
-                      Problems& problems, const Job& job) {
+                      std::span<const DrawnThing> drawn, const View& view, double pixel_error,
+                      int bounces, Problems& problems, const Job& job) {
     const auto lamps =
-        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), lamp));
+        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
     if (!(pixel_error > 0) || lamps < kFewLamps || drawn.empty() || !ray::available())
         return {};
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
@@ -100,14 +100,15 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     std::vector<Bound> bounds;
     std::vector<uint8_t> divisible;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
-        const Summary& summary = drawn[i].representation->summary;
+        const RepresentationSummary& summary = drawn[i].representation->summary;
         bounds.push_back(transformed(summary.bound, drawn[i].world));
         // POV-Ray forgets flags of rays in what is clipped, and unions are not split then.
         divisible.push_back(drawn[i].hidden == 0 && summary.kind != Kind::Composite &&
                             !scene.partly_clear(i));
     }
     const size_t even = grid.points.size();
-    const std::vector<Sighting> sightings = cover(scene, view, divisible, grid, job);
+    const std::vector<PointSighting> sightings =
+        add_missing_lit_points(scene, view, divisible, grid, job);
     std::vector<LitPoint>& points = grid.points;
     if (points.empty())
         return {};
@@ -119,7 +120,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     };
     LightShares shares = find_shares(tree, points, reaches, job);
     const LightRegions regions = make_light_regions(bounds, divisible, shares, points);
-    lend(sightings, regions, points, shares);
+    lend_lit_points(sightings, regions, points, shares);
     const LightCut cut = cut_lights(tree, points, shares, regions.count, model.world.color, reaches,
                                     pixel_error, job);
     // What was added looks at corners: the mean is of what is spread evenly.

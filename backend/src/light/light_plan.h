@@ -26,14 +26,14 @@ struct RendererSurfaces {
 };
 
 /// Something that is drawn.
-struct Lit {
+struct DrawnThing {
     const Representation* representation = nullptr;
     Affine world;
     RayMask hidden = 0;
 };
 
 /// What is lit by one group of lights: a thing, or what of it is in a box (world frame).
-struct Piece {
+struct LitPiece {
     uint32_t drawn = 0;
     uint32_t group = 0;
     std::optional<Box3> within;
@@ -42,9 +42,9 @@ struct Piece {
 struct LightPlan {
     std::vector<Light> lights;  // lamps, and such that stand for several
     std::vector<std::vector<uint32_t>>
-        groups;                 // indices of lights; the first: all lamps as they are
-    std::vector<Piece> pieces;  // in the order of things drawn, each whole
-    double lights_each = 0;     // that light a point the view shows, on average
+        groups;                    // indices of lights; the first: all lamps as they are
+    std::vector<LitPiece> pieces;  // in the order of things drawn, each whole
+    double lights_each = 0;        // that light a point the view shows, on average
 
     bool empty() const { return groups.empty(); }
 };
@@ -67,7 +67,7 @@ inline constexpr size_t kFewLamps = 8;
 /// Empty if that saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is
 /// too much to cast them at (a problem).
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
-                      std::span<const Lit> drawn, const View& view, double pixel_error, int bounces,
-                      Problems& problems, const Job& job = {});
+                      std::span<const DrawnThing> drawn, const View& view, double pixel_error,
+                      int bounces, Problems& problems, const Job& job = {});
 
 }  // namespace lodestone::light

@@ -17,10 +17,10 @@ constexpr size_t kFewLamps = 6;        // that light a box: it is not cut furthe
 constexpr double kWorthCutting = 0.8;  // of the lights at all points: what a cut must leave at most
 constexpr size_t kGaps = 12;           // widest gaps between points along an axis that are tried
 
-class Maker {
+class RegionMaker {
 public:
-    Maker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-          const LightShares& shares, std::vector<LitPoint>& points)
+    RegionMaker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
+                const LightShares& shares, std::vector<LitPoint>& points)
         : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
 
     LightRegions make() {
@@ -29,7 +29,7 @@ public:
         for (uint32_t i = 0; i < points_.size(); ++i)
             of_thing[points_[i].region].push_back(i);
         std::vector<uint32_t> few;
-        std::vector<std::vector<Piece>> pieces(bounds_.size());
+        std::vector<std::vector<LitPiece>> pieces(bounds_.size());
         middles_.resize(bounds_.size());
         counts_.resize(bounds_.size());
         for (uint32_t i = 0; i < bounds_.size(); ++i) {
@@ -54,17 +54,17 @@ public:
         }
         LightRegions out;
         out.count = next_;
-        for (const std::vector<Piece>& some : pieces)
+        for (const std::vector<LitPiece>& some : pieces)
             out.pieces.insert(out.pieces.end(), some.begin(), some.end());
         return out;
     }
 
 private:
-    struct Part {
+    struct RegionPart {
         Box3 box;
         std::vector<uint32_t> points;
     };
-    struct Plane {
+    struct SplitPlane {
         double cost = 0;
         int axis = 0;
         double at = 0;
@@ -126,8 +126,8 @@ private:
         }
     }
 
-    Plane best_plane(const std::vector<uint32_t>& given, double least) {
-        Plane best;
+    SplitPlane best_plane(const std::vector<uint32_t>& given, double least) {
+        SplitPlane best;
         best.cost = std::numeric_limits<double>::infinity();
         std::vector<uint32_t> points = given;
         std::vector<size_t> before;
@@ -167,8 +167,8 @@ private:
     }
 
     void cut(uint32_t thing, const std::vector<uint32_t>& points, bool divisible,
-             std::vector<Piece>& out) {
-        Part whole;
+             std::vector<LitPiece>& out) {
+        RegionPart whole;
         whole.box = bounds_[thing].box;
         // Nothing of it may lie on the outside of the boxes.
         const double margin = 0.01 * glm::length(whole.box.size());
@@ -177,10 +177,10 @@ private:
         whole.points = points;
         // What is flat is not cut along itself.
         const double least = 1e-4 * glm::length(whole.box.size());
-        std::vector<Part> open{whole};
-        std::vector<Part> done;
+        std::vector<RegionPart> open{whole};
+        std::vector<RegionPart> done;
         while (!open.empty()) {
-            Part part = std::move(open.back());
+            RegionPart part = std::move(open.back());
             open.pop_back();
             const size_t lamps = lamps_of(part.points);
             if (!divisible || lamps <= kFewLamps || part.points.size() < 2 * kCell ||
@@ -188,13 +188,13 @@ private:
                 done.push_back(std::move(part));
                 continue;
             }
-            const Plane plane = best_plane(part.points, least);
+            const SplitPlane plane = best_plane(part.points, least);
             if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size() * lamps))) {
                 done.push_back(std::move(part));
                 continue;
             }
-            Part low;
-            Part high;
+            RegionPart low;
+            RegionPart high;
             low.box = high.box = part.box;
             low.box.high[plane.axis] = high.box.low[plane.axis] = plane.at;
             for (const uint32_t point : part.points)
@@ -203,7 +203,7 @@ private:
             open.push_back(std::move(high));
             open.push_back(std::move(low));
         }
-        for (const Part& part : done) {
+        for (const RegionPart& part : done) {
             for (const uint32_t point : part.points)
                 points_[point].region = next_;
             out.push_back({thing, next_++, {}});
@@ -260,7 +260,7 @@ private:
 
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
                                 const LightShares& shares, std::vector<LitPoint>& points) {
-    return Maker(bounds, divisible, shares, points).make();
+    return RegionMaker(bounds, divisible, shares, points).make();
 }
 
 }  // namespace lodestone::light

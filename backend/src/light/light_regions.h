@@ -10,7 +10,7 @@ namespace lodestone::light {
 struct LightRegions {
     size_t count = 0;
     /// In the order of things drawn; `group` is the region, or none where no point lies.
-    std::vector<Piece> pieces;
+    std::vector<LitPiece> pieces;
 };
 inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 

@@ -40,7 +40,7 @@ uint64_t spread_bits(uint64_t x) {
     return (x | x << 2u) & 0x1249249249249249u;
 }
 
-uint64_t along_curve(const Box3& box, const glm::dvec3& point) {
+uint64_t morton_order(const Box3& box, const glm::dvec3& point) {
     uint64_t code = 0;
     for (int i = 0; i < 3; ++i) {
         const double size = box.high[i] - box.low[i];
@@ -64,14 +64,14 @@ glm::dvec2 moments(const Light& area, const glm::dvec3& u, const glm::dvec3& v,
     return {along(u), along(v)};
 }
 
-class Joiner {
+class LightJoiner {
 public:
-    Joiner(std::span<const Light> lights, const Clear& clear, const Job& job)
+    LightJoiner(std::span<const Light> lights, const Clear& clear, const Job& job)
         : clear_(clear), job_(job) {
         for (const Light& light : lights) {
             LightNode node;
             node.light = light;
-            if (lamp(light))
+            if (is_lamp(light))
                 node.box.add(light.position);
             tree_.nodes.push_back(std::move(node));
         }
@@ -81,7 +81,7 @@ public:
         Box3 all;
         std::vector<uint32_t> open;
         for (uint32_t i = 0; i < tree_.nodes.size(); ++i) {
-            if (lamp(tree_.nodes[i].light)) {
+            if (is_lamp(tree_.nodes[i].light)) {
                 all.add(tree_.nodes[i].box);
                 open.push_back(i);
             } else {
@@ -90,7 +90,7 @@ public:
         }
         std::vector<uint64_t> codes(tree_.nodes.size(), 0);
         for (const uint32_t i : open)
-            codes[i] = along_curve(all, tree_.nodes[i].light.position);
+            codes[i] = morton_order(all, tree_.nodes[i].light.position);
         std::stable_sort(open.begin(), open.end(),
                          [&](uint32_t a, uint32_t b) { return codes[a] < codes[b]; });
         while (round(open)) {
@@ -204,8 +204,8 @@ private:
     /// The new node, or none where something parts them; then never again.
     uint32_t join(uint32_t a, uint32_t b) {
         LightNode node;
-        node.light = joined(light(a), light(b));
-        if (!lamp(node.light) || !clear(node.light, a, b)) {
+        node.light = joined_light(light(a), light(b));
+        if (!is_lamp(node.light) || !clear(node.light, a, b)) {
             parted_.insert(pair_of(a, b));
             return kNoLight;
         }
@@ -244,7 +244,7 @@ private:
 
 }  // namespace
 
-Light joined(const Light& a, const Light& b) {
+Light joined_light(const Light& a, const Light& b) {
     const double of_a = luminance(energy_of(a));
     const double of_b = luminance(energy_of(b));
     const double share = of_a + of_b > 0 ? of_b / (of_a + of_b) : 0.5;
@@ -274,7 +274,7 @@ Light joined(const Light& a, const Light& b) {
 }
 
 LightTree make_light_tree(std::span<const Light> lights, const Clear& clear, const Job& job) {
-    return Joiner(lights, clear, job).run();
+    return LightJoiner(lights, clear, job).run();
 }
 
 }  // namespace lodestone::light

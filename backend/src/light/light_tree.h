@@ -41,7 +41,7 @@ using Clear = std::function<bool(const glm::dvec3&, const glm::dvec3&)>;
 
 /// One light of the energy of both (exactly: color times power add up): at their centroid by
 /// energy, areas as large as their second moments together say.
-Light joined(const Light& a, const Light& b);
+Light joined_light(const Light& a, const Light& b);
 
 /// Joins nearest ones first, by energy times the square of the extent, only lamps of one kind that
 /// shine alike (spots and areas: within 15 degrees), and only where nothing lies between them nor

@@ -52,9 +52,9 @@ double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point
     return kBeside * cell * choose::pixel_size(view, z);
 }
 
-LitScene::Shape LitScene::shape_of(const Lit& lit) const {
+LitScene::SceneShape LitScene::shape_of(const DrawnThing& lit) const {
     const Representation& representation = *lit.representation;
-    Shape shape;
+    SceneShape shape;
     if (representation.summary.kind == Kind::Mesh)
         shape.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
     else
@@ -66,16 +66,16 @@ LitScene::Shape LitScene::shape_of(const Lit& lit) const {
         opaque[i] = surface_of(lit, mesh.slot(i)).see_through ? 0 : 1;
         count += opaque[i];
     }
-    shape.all = std::make_shared<const ray::Scene>(mesh);
+    shape.all = std::make_shared<const ray::MeshScene>(mesh);
     if (count == opaque.size())
         shape.opaque = shape.all;
     else if (count > 0)
-        shape.opaque = std::make_shared<const ray::Scene>(subset(mesh, opaque));
+        shape.opaque = std::make_shared<const ray::MeshScene>(subset(mesh, opaque));
     return shape;
 }
 
-LitScene::LitScene(const Model& model, const RendererSurfaces& renderer, std::span<const Lit> drawn,
-                   const Job& job)
+LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
+                   std::span<const DrawnThing> drawn, const Job& job)
     : model_(model), drawn_(drawn), tolerance_(renderer.tolerance) {
     for (size_t i = 0; i < model.materials.size(); ++i)
         surfaces_.push_back({renderer.reflections[i], see_through(model.materials[i])});
@@ -95,8 +95,8 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer, std::sp
         shapes_[i] = shape_of(drawn[firsts[i]]);
     });
     for (uint32_t i = 0; i < drawn.size(); ++i) {
-        const Lit& lit = drawn[i];
-        const Shape& shape = shapes_[shape_of_[i]];
+        const DrawnThing& lit = drawn[i];
+        const SceneShape& shape = shapes_[shape_of_[i]];
         const Bound& bound = lit.representation->summary.bound;
         if ((lit.hidden & kCameraRays) == 0 || (lit.hidden & kReflectionRays) == 0)
             seen_.add(shape.all, bound, lit.world, i);
@@ -109,22 +109,22 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer, std::sp
     least_ = 1e-6 * glm::length(seen_.box().size());
 }
 
-LitScene::Surface LitScene::surface_of(const Lit& lit, uint16_t slot) const {
+LitScene::LitSurface LitScene::surface_of(const DrawnThing& lit, uint16_t slot) const {
     const std::vector<uint32_t>& materials = lit.representation->materials;
     const size_t index = slot < materials.size() ? materials[slot] : surfaces_.size();
     return surfaces_[std::min(index, surfaces_.size() - 1)];
 }
 
-std::vector<LitPoint> LitScene::followed(Ray ray) const {
+std::vector<LitPoint> LitScene::followed(SightRay ray) const {
     std::vector<LitPoint> out;
     bool mirrored = false;
     for (int bounce = 0; bounce <= kMostBounces; ++bounce) {
-        const ray::PlacedScenes::Hit hit = seen_.first_hit(ray.origin, ray.direction);
+        const ray::PlacedScenes::PlacedHit hit = seen_.first_hit(ray.origin, ray.direction);
         if (!hit.hit)
             return out;
-        const Lit& lit = drawn_[hit.name];
+        const DrawnThing& lit = drawn_[hit.name];
         const Mesh& mesh = *shapes_[shape_of_[hit.name]].mesh;
-        const Surface surface = surface_of(lit, mesh.slot(hit.triangle));
+        const LitSurface surface = surface_of(lit, mesh.slot(hit.triangle));
         const glm::dmat3 turn = glm::transpose(glm::inverse(lit.world.linear));
         glm::dvec3 flat = glm::normalize(turn * area_vector(mesh, hit.triangle));
         if (!(glm::dot(flat, flat) > 0))
@@ -174,10 +174,10 @@ std::vector<LitPoint> LitScene::followed(Ray ray) const {
     return out;
 }
 
-LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
+LitScene::SightRay LitScene::ray_at(const View& view, double x, double y) {
     const Camera& camera = view.camera;
     const glm::dvec3 aside = (x - 0.5) * camera.right + (0.5 - y) * camera.up;
-    Ray ray;
+    SightRay ray;
     ray.origin = camera.orthographic ? camera.position + aside : camera.position;
     ray.direction =
         glm::normalize(camera.orthographic ? camera.direction : camera.direction + aside);
@@ -185,14 +185,14 @@ LitScene::Ray LitScene::ray_at(const View& view, double x, double y) {
 }
 
 /// From the last point on, as a matt surface hands on light.
-void LitScene::bounce(int times, Random& random, std::vector<LitPoint>& out) const {
+void LitScene::bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const {
     for (int i = 0; i < times && !out.empty(); ++i) {
         const LitPoint& from = out.back();
         const double turn = 2 * std::numbers::pi * random.uniform();
         const double out_of = random.uniform();  // square of the sine
         const glm::dvec3 u = any_across(from.normal);
         const glm::dvec3 v = glm::cross(from.normal, u);
-        Ray ray;
+        SightRay ray;
         ray.origin = from.position + from.aside;
         ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
                         std::sqrt(1 - out_of) * from.normal;
@@ -215,7 +215,7 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
     std::vector<std::vector<LitPoint>> found(grid.rows * grid.columns);
     parallel_for(grid.rows, [&](size_t row) {
         job.check();
-        Random random(1, row);
+        PcgRandom random(1, row);
         for (size_t column = 0; column < grid.columns; ++column) {
             const double x = (static_cast<double>(column) + random.uniform()) / columns;
             const double y = (static_cast<double>(row) + random.uniform()) / rows;

@@ -27,8 +27,8 @@ double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point
 class LitScene {
 public:
     /// Throws Error(RaysUnavailable); needs what is drawn to be resident, and to outlive it.
-    LitScene(const Model& model, const RendererSurfaces& renderer, std::span<const Lit> drawn,
-             const Job& job);
+    LitScene(const Model& model, const RendererSurfaces& renderer,
+             std::span<const DrawnThing> drawn, const Job& job);
 
     /// About `count` cells, a ray through each; `region` of a point is the index of the drawn
     /// thing. `bounces`: then from where it ends on, each where light may come from.
@@ -43,39 +43,40 @@ public:
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
     /// Whether any of a drawn thing is.
     bool partly_clear(uint32_t drawn) const {
-        const Shape& shape = shapes_[shape_of_[drawn]];
+        const SceneShape& shape = shapes_[shape_of_[drawn]];
         return shape.opaque != shape.all;
     }
     /// Whether nothing hides one point from another, ends excepted.
     bool clear(const glm::dvec3& from, const glm::dvec3& to) const;
 
 private:
-    struct Shape {
+    struct SceneShape {
         std::shared_ptr<const Mesh> mesh;
-        std::shared_ptr<const ray::Scene> all;
-        std::shared_ptr<const ray::Scene> opaque;  // null: nothing is; the same where everything is
+        std::shared_ptr<const ray::MeshScene> all;
+        std::shared_ptr<const ray::MeshScene>
+            opaque;  // null: nothing is; the same where everything is
     };
-    struct Surface {
+    struct LitSurface {
         SurfaceReflection reflection;
         bool see_through = false;
     };
-    struct Ray {
+    struct SightRay {
         glm::dvec3 origin;
         glm::dvec3 direction;
         double z = 0;  // the way to its origin
     };
 
-    Surface surface_of(const Lit& lit, uint16_t slot) const;
-    Shape shape_of(const Lit& lit) const;
-    static Ray ray_at(const View& view, double x, double y);
-    std::vector<LitPoint> followed(Ray ray) const;
-    void bounce(int times, Random& random, std::vector<LitPoint>& out) const;
+    LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
+    SceneShape shape_of(const DrawnThing& lit) const;
+    static SightRay ray_at(const View& view, double x, double y);
+    std::vector<LitPoint> followed(SightRay ray) const;
+    void bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const;
 
     const Model& model_;
-    std::span<const Lit> drawn_;
+    std::span<const DrawnThing> drawn_;
     std::vector<uint32_t> shape_of_;  // by drawn thing
-    std::vector<Shape> shapes_;
-    std::vector<Surface> surfaces_;  // by material, and one for none
+    std::vector<SceneShape> shapes_;
+    std::vector<LitSurface> surfaces_;  // by material, and one for none
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
     double tolerance_ = 0;

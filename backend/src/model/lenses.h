@@ -44,7 +44,7 @@ struct ScreenLens {
 };
 
 /// What a level is judged by (5.2.2), and so the unit of the view's threshold.
-enum class Criterion : uint8_t {
+enum class DetailCriterion : uint8_t {
     Resolution = 0,  // pixels that its error covers
     Feature = 1,     // share of the picture that its largest missing feature covers
     Area = 2,        // share of the picture up to which the coarsest level is used; each finer one

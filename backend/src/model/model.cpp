@@ -10,20 +10,20 @@ namespace {
 // Deeper nesting is a mistake of some program; it would exhaust the stacks of tile viewers.
 constexpr size_t kDeepest = 1000;
 
-enum class Mark : uint8_t { New, Open, Done };
+enum class VisitMark : uint8_t { New, Open, Done };
 
-void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
+void visit(const Model& model, ObjectIndex index, std::vector<VisitMark>& marks,
            std::vector<ObjectIndex>& order) {
     // An explicit stack: hierarchies may be deeper than the thread's stack allows.
-    struct Frame {
+    struct VisitFrame {
         ObjectIndex object;
         size_t next;
     };
-    std::vector<Frame> stack{{index, 0}};
+    std::vector<VisitFrame> stack{{index, 0}};
     while (!stack.empty()) {
-        Frame& frame = stack.back();
+        VisitFrame& frame = stack.back();
         const Object& object = model.objects[frame.object];
-        marks[frame.object] = Mark::Open;
+        marks[frame.object] = VisitMark::Open;
         if (object.group() && object.representations[0].resident()) {
             const auto& placements = object.representations[0].assembly().placements;
             if (frame.next < placements.size()) {
@@ -31,18 +31,18 @@ void visit(const Model& model, ObjectIndex index, std::vector<Mark>& marks,
                 if (child >= model.objects.size())
                     fail(Status::InvalidArgument, "group '", object.name, "' places object ", child,
                          " of ", model.objects.size());
-                if (marks[child] == Mark::Open)
+                if (marks[child] == VisitMark::Open)
                     fail(Status::InvalidArgument, "group '", object.name, "' contains '",
                          model.objects[child].name, "', which contains it");
                 if (stack.size() >= kDeepest)
                     fail(Status::InvalidArgument, "group '", object.name,
                          "' is nested deeper than ", kDeepest, " levels");
-                if (marks[child] == Mark::New)
+                if (marks[child] == VisitMark::New)
                     stack.push_back({child, 0});
                 continue;
             }
         }
-        marks[frame.object] = Mark::Done;
+        marks[frame.object] = VisitMark::Done;
         order.push_back(frame.object);
         stack.pop_back();
     }
@@ -55,12 +55,12 @@ uint64_t capped_sum(uint64_t a, uint64_t b) {
 }
 
 /// Whether for_each_occurrence() goes on to what an object places.
-bool opened(const Object& object, Below below) {
-    return object.group() && !(object.of_parts && below == Below::Objects);
+bool opened(const Object& object, OccurrenceUnit below) {
+    return object.group() && !(object.made_of_parts && below == OccurrenceUnit::Objects);
 }
 
 /// How often for_each_occurrence() visits something below the root. `order` is bottom_up's.
-uint64_t visits(const Model& model, const std::vector<ObjectIndex>& order, Below below) {
+uint64_t visits(const Model& model, const std::vector<ObjectIndex>& order, OccurrenceUnit below) {
     std::vector<uint64_t> out(model.objects.size(), 0);
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
@@ -98,13 +98,14 @@ std::vector<ObjectIndex> bottom_up(const Model& model) {
     if (model.root >= model.objects.size())
         fail(Status::InvalidArgument, "the root is object ", model.root, " of ",
              model.objects.size());
-    std::vector<Mark> marks(model.objects.size(), Mark::New);
+    std::vector<VisitMark> marks(model.objects.size(), VisitMark::New);
     visit(model, model.root, marks, order);
     return order;
 }
 
 std::vector<uint8_t> with_environment(const Model& model) {
-    return that_hold(model, [](const Object& object) { return object.role == Role::Environment; });
+    return that_hold(model,
+                     [](const Object& object) { return object.role == ObjectRole::Environment; });
 }
 
 std::vector<uint8_t> with_deforming(const Model& model) {
@@ -126,7 +127,7 @@ std::vector<uint8_t> with_hidden(const Model& model) {
 }
 
 void summarize(Representation& representation, const Model& model, std::optional<Hash> mesh_hash) {
-    Summary& summary = representation.summary;
+    RepresentationSummary& summary = representation.summary;
     Hasher hasher;
     hasher.value(summary.kind);
     if (summary.kind == Kind::Mesh) {
@@ -181,9 +182,9 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
         Hasher hasher;
         hasher.value(object.role);
         if (object.group()) {
-            Summary& summary = finest.summary;
+            RepresentationSummary& summary = finest.summary;
             summary.bound = Bound{};
-            summary.cost = Cost{};
+            summary.cost = DrawCost{};
             Hasher content;
             content.value(summary.kind);
             for (const Placement& placement : finest.assembly().placements) {
@@ -195,7 +196,7 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
                     content.value(placement.hidden);
                 if (child.representations.empty())
                     continue;
-                const Summary& part = child.representations[0].summary;
+                const RepresentationSummary& part = child.representations[0].summary;
                 summary.bound = merged(summary.bound, transformed(part.bound, placement.transform));
                 summary.cost.triangles = capped_sum(summary.cost.triangles, part.cost.triangles);
                 summary.cost.bytes = capped_sum(summary.cost.bytes, part.cost.bytes);
@@ -206,20 +207,20 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
     }
 }
 
-Totals totals(const Model& model) {
-    Totals out;
-    std::vector<Totals> below(model.objects.size());
+ModelTotals totals(const Model& model) {
+    ModelTotals out;
+    std::vector<ModelTotals> below(model.objects.size());
     const std::vector<ObjectIndex> order = bottom_up(model);
     for (const ObjectIndex index : order) {
         const Object& object = model.objects[index];
         if (object.group()) {
             for (const Placement& placement : object.representations[0].assembly().placements) {
-                Totals& sums = below[index];
-                const Totals& part = below[placement.object];
+                ModelTotals& sums = below[index];
+                const ModelTotals& part = below[placement.object];
                 sums.occurrences = capped_sum(sums.occurrences, part.occurrences);
                 sums.triangles_placed = capped_sum(sums.triangles_placed, part.triangles_placed);
             }
-            if (object.of_parts)
+            if (object.made_of_parts)
                 below[index].occurrences = 1;
         } else if (!object.representations.empty()) {
             const uint64_t triangles = object.representations[0].summary.cost.triangles;
@@ -239,7 +240,7 @@ Totals totals(const Model& model) {
         if (reached[*at] == 0 || object.representations.empty())
             continue;
         ++out.objects;
-        if (!object.group() || object.of_parts)
+        if (!object.group() || object.made_of_parts)
             continue;
         for (const Placement& placement : object.representations[0].assembly().placements)
             reached[placement.object] = 1;
@@ -248,22 +249,22 @@ Totals totals(const Model& model) {
 }
 
 void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,
-                         Below below) {
+                         OccurrenceUnit below) {
     if (model.root == kNoObject)
         return;
     const uint64_t count = visits(model, bottom_up(model), below);  // refuses cycles
     if (count > kMostOccurrences)
         fail(Status::InvalidArgument, "'", model.objects[model.root].name, "' places ", count,
              " things, counting each copy; at most ", kMostOccurrences);
-    struct Entry {
+    struct PendingOccurrence {
         ObjectIndex object;
         Affine world;
         std::string path;
         RayMask hidden;
     };
-    std::vector<Entry> stack{{model.root, Affine{}, "", 0}};
+    std::vector<PendingOccurrence> stack{{model.root, Affine{}, "", 0}};
     while (!stack.empty()) {
-        const Entry entry = std::move(stack.back());
+        const PendingOccurrence entry = std::move(stack.back());
         stack.pop_back();
         const Object& object = model.objects[entry.object];
         if (!opened(object, below)) {

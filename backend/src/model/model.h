@@ -48,14 +48,14 @@ void summarize(Representation& representation, const Model& model,
 
 /// Number of leaf occurrences below the root (each path of placements counts), and what they place.
 /// Sums that would be more than 64 bits hold are the largest number.
-/// An object made of parts (Object::of_parts) is one object and one leaf.
-struct Totals {
+/// An object made of parts (Object::made_of_parts) is one object and one leaf.
+struct ModelTotals {
     uint64_t objects = 0;  // with representations, groups included
     uint64_t occurrences = 0;
     uint64_t triangles_placed = 0;
     uint64_t triangles_unique = 0;
 };
-Totals totals(const Model& model);
+ModelTotals totals(const Model& model);
 
 /// One leaf reached along one path, in depth-first order of placements.
 struct Occurrence {
@@ -65,11 +65,11 @@ struct Occurrence {
     RayMask hidden = 0;  // ray classes that do not see it
 };
 /// Whether an object made of parts is visited itself, or its parts.
-enum class Below { Objects, Parts };
+enum class OccurrenceUnit { Objects, Parts };
 /// More are refused: a few groups that place each other twice would take forever.
 inline constexpr uint64_t kMostOccurrences = uint64_t{1} << 28u;
 /// Throws Error(InvalidArgument) for cycles, and when there are more than kMostOccurrences.
 void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,
-                         Below below = Below::Objects);
+                         OccurrenceUnit below = OccurrenceUnit::Objects);
 
 }  // namespace lodestone

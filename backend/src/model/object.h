@@ -12,7 +12,7 @@
 
 namespace lodestone {
 
-enum class Role : uint8_t {
+enum class ObjectRole : uint8_t {
     Automatic = 0,    // the ground of what is beside it is recognized as such
     Environment = 1,  // wall, ground or sky: simplified, never made a primitive
     Ordinary = 2,
@@ -21,15 +21,16 @@ enum class Role : uint8_t {
 struct Object {
     std::string uid;   // stable, unique in its model
     std::string name;  // the user's
-    Role role = Role::Automatic;
+    ObjectRole role = ObjectRole::Automatic;
     // Its shape is another one in every frame: its levels follow it from one collapse for all
     // frames, or there are none. Nothing stands in for a group that holds it, so that no picture
     // ever shows a level of another frame.
     bool deforms = false;
     // One mesh of the user's whose loose parts were put into clusters: a group that counts as one
     // object and as one occurrence, whatever of it is drawn how finely.
-    bool of_parts = false;
-    std::shared_ptr<const Pose> pose;  // of something that deforms: what levels follow; may be null
+    bool made_of_parts = false;
+    std::shared_ptr<const PosedSurface>
+        pose;  // of something that deforms: what levels follow; may be null
     /// Of all that is below it, how important what is most important there is beside the object
     /// itself; infinite where something must not be drawn coarser than some level. See
     /// set_demands.

@@ -43,7 +43,7 @@ struct Placement {
     std::shared_ptr<const Affine> closing{};
 
     /// Whether it is drawn otherwise than its object is elsewhere.
-    bool decided() const { return importance != 1 || coarsest != kAnyLevel || finest != 0; }
+    bool has_overrides() const { return importance != 1 || coarsest != kAnyLevel || finest != 0; }
 };
 
 }  // namespace lodestone

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pose: the surface of something that deforms, in one frame, as its source numbers it.
+// PosedSurface: the surface of something that deforms, in one frame, as its source numbers it.
 #pragma once
 
 #include "model/mesh.h"
@@ -8,7 +8,7 @@ namespace lodestone {
 
 /// A Mesh splits vertices where normals differ, which may be elsewhere in every frame; the source's
 /// vertices stay what they are for as long as `connectivity` does. Object's frame, metres.
-struct Pose {
+struct PosedSurface {
     /// Equal in all frames that differ in nothing but positions and normals (and, with a source of
     /// polygons, in how these are cut into triangles).
     Hash connectivity = 0;

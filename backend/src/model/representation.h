@@ -42,17 +42,17 @@ inline constexpr uint64_t kBytesPerPrimitive = 1500;
 inline constexpr uint64_t kBytesPerOccurrence = 1500;
 
 /// What drawing it once costs a consumer that shares it between occurrences.
-struct Cost {
+struct DrawCost {
     uint64_t triangles = 0;  // of the mesh; an assembly: of all it places; a primitive: 0
     uint64_t bytes = 0;      // in POV-Ray's memory, for one distinct representation
 };
 
-struct Summary {
+struct RepresentationSummary {
     Kind kind = Kind::Mesh;
     double error = 0;      // metres, object's frame; 0 for the finest (DESIGN: "error")
     double max_error = 0;  // the largest distance behind the error's quantile
     Bound bound;           // object's frame
-    Cost cost;
+    DrawCost cost;
     Hash hash = 0;  // of the payload and its materials: equal hashes draw the same
     /// Of a group's stand-in: its children do not look like the group together where this is used,
     /// so that it is not opened for them where they cost less.
@@ -61,7 +61,7 @@ struct Summary {
 
 /// Bytes of a representation for each of `uses` occurrences, besides those of the occurrence
 /// itself.
-inline double bytes_each(Kind kind, uint64_t bytes, uint64_t uses) {
+inline double bytes_per_occurrence(Kind kind, uint64_t bytes, uint64_t uses) {
     const double shares = kind == Kind::Composite || uses < 1 ? 1 : static_cast<double>(uses);
     return static_cast<double>(bytes) / shares;
 }
@@ -76,7 +76,7 @@ using Payload = std::variant<std::monostate, std::shared_ptr<const Mesh>, Primit
                              std::shared_ptr<const Assembly>, std::shared_ptr<const Composite>>;
 
 struct Representation {
-    Summary summary;
+    RepresentationSummary summary;
     std::vector<uint32_t> materials;  // by slot, into Model::materials; a primitive uses the first
     Payload payload;
 

@@ -12,26 +12,33 @@
 namespace lodestone {
 
 /// Which of a texel's numbers counts where one number is wanted.
-enum class Channel : uint8_t { Color = 0, Red = 1, Green = 2, Blue = 3, Alpha = 4, Luma = 5 };
+enum class TextureChannel : uint8_t {
+    Color = 0,
+    Red = 1,
+    Green = 2,
+    Blue = 3,
+    Alpha = 4,
+    Luma = 5
+};
 
 /// What lies outside 0...1.
-enum class Extension : uint8_t {
+enum class TextureExtension : uint8_t {
     Repeat = 0,
     Extend = 1,  // the border's texels
     Clip = 2,    // black, alpha 0
     Mirror = 3,
 };
 
-enum class Interpolation : uint8_t { Linear = 0, Closest = 1 };
+enum class TextureInterpolation : uint8_t { Linear = 0, Closest = 1 };
 
 /// The value at mesh coordinates (u, v) is offset + scale * texel(to_picture (u, v, 1)), by channel
 /// of color; a single number takes the x of offset and scale, and `channel` of the texel (Color:
 /// its luma). v = 0 is the picture's lowest row.
 struct Texture {
     PicturePtr picture;  // null: no texture
-    Channel channel = Channel::Color;
-    Extension extension = Extension::Repeat;
-    Interpolation interpolation = Interpolation::Linear;
+    TextureChannel channel = TextureChannel::Color;
+    TextureExtension extension = TextureExtension::Repeat;
+    TextureInterpolation interpolation = TextureInterpolation::Linear;
     std::array<double, 6> to_picture{1, 0, 0, 0, 1, 0};  // row-major 2x3
     glm::dvec3 scale{1.0};
     glm::dvec3 offset{0.0};

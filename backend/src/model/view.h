@@ -64,7 +64,7 @@ struct World {
 };
 
 /// A part of the picture, in its pixels.
-struct Border {
+struct RenderBorder {
     int left = 0;
     int top = 0;
     int width = 1;
@@ -79,8 +79,8 @@ enum class OffScreen : uint8_t {
 };
 
 /// What bends quality. Every factor counts by itself; all together stay within 1/64 ... 64.
-struct Modifiers {
-    Criterion criterion = Criterion::Resolution;
+struct QualityModifiers {
+    DetailCriterion criterion = DetailCriterion::Resolution;
     std::vector<DetailLens> lenses;
     std::vector<ScreenLens> screen_lenses;
     /// Depth exaggeration: coarser by (z / depth_focus)^(depth - 1); 1: none.
@@ -105,8 +105,8 @@ struct View {
     int height = 360;
     double pixel_error = 1;      // T; 0 = originals. Of other criteria: the threshold
     KindMask kinds = kAllKinds;  // what the consumer can draw
-    std::optional<Border> border;
-    Modifiers modifiers;
+    std::optional<RenderBorder> border;
+    QualityModifiers modifiers;
 };
 
 }  // namespace lodestone

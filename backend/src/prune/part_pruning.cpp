@@ -36,28 +36,28 @@ std::vector<uint32_t> connected(const Mesh& mesh) {
     const std::vector<uint32_t> welded = weld(mesh);
     std::vector<uint32_t> parents(mesh.triangles.size());
     std::iota(parents.begin(), parents.end(), 0u);
-    struct Edge {
+    struct PartEdge {
         uint32_t end;  // the higher one
         uint32_t triangle;
     };
     std::vector<size_t> first(mesh.positions.size() + 2, 0);  // by the lower end
-    std::vector<Edge> edges(3 * mesh.triangles.size());
+    std::vector<PartEdge> edges(3 * mesh.triangles.size());
     const auto each = [&](const auto& visit) {
         for (uint32_t i = 0; i < parents.size(); ++i) {
             for (int corner = 0; corner < 3; ++corner) {
                 const uint32_t a = welded[mesh.triangles[i][corner]];
                 const uint32_t b = welded[mesh.triangles[i][(corner + 1) % 3]];
-                visit(std::min(a, b), Edge{std::max(a, b), i});
+                visit(std::min(a, b), PartEdge{std::max(a, b), i});
             }
         }
     };
-    each([&](uint32_t low, const Edge&) { ++first[low + 2]; });
+    each([&](uint32_t low, const PartEdge&) { ++first[low + 2]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
-    each([&](uint32_t low, const Edge& edge) { edges[first[low + 1]++] = edge; });
+    each([&](uint32_t low, const PartEdge& edge) { edges[first[low + 1]++] = edge; });
     for (size_t low = 0; low < mesh.positions.size(); ++low) {
         const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(first[low]);
         const auto end = edges.begin() + static_cast<std::ptrdiff_t>(first[low + 1]);
-        std::sort(begin, end, [](const Edge& a, const Edge& b) { return a.end < b.end; });
+        std::sort(begin, end, [](const PartEdge& a, const PartEdge& b) { return a.end < b.end; });
         for (auto at = begin; at != end; ++at) {
             if (at != begin && at->end == std::prev(at)->end)
                 join(parents, at->triangle, std::prev(at)->triangle);
@@ -85,7 +85,7 @@ size_t renumber(std::vector<uint32_t>& numbers) {
 }
 
 /// What is known of a part while its triangles are gone through.
-struct Found {
+struct PartStatistics {
     double area = 0;
     glm::dvec3 first{0.0};  // about the origin: the middle of the mesh's bound
     glm::dmat3 second{0.0};
@@ -94,14 +94,14 @@ struct Found {
     Hasher hash;
 };
 
-Crowd::Part part_of(const Found& found, const glm::dvec3& origin) {
-    Crowd::Part part;
+Crowd::CrowdPart part_of(const PartStatistics& found, const glm::dvec3& origin) {
+    Crowd::CrowdPart part;
     part.area = found.area;
     const glm::dvec3 mean = found.area > 0 ? found.first / found.area : glm::dvec3(0.0);
     part.center = origin + mean;
     part.hash = found.hash.result();
     if (found.area > 0) {
-        const Eigen eigen =
+        const SymmetricEigen eigen =
             eigen_symmetric(found.second / found.area - glm::outerProduct(mean, mean));
         part.axes = eigen.axes;
         part.slender = eigen.values.x > kSlender * kSlender * std::max(0.0, eigen.values.y);
@@ -117,7 +117,7 @@ double median_of(std::vector<double> values) {
 
 /// Puts a list in an order of which every beginning is spread evenly: both halves of space take
 /// turns in proportion, and so do their halves.
-void spread(const std::vector<Crowd::Part>& parts, std::span<uint32_t> list, uint64_t seed) {
+void spread(const std::vector<Crowd::CrowdPart>& parts, std::span<uint32_t> list, uint64_t seed) {
     if (list.size() < 2)
         return;
     Box3 box;
@@ -164,7 +164,7 @@ void spread(const std::vector<Crowd::Part>& parts, std::span<uint32_t> list, uin
 }
 
 /// What puts a kept part's points where they are when it has grown.
-Affine enlargement(const Crowd::Part& part, double growth) {
+Affine enlargement(const Crowd::CrowdPart& part, double growth) {
     Affine out;
     const double even = std::sqrt(growth);
     const glm::dvec3 along =
@@ -180,7 +180,7 @@ Affine enlargement(const Crowd::Part& part, double growth) {
 bool Crowd::sizes_differ() const {
     double sum = 0;
     double squares = 0;
-    for (const Part& part : parts) {
+    for (const CrowdPart& part : parts) {
         sum += part.area;
         squares += part.area * part.area;
     }
@@ -188,18 +188,18 @@ bool Crowd::sizes_differ() const {
     return count > 0 && squares * count > (1 + kDifferentSizes) * sum * sum;
 }
 
-Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
+Crowd find_crowd(const Mesh& mesh, std::span<const uint32_t> given) {
     Crowd out;
     if (mesh.triangles.size() < kFewestParts)
         return out;
     std::vector<uint32_t> numbers =
         given.empty() ? connected(mesh) : std::vector<uint32_t>(given.begin(), given.end());
     const glm::dvec3 origin = bound_of(mesh.positions).center;
-    std::vector<Found> found(renumber(numbers));
+    std::vector<PartStatistics> found(renumber(numbers));
     double all = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
-        Found& part = found[numbers[i]];
+        PartStatistics& part = found[numbers[i]];
         if (!part.known)
             part.slot = mesh.slot(i);
         part.known = true;
@@ -219,21 +219,21 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
         part.area += area;
         all += area;
     }
-    struct Kind {
+    struct PartKind {
         std::vector<double> areas;
         double area = 0;
         double largest = 0;  // that still belongs to it
         size_t parts = 0;
     };
-    std::map<uint16_t, Kind> kinds;
-    for (const Found& part : found)
+    std::map<uint16_t, PartKind> kinds;
+    for (const PartStatistics& part : found)
         kinds[part.slot].areas.push_back(part.area);
     for (auto& [slot, kind] : kinds)
         kind.largest = kLargestPart * median_of(kind.areas);
-    const auto belongs = [&](const Found& part) {
+    const auto belongs = [&](const PartStatistics& part) {
         return part.area > 0 && part.area <= kinds.at(part.slot).largest;
     };
-    for (const Found& part : found) {
+    for (const PartStatistics& part : found) {
         if (!belongs(part))
             continue;
         kinds[part.slot].area += part.area;
@@ -249,7 +249,7 @@ Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given) {
     }
     std::vector<uint32_t> new_numbers(found.size(), kNoPart);
     for (size_t i = 0; i < found.size(); ++i) {
-        const Found& part = found[i];
+        const PartStatistics& part = found[i];
         const auto kind = kind_of_slot.find(part.slot);
         if (kind == kind_of_slot.end() || !belongs(part))
             continue;
@@ -297,9 +297,9 @@ glm::dvec3 with_contrast(const glm::dvec3& color, const glm::dvec3& mean, double
     return mean + share * (color - mean);
 }
 
-Pruned pruned(const Mesh& mesh, const Crowd& crowd, std::span<const uint32_t> order, size_t keep,
-              std::span<const double> growth) {
-    Pruned out;
+PrunedMesh prune_crowd(const Mesh& mesh, const Crowd& crowd, std::span<const uint32_t> order,
+                       size_t keep, std::span<const double> growth) {
+    PrunedMesh out;
     keep = std::min(order.size(), std::max(keep, crowd.slots.size()));
     std::vector<uint8_t> kept(crowd.parts.size(), 0);
     for (const uint32_t part : order.first(keep))
@@ -307,7 +307,7 @@ Pruned pruned(const Mesh& mesh, const Crowd& crowd, std::span<const uint32_t> or
     double before = 0;
     double after = 0;
     for (size_t i = 0; i < kept.size(); ++i) {
-        const Crowd::Part& part = crowd.parts[i];
+        const Crowd::CrowdPart& part = crowd.parts[i];
         before += part.area * part.area;
         const double now = kept[i] != 0 ? growth[part.kind] * part.area : 0;
         after += now * now;

@@ -24,7 +24,7 @@ enum class PruneOrder {
 /// the rest. Kept parts are nested: those at a smaller
 /// count are among those at any larger one.
 struct Crowd {
-    struct Part {
+    struct CrowdPart {
         uint32_t kind = 0;
         double area = 0;
         glm::dvec3 center{0.0};
@@ -33,7 +33,7 @@ struct Crowd {
         Hash hash = 0;         // of what it is and where
     };
     std::vector<uint32_t> part_of;  // a triangle; kNoPart: the rest
-    std::vector<Part> parts;
+    std::vector<CrowdPart> parts;
     std::vector<uint16_t> slots;  // of the kinds
     size_t triangles = 0;         // of all parts
 
@@ -44,13 +44,13 @@ struct Crowd {
 
 /// Connected parts (by edges; a welded corner connects nothing), or those `given`: one number a
 /// triangle. Empty when there are fewer than 32. Triangles that are not finite are rest.
-Crowd crowd_of(const Mesh& mesh, std::span<const uint32_t> given = {});
+Crowd find_crowd(const Mesh& mesh, std::span<const uint32_t> given = {});
 
 /// All parts in the order they are kept.
 std::vector<uint32_t> prune_order(const Crowd& crowd, PruneOrder order, uint64_t seed);
 
 /// A crowd with only some of its parts.
-struct Pruned {
+struct PrunedMesh {
     Mesh mesh;                      // without the rest
     std::vector<uint32_t> kind_of;  // a triangle
     double variance =
@@ -62,8 +62,8 @@ struct Pruned {
 /// a pixel that shows many parts: as fewer and larger ones vary more, theirs are drawn towards
 /// their mean. source: Cook, Halstead, Planck, Ryu 2007; differs: slender parts grow in width only,
 /// the order is stratified.
-Pruned pruned(const Mesh& mesh, const Crowd& crowd, std::span<const uint32_t> order, size_t keep,
-              std::span<const double> growth);
+PrunedMesh prune_crowd(const Mesh& mesh, const Crowd& crowd, std::span<const uint32_t> order,
+                       size_t keep, std::span<const double> growth);
 
 /// A color as parts of that variance show it beside their mean (linear light).
 glm::dvec3 with_contrast(const glm::dvec3& color, const glm::dvec3& mean, double variance);

@@ -36,7 +36,7 @@ Four higher(Four a, Four b) {
 
 /// A box around nothing yet.
 template <typename Four>
-struct Around {
+struct GrowingBox {
     Four low = Four{} + kInfinity;
     Four high = Four{} - kInfinity;
     size_t count = 0;
@@ -104,10 +104,10 @@ ClosestTree::ClosestTree(const std::vector<glm::vec3>& positions,
     make({positions, turned, triangles, unlike});
 }
 
-void ClosestTree::make(const Given& given) {
+void ClosestTree::make(const TreeGeometry& given) {
     const std::vector<glm::vec3>& positions = given.turned;
     const std::vector<Triangle>& triangles = given.triangles;
-    std::vector<Reference> references;
+    std::vector<TriangleReference> references;
     references.reserve(triangles.size());
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         const glm::vec3& a = positions[triangles[i].x];
@@ -127,15 +127,17 @@ void ClosestTree::make(const Given& given) {
     root_ = add(given, references, {0, references.size(), 0});
 }
 
-int32_t ClosestTree::add(const Given& given, std::vector<Reference>& references, Range range) {
+int32_t ClosestTree::add(const TreeGeometry& given, std::vector<TriangleReference>& references,
+                         ReferenceRange range) {
     if (range.end - range.begin <= kWidth)
         return add_leaf(given, references, range);
-    std::array<Range, kWidth> parts{range};
+    std::array<ReferenceRange, kWidth> parts{range};
     int count = 1;
     while (count < kWidth) {
-        const auto largest = std::max_element(
-            parts.begin(), parts.begin() + count,
-            [](const Range& a, const Range& b) { return a.end - a.begin < b.end - b.begin; });
+        const auto largest = std::max_element(parts.begin(), parts.begin() + count,
+                                              [](const ReferenceRange& a, const ReferenceRange& b) {
+                                                  return a.end - a.begin < b.end - b.begin;
+                                              });
         if (largest->end - largest->begin <= kWidth)
             break;
         const std::optional<size_t> found = split(references, *largest);
@@ -152,12 +154,12 @@ int32_t ClosestTree::add(const Given& given, std::vector<Reference>& references,
     }
     const auto index = static_cast<int32_t>(nodes_.size());
     nodes_.emplace_back();
-    Node node;
+    WideNode node;
     for (int i = 0; i < kWidth; ++i) {
-        Around<Four> box;
+        GrowingBox<Four> box;
         int32_t child = 0;
         if (i < count) {
-            const Range& part = parts[static_cast<size_t>(i)];
+            const ReferenceRange& part = parts[static_cast<size_t>(i)];
             for (size_t k = part.begin; k < part.end; ++k)
                 box.add(references[k].low, references[k].high, 1);
             child = add(given, references, part);
@@ -172,11 +174,12 @@ int32_t ClosestTree::add(const Given& given, std::vector<Reference>& references,
     return index;
 }
 
-int32_t ClosestTree::add_leaf(const Given& given, const std::vector<Reference>& references,
-                              Range range) {
+int32_t ClosestTree::add_leaf(const TreeGeometry& given,
+                              const std::vector<TriangleReference>& references,
+                              ReferenceRange range) {
     const std::vector<glm::vec3>& positions = given.turned;
     const std::vector<Triangle>& triangles = given.triangles;
-    Leaf leaf;
+    TriangleLeaf leaf;
     for (int i = 0; i < kWidth; ++i) {
         // A leaf with room shows its last triangle again.
         const size_t at = std::min(range.begin + static_cast<size_t>(i), range.end - 1);
@@ -203,9 +206,10 @@ int32_t ClosestTree::add_leaf(const Given& given, const std::vector<Reference>& 
 }
 
 /// Puts those whose corners no lower triangle has to the range's front, and returns their end.
-size_t ClosestTree::end_of_distinct(const Given& given, std::vector<Reference>& references,
-                                    Range range) {
-    const auto corners = [&](const Reference& reference) {
+size_t ClosestTree::end_of_distinct(const TreeGeometry& given,
+                                    std::vector<TriangleReference>& references,
+                                    ReferenceRange range) {
+    const auto corners = [&](const TriangleReference& reference) {
         const Triangle& t = given.triangles[reference.triangle];
         std::array<float, 9> out;
         for (int i = 0; i < 9; ++i)
@@ -214,23 +218,25 @@ size_t ClosestTree::end_of_distinct(const Given& given, std::vector<Reference>& 
     };
     const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
     const auto end = references.begin() + static_cast<ptrdiff_t>(range.end);
-    std::sort(begin, end, [&](const Reference& a, const Reference& b) {
+    std::sort(begin, end, [&](const TriangleReference& a, const TriangleReference& b) {
         const std::array<float, 9> of_a = corners(a);
         const std::array<float, 9> of_b = corners(b);
         return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
     });
-    const auto distinct = std::unique(begin, end, [&](const Reference& a, const Reference& b) {
-        return corners(a) == corners(b);
-    });
+    const auto distinct =
+        std::unique(begin, end, [&](const TriangleReference& a, const TriangleReference& b) {
+            return corners(a) == corners(b);
+        });
     return static_cast<size_t>(distinct - references.begin());
 }
 
 /// The first reference of the second half; none: all have one middle.
-std::optional<size_t> ClosestTree::split(std::vector<Reference>& references, Range range) {
+std::optional<size_t> ClosestTree::split(std::vector<TriangleReference>& references,
+                                         ReferenceRange range) {
     const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
     const auto end = references.begin() + static_cast<ptrdiff_t>(range.end);
     const size_t half = range.begin + (range.end - range.begin) / 2;
-    Around<Four> middles;  // twice as far out
+    GrowingBox<Four> middles;  // twice as far out
     for (auto at = begin; at != end; ++at)
         middles.add(at->low + at->high, at->low + at->high, 1);
     const Four size = middles.high - middles.low;
@@ -241,17 +247,17 @@ std::optional<size_t> ClosestTree::split(std::vector<Reference>& references, Ran
         return std::nullopt;
     if (range.depth >= kMostUneven) {
         std::nth_element(begin, references.begin() + static_cast<ptrdiff_t>(half), end,
-                         [axis](const Reference& a, const Reference& b) {
+                         [axis](const TriangleReference& a, const TriangleReference& b) {
                              const float x = a.low[axis] + a.high[axis];
                              const float y = b.low[axis] + b.high[axis];
                              return x != y ? x < y : a.triangle < b.triangle;
                          });
         return half;
     }
-    using Bin = Around<Four>;
+    using Bin = GrowingBox<Four>;
     std::array<Bin, kBins> bins;
     const float low = middles.low[axis];
-    const auto bin_of = [&](const Reference& reference) {
+    const auto bin_of = [&](const TriangleReference& reference) {
         const float along = (reference.low[axis] + reference.high[axis] - low) * scale;
         return std::min(static_cast<int>(along), kBins - 1);
     };
@@ -285,11 +291,11 @@ std::optional<size_t> ClosestTree::split(std::vector<Reference>& references, Ran
     if (border == 0)
         return half;
     const auto middle = std::partition(
-        begin, end, [&](const Reference& reference) { return bin_of(reference) < border; });
+        begin, end, [&](const TriangleReference& reference) { return bin_of(reference) < border; });
     return range.begin + static_cast<size_t>(middle - begin);
 }
 
-ClosestTree::Four ClosestTree::square_distances(const Leaf& leaf, const glm::vec3& point) {
+ClosestTree::Four ClosestTree::square_distances(const TriangleLeaf& leaf, const glm::vec3& point) {
     const Four zero{};
     const Four one = zero + 1.0f;
     const Four tiny = zero + 1e-37f;
@@ -337,11 +343,11 @@ ClosestTree::Four ClosestTree::square_distances(const Leaf& leaf, const glm::vec
 void ClosestTree::search(ClosestSearch& search, double radius, double enough) const {
     if (empty_)
         return;
-    struct Entry {
+    struct PendingNode {
         float square;
         int32_t node;
     };
-    std::array<Entry, kStack> stack;
+    std::array<PendingNode, kStack> stack;
     size_t size = 0;
     const glm::vec3 point(axes_ ? *axes_ * search.point : search.point);
     const float rounding = search.reach(0);
@@ -355,12 +361,12 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
     set_reach(search.reach(radius));
     const auto enough_here = static_cast<float>(enough);
     // What may be the nearest, to be decided when all is seen.
-    struct Candidate {
+    struct ClosestCandidate {
         float square;
         float slack;
         uint32_t triangle;
     };
-    std::array<Candidate, kCandidates> candidates;
+    std::array<ClosestCandidate, kCandidates> candidates;
     size_t waiting = 0;
     const auto may_be_near = [&](float off_square, float slack) {
         const float far = (reach + rounding + slack) * (1 + kOff);
@@ -373,7 +379,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
                 std::swap(candidates[0], candidates[i]);
         }
         for (size_t i = 0; i < waiting; ++i) {
-            const Candidate& next = candidates[i];
+            const ClosestCandidate& next = candidates[i];
             if (may_be_near(next.square, next.slack) && search.visit(next.triangle))
                 set_reach(std::min(reach, search.reach(std::sqrt(search.square))));
         }
@@ -381,14 +387,14 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
     };
     stack[size++] = {0, root_};
     while (size > 0) {
-        const Entry top = stack[--size];
+        const PendingNode top = stack[--size];
         if (top.square > square)
             continue;
         if (reach <= enough_here)
             break;
         if (top.node < 0) {
             const int32_t index = ~top.node;
-            const Leaf& leaf = leaves_[static_cast<size_t>(index)];
+            const TriangleLeaf& leaf = leaves_[static_cast<size_t>(index)];
             const Four distances = square_distances(leaf, point);
             for (int i = 0; i < kWidth; ++i) {
                 // The nearest so far, as the one that was tried first, is known exactly.
@@ -410,7 +416,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
             }
             continue;
         }
-        const Node& node = nodes_[static_cast<size_t>(top.node)];
+        const WideNode& node = nodes_[static_cast<size_t>(top.node)];
         Four squares{};
         for (size_t axis = 0; axis < 3; ++axis) {
             const float at = point[static_cast<int>(axis)];

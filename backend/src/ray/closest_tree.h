@@ -33,42 +33,45 @@ private:
     using Four = float __attribute__((vector_size(16)));
     static constexpr int kWidth = 4;
 
-    struct Node {
+    struct WideNode {
         std::array<Four, 3> low, high;         // of the children; nothing is in an empty box
         std::array<int32_t, kWidth> children;  // a node, or ~ a leaf
     };
-    struct Leaf {
+    struct TriangleLeaf {
         std::array<Four, 3> a, ab, ac;
         Four slack;  // how far its distance in single precision may be off
         std::array<uint32_t, kWidth> triangles;
     };
-    struct Reference {
+    struct TriangleReference {
         Four low, high;  // the fourth lane is not used
         uint32_t triangle;
     };
-    struct Range {
+    struct ReferenceRange {
         size_t begin, end;
         int depth;
     };
 
-    struct Given {
+    struct TreeGeometry {
         const std::vector<glm::vec3>& positions;
         const std::vector<glm::vec3>& turned;  // along the tree's axes
         const std::vector<Triangle>& triangles;
         bool unlike;
     };
 
-    void make(const Given& given);
-    int32_t add(const Given& given, std::vector<Reference>& references, Range range);
-    int32_t add_leaf(const Given& given, const std::vector<Reference>& references, Range range);
-    static std::optional<size_t> split(std::vector<Reference>& references, Range range);
-    static size_t end_of_distinct(const Given& given, std::vector<Reference>& references,
-                                  Range range);
-    static Four square_distances(const Leaf& leaf, const glm::vec3& point);
+    void make(const TreeGeometry& given);
+    int32_t add(const TreeGeometry& given, std::vector<TriangleReference>& references,
+                ReferenceRange range);
+    int32_t add_leaf(const TreeGeometry& given, const std::vector<TriangleReference>& references,
+                     ReferenceRange range);
+    static std::optional<size_t> split(std::vector<TriangleReference>& references,
+                                       ReferenceRange range);
+    static size_t end_of_distinct(const TreeGeometry& given,
+                                  std::vector<TriangleReference>& references, ReferenceRange range);
+    static Four square_distances(const TriangleLeaf& leaf, const glm::vec3& point);
 
     std::optional<glm::dmat3> axes_;  // rows: the tree's; none: x, y, z
-    std::vector<Node> nodes_;
-    std::vector<Leaf> leaves_;
+    std::vector<WideNode> nodes_;
+    std::vector<TriangleLeaf> leaves_;
     int32_t root_ = 0;
     bool empty_ = true;
 };

@@ -23,7 +23,7 @@ constexpr char kFileName[] = "libembree3.so.3";
 /// Embree's functions, looked up in the one library that was opened. Linking to Embree instead
 /// would bind to whichever version the host program has loaded, with other signatures: no crash,
 /// no hits.
-struct Embree {
+struct EmbreeFunctions {
     decltype(&rtcNewDevice) new_device = nullptr;
     decltype(&rtcReleaseDevice) release_device = nullptr;
     decltype(&rtcGetDeviceProperty) get_device_property = nullptr;
@@ -87,21 +87,21 @@ void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
     best->triangle = hit->primID;
 }
 
-bool stops(const RTCFilterFunctionNArguments* arguments) {
+bool ends_ray(const RTCFilterFunctionNArguments* arguments) {
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-    return static_cast<const Cover*>(arguments->geometryUserPtr)
-        ->stops(hit->primID, static_cast<double>(hit->u), static_cast<double>(hit->v));
+    return static_cast<const MeshCover*>(arguments->geometryUserPtr)
+        ->ends_ray(hit->primID, static_cast<double>(hit->u), static_cast<double>(hit->v));
 }
 
 void keep_lowest_that_stops(const RTCFilterFunctionNArguments* arguments) {
-    if (stops(arguments))
+    if (ends_ray(arguments))
         keep_lowest(arguments);
     else
         arguments->valid[0] = 0;
 }
 
 void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
-    if (!stops(arguments))
+    if (!ends_ray(arguments))
         arguments->valid[0] = 0;
 }
 
@@ -117,8 +117,8 @@ void tell_blocker(const RTCFilterFunctionNArguments* arguments) {
     context->triangle = reinterpret_cast<const RTCHit*>(arguments->hit)->primID;
 }
 
-RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
-                   const std::vector<Triangle>& triangles, const Cover* cover) {
+RTCScene new_scene(const EmbreeFunctions& embree, const std::vector<glm::vec3>& padded,
+                   const std::vector<Triangle>& triangles, const MeshCover* cover) {
     RTCScene scene = embree.new_scene(embree.device);
     RTCGeometry geometry = embree.new_geometry(embree.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (scene != nullptr && geometry != nullptr) {
@@ -131,7 +131,7 @@ RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
         embree.set_shared_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                  triangles.data(), 0, sizeof(Triangle), triangles.size());
         if (cover != nullptr) {
-            embree.set_user_data(geometry, const_cast<Cover*>(cover));
+            embree.set_user_data(geometry, const_cast<MeshCover*>(cover));
             embree.set_intersect_filter(geometry, keep_lowest_that_stops);
             embree.set_occluded_filter(geometry, keep_what_stops);
         } else {
@@ -154,7 +154,7 @@ RTCScene new_scene(const Embree& embree, const std::vector<glm::vec3>& padded,
          " triangles (error ", static_cast<int>(error), ")");
 }
 
-RTCRayHit trace(const Embree& embree, RTCScene scene, const glm::dvec3& origin,
+RTCRayHit trace(const EmbreeFunctions& embree, RTCScene scene, const glm::dvec3& origin,
                 const glm::dvec3& direction, double far, TieContext& context) {
     rtcInitIntersectContext(&context.embree);
     context.t = std::numeric_limits<float>::infinity();
@@ -176,10 +176,10 @@ RTCRayHit trace(const Embree& embree, RTCScene scene, const glm::dvec3& origin,
 }
 
 /// One hit and one miss with known answers. Empty when both are right.
-std::string test(const Embree& embree) {
+std::string test(const EmbreeFunctions& embree) {
     const std::vector<glm::vec3> padded{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
     const std::vector<Triangle> triangles{{0, 1, 2}};
-    const Burst flush;
+    const FlushDenormals flush;
     RTCScene scene = new_scene(embree, padded, triangles, nullptr);
     TieContext first{};
     const RTCRayHit hit = trace(embree, scene, {0.25, 0.5, 2}, {0, 0, -1}, 4, first);
@@ -196,8 +196,8 @@ std::string test(const Embree& embree) {
 
 /// Opens one candidate; the reason says why it cannot be used. A library once opened stays open:
 /// its worker threads may be running its code.
-Embree open(const std::string& path) {
-    Embree embree;
+EmbreeFunctions open(const std::string& path) {
+    EmbreeFunctions embree;
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
         const char* why = dlerror();
@@ -245,8 +245,8 @@ Embree open(const std::string& path) {
     return embree;
 }
 
-Embree find() noexcept {
-    Embree embree;
+EmbreeFunctions find() noexcept {
+    EmbreeFunctions embree;
     try {
         std::vector<std::string> paths;
         Dl_info us{};
@@ -270,11 +270,11 @@ Embree find() noexcept {
     return embree;
 }
 
-const Embree& found() {
+const EmbreeFunctions& found() {
     // On a thread of its own: Embree waits by working on whatever tasks its thread may take, and a
     // task of the caller's loop could come back here before this is done.
-    static const Embree* const kFoundOnce = [] {
-        auto* const embree = new Embree;
+    static const EmbreeFunctions* const kFoundOnce = [] {
+        auto* const embree = new EmbreeFunctions;
         try {
             std::thread([embree] { *embree = find(); }).join();
         } catch (const std::exception& error) {
@@ -285,8 +285,8 @@ const Embree& found() {
     return *kFoundOnce;
 }
 
-const Embree& embree_or_throw() {
-    const Embree& embree = found();
+const EmbreeFunctions& embree_or_throw() {
+    const EmbreeFunctions& embree = found();
     if (!embree.usable())
         fail(Status::RaysUnavailable,
              "rays cannot be cast because Embree cannot be used: ", embree.reason);
@@ -301,17 +301,17 @@ constexpr unsigned kFlushDenormals = 0x8040;  // flush to zero, denormals are ze
 }  // namespace
 
 // Blender and Python want their own setting back.
-Burst::Burst() : saved_(_mm_getcsr()) {
+FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
     if ((saved_ & kFlushDenormals) != kFlushDenormals)
         _mm_setcsr(saved_ | kFlushDenormals);
 }
-Burst::~Burst() {
+FlushDenormals::~FlushDenormals() {
     if ((saved_ & kFlushDenormals) != kFlushDenormals)
         _mm_setcsr(saved_);
 }
 #else
-Burst::Burst() : saved_(0) {}
-Burst::~Burst() = default;
+FlushDenormals::FlushDenormals() : saved_(0) {}
+FlushDenormals::~FlushDenormals() = default;
 #endif
 
 const std::string& why_no_embree() {
@@ -323,20 +323,20 @@ void require_embree() {
 }
 
 EmbreeTree::EmbreeTree(const std::vector<glm::vec3>& positions,
-                       const std::vector<Triangle>& triangles, const Cover* cover)
+                       const std::vector<Triangle>& triangles, const MeshCover* cover)
     : scene_(new_scene(embree_or_throw(), positions, triangles, cover)) {}
 
 EmbreeTree::~EmbreeTree() {
     found().release_scene(static_cast<RTCScene>(scene_));
 }
 
-EmbreeTree::Found EmbreeTree::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                                        double far) const {
-    const Burst flush;
+EmbreeTree::EmbreeHit EmbreeTree::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                                            double far) const {
+    const FlushDenormals flush;
     TieContext context{};
     const RTCRayHit ray =
         trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
-    Found out;
+    EmbreeHit out;
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return out;
     out.triangle = ray.hit.primID;
@@ -346,9 +346,9 @@ EmbreeTree::Found EmbreeTree::first_hit(const glm::dvec3& origin, const glm::dve
     return out;
 }
 
-size_t EmbreeTree::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                           std::span<uint32_t> list) const {
-    const Burst flush;
+size_t EmbreeTree::list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                                std::span<uint32_t> list) const {
+    const FlushDenormals flush;
     TieContext context{};
     context.list = list;
     trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
@@ -360,7 +360,7 @@ namespace {
 /// Whether anything blocks a ray.
 bool blocks(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction, double far,
             RTCIntersectContext& context) {
-    const Burst flush;
+    const FlushDenormals flush;
     RTCRay ray{};
     ray.org_x = static_cast<float>(origin.x);
     ray.org_y = static_cast<float>(origin.y);

@@ -21,25 +21,25 @@ public:
     /// are: Embree loads 16 bytes at a time. With a cover, hits where nothing is do not count. All
     /// must outlive the tree. Throws Error(RaysUnavailable) or std::bad_alloc.
     EmbreeTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
-               const Cover* cover);
+               const MeshCover* cover);
     ~EmbreeTree();
     EmbreeTree(const EmbreeTree&) = delete;
     EmbreeTree& operator=(const EmbreeTree&) = delete;
 
-    struct Found {
+    struct EmbreeHit {
         uint32_t triangle = kNoTriangle;  // among equally near ones the lowest
         double u = 0;
         double v = 0;
         double t = 0;
     };
     /// Directions have unit length.
-    Found first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
+    EmbreeHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     /// Some triangle that blocks a ray without end.
     uint32_t blocker(const glm::dvec3& origin, const glm::dvec3& direction) const;
-    /// As Scene::crossed.
-    size_t crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                   std::span<uint32_t> list) const;
+    /// As MeshScene::list_crossed.
+    size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                        std::span<uint32_t> list) const;
 
 private:
     void* scene_;

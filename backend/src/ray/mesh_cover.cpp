@@ -24,25 +24,25 @@ double chance(uint32_t triangle, double u, double v) {
 
 }  // namespace
 
-Cover::Cover(const Mesh& mesh, SkinPtr skin) : skin_(std::move(skin)) {
+MeshCover::MeshCover(const Mesh& mesh, SkinPtr skin) : skin_(std::move(skin)) {
     mesh_.uvs = mesh.uvs;
     mesh_.colors = mesh.colors;
     mesh_.triangles = mesh.triangles;
     mesh_.slots = mesh.slots;
 }
 
-bool Cover::stops(uint32_t triangle, double u, double v) const {
+bool MeshCover::ends_ray(uint32_t triangle, double u, double v) const {
     const double alpha = skin_->alpha(mesh_, triangle, u, v);
     return alpha >= 1 || (alpha > 0 && alpha > chance(triangle, u, v));
 }
 
-bool Cover::shows(uint32_t triangle, double u, double v) const {
+bool MeshCover::shows(uint32_t triangle, double u, double v) const {
     return skin_->alpha(mesh_, triangle, u + kInside * (1.0 / 3 - u),
                         v + kInside * (1.0 / 3 - v)) >= kLeastShown;
 }
 
-std::optional<double> Cover::even_alpha(uint32_t triangle) const {
-    return skin_->even_alpha(mesh_, mesh_.slot(triangle));
+std::optional<double> MeshCover::uniform_alpha(uint32_t triangle) const {
+    return skin_->uniform_alpha(mesh_, mesh_.slot(triangle));
 }
 
 }  // namespace lodestone::ray

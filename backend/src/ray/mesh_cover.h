@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cover: where a see-through mesh is there, and where rays pass.
+// MeshCover: where a see-through mesh is there, and where rays pass.
 #pragma once
 
 #include "ray/mesh_skin.h"
@@ -9,14 +9,14 @@
 namespace lodestone::ray {
 
 /// Keeps of the mesh what it needs. Any thread.
-class Cover {
+class MeshCover {
 public:
-    Cover(const Mesh& mesh, SkinPtr skin);
+    MeshCover(const Mesh& mesh, SkinPtr skin);
 
-    /// As the Scene's.
-    bool stops(uint32_t triangle, double u, double v) const;
+    /// As the MeshScene's.
+    bool ends_ray(uint32_t triangle, double u, double v) const;
     bool shows(uint32_t triangle, double u, double v) const;
-    std::optional<double> even_alpha(uint32_t triangle) const;
+    std::optional<double> uniform_alpha(uint32_t triangle) const;
 
 private:
     Mesh mesh_;  // without positions

@@ -26,13 +26,13 @@ bool available(std::string* reason) {
     return why_no_embree().empty();
 }
 
-struct Scene::Data {
+struct MeshScene::Data {
     glm::dvec3 center{0.0};  // local = (point - center) * scale
     double scale = 1;
     std::vector<glm::vec3> positions;  // local, and one more for Embree's wide loads
     std::vector<Triangle> triangles;
-    std::unique_ptr<Cover> cover;  // null: opaque
-    Uses uses = Uses::Everything;
+    std::unique_ptr<MeshCover> cover;  // null: opaque
+    SceneUse uses = SceneUse::Everything;
     std::optional<EmbreeTree> tree;  // none: nothing can be hit
     std::once_flag once;
     std::optional<ClosestTree> boxes;  // made when the first closest point is asked for
@@ -42,7 +42,7 @@ struct Scene::Data {
     }
 
     /// The part of a ray that can hit, in the local frame.
-    struct Part {
+    struct RaySegment {
         glm::dvec3 origin;
         glm::dvec3 direction;  // unit
         double skipped = 0;    // local length from the ray's origin to this one
@@ -51,8 +51,9 @@ struct Scene::Data {
     };
 
     /// False when the ray cannot hit. Far origins are brought to the rim in double precision.
-    bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far, Part& part) const {
-        if (uses == Uses::ClosestPoints)
+    bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+              RaySegment& part) const {
+        if (uses == SceneUse::ClosestPoints)
             fail(Status::Internal, "a scene for closest points was asked for a hit");
         part.direction = direction;
         part.unit = scale;
@@ -86,7 +87,8 @@ struct Scene::Data {
     }
 };
 
-Scene::Scene(const Mesh& mesh, SkinPtr skin, Uses uses) : data_(std::make_unique<Data>()) {
+MeshScene::MeshScene(const Mesh& mesh, SkinPtr skin, SceneUse uses)
+    : data_(std::make_unique<Data>()) {
     require_embree();
     check(mesh);
     Data& data = *data_;
@@ -120,42 +122,43 @@ Scene::Scene(const Mesh& mesh, SkinPtr skin, Uses uses) : data_(std::make_unique
     }
     data.positions.emplace_back(0.0f);
     if (skin && skin->see_through(mesh))
-        data.cover = std::make_unique<Cover>(mesh, std::move(skin));
-    if (uses == Uses::Everything)
+        data.cover = std::make_unique<MeshCover>(mesh, std::move(skin));
+    if (uses == SceneUse::Everything)
         data.tree.emplace(data.positions, data.triangles, data.cover.get());
 }
 
-Scene::~Scene() = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
+MeshScene::~MeshScene() = default;
+MeshScene::MeshScene(MeshScene&&) noexcept = default;
+MeshScene& MeshScene::operator=(MeshScene&&) noexcept = default;
 
-size_t Scene::triangles() const {
+size_t MeshScene::triangles() const {
     return data_->triangles.size();
 }
 
-bool Scene::see_through() const {
+bool MeshScene::see_through() const {
     return data_->cover != nullptr;
 }
 
-bool Scene::stops(uint32_t triangle, double u, double v) const {
-    return !data_->cover || data_->cover->stops(triangle, u, v);
+bool MeshScene::ends_ray(uint32_t triangle, double u, double v) const {
+    return !data_->cover || data_->cover->ends_ray(triangle, u, v);
 }
 
-bool Scene::shows(uint32_t triangle, double u, double v) const {
+bool MeshScene::shows(uint32_t triangle, double u, double v) const {
     return !data_->cover || data_->cover->shows(triangle, u, v);
 }
 
-std::optional<double> Scene::even_alpha(uint32_t triangle) const {
-    return data_->cover ? data_->cover->even_alpha(triangle) : 1;
+std::optional<double> MeshScene::uniform_alpha(uint32_t triangle) const {
+    return data_->cover ? data_->cover->uniform_alpha(triangle) : 1;
 }
 
-Hit Scene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+RayHit MeshScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                            double far) const {
     const Data& data = *data_;
-    Hit out;
-    Data::Part part;
+    RayHit out;
+    Data::RaySegment part;
     if (!data.clip(origin, direction, far, part))
         return out;
-    const EmbreeTree::Found found = data.tree->first_hit(part.origin, part.direction, part.far);
+    const EmbreeTree::EmbreeHit found = data.tree->first_hit(part.origin, part.direction, part.far);
     if (found.triangle == kNoTriangle)
         return out;
     out.hit = true;
@@ -170,17 +173,17 @@ Hit Scene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, doub
     return out;
 }
 
-bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
+bool MeshScene::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const {
     const Data& data = *data_;
-    Data::Part part;
+    Data::RaySegment part;
     return data.clip(origin, direction, far, part) &&
            data.tree->occluded(part.origin, part.direction, part.far);
 }
 
-bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
-                     Blockers& blockers) const {
+bool MeshScene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
+                         RecentBlockers& blockers) const {
     const Data& data = *data_;
-    Data::Part part;
+    Data::RaySegment part;
     if (!data.clip(origin, direction, std::numeric_limits<double>::infinity(), part))
         return false;
     if (data.cover)
@@ -195,19 +198,19 @@ bool Scene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
     return true;
 }
 
-size_t Scene::crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                      std::span<uint32_t> list) const {
+size_t MeshScene::list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                               std::span<uint32_t> list) const {
     const Data& data = *data_;
-    Data::Part part;
+    Data::RaySegment part;
     if (list.empty() || !data.clip(origin, direction, far, part))
         return 0;
-    return data.tree->crossed(part.origin, part.direction, part.far, list);
+    return data.tree->list_crossed(part.origin, part.direction, part.far, list);
 }
 
-Closest Scene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
-                             double enough) const {
+ClosestPoint MeshScene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
+                                      double enough) const {
     Data& data = *data_;
-    Closest out;
+    ClosestPoint out;
     if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
         return out;
     std::function<bool(uint32_t, double, double)> shown;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene: rays and closest points against one mesh.
+// MeshScene: rays and closest points against one mesh.
 #pragma once
 
 #include "model/mesh.h"
@@ -22,19 +22,19 @@ bool available(std::string* reason = nullptr);
 
 /// While one of these lives, many rays of its thread cost less: the thread flushes denormal numbers
 /// to zero, as Embree wants it, and does so until then instead of ray by ray.
-class Burst {
+class FlushDenormals {
 public:
-    Burst();
-    ~Burst();
-    Burst(const Burst&) = delete;
-    Burst& operator=(const Burst&) = delete;
+    FlushDenormals();
+    ~FlushDenormals();
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
 
 private:
     unsigned saved_;
 };
 
 /// Where a ray meets the mesh first. The point is (1-u-v) a + u b + v c of the triangle's corners.
-struct Hit {
+struct RayHit {
     bool hit = false;
     uint32_t triangle = kNoTriangle;  // among equally near ones the lowest
     double u = 0;
@@ -44,7 +44,7 @@ struct Hit {
 };
 
 /// The point of the mesh nearest to another one; with no point in reach the distance is infinite.
-struct Closest {
+struct ClosestPoint {
     double distance = std::numeric_limits<double>::infinity();  // metres
     uint32_t triangle = kNoTriangle;                            // the lowest of equally near ones
     glm::dvec3 point{0.0};
@@ -53,25 +53,26 @@ struct Closest {
 };
 
 /// What a scene is asked for.
-enum class Uses : uint8_t { Everything, ClosestPoints };
+enum class SceneUse : uint8_t { Everything, ClosestPoints };
 
 /// A mesh made ready for rays. It keeps its own copy, moved to its bound's center and scaled by a
 /// power of two, so that Embree's single precision is spent on the mesh and not on where it is.
 /// Const methods may be called from any thread. Every method throws Error(RaysUnavailable) where
 /// available() is false. Answers do not depend on the number of threads that built the scene.
-class Scene {
+class MeshScene {
 public:
     /// Triangles with a non-finite vertex are never hit. An empty mesh is never hit either. Throws
     /// Error(InvalidArgument) when an index is out of range. With a skin rays pass through what it
     /// shows as transparent, as often as that covers nothing, and the nearest point is one where
     /// there is something; a mesh that is opaque costs nothing more for it.
     /// One for closest points alone takes less time and memory; it may not be asked for hits.
-    explicit Scene(const Mesh& mesh, SkinPtr skin = nullptr, Uses uses = Uses::Everything);
-    ~Scene();
-    Scene(Scene&&) noexcept;
-    Scene& operator=(Scene&&) noexcept;
-    Scene(const Scene&) = delete;
-    Scene& operator=(const Scene&) = delete;
+    explicit MeshScene(const Mesh& mesh, SkinPtr skin = nullptr,
+                       SceneUse uses = SceneUse::Everything);
+    ~MeshScene();
+    MeshScene(MeshScene&&) noexcept;
+    MeshScene& operator=(MeshScene&&) noexcept;
+    MeshScene(const MeshScene&) = delete;
+    MeshScene& operator=(const MeshScene&) = delete;
 
     /// How many triangles the mesh had.
     size_t triangles() const;
@@ -81,37 +82,38 @@ public:
     bool see_through() const;
     /// Whether a ray that meets a point of a triangle ends there: the same answer at every time,
     /// and over many points as often as their alpha says.
-    bool stops(uint32_t triangle, double u, double v) const;
+    bool ends_ray(uint32_t triangle, double u, double v) const;
     /// Whether there is anything to see at all.
     bool shows(uint32_t triangle, double u, double v) const;
-    /// How often stops() is true, where that is as often at all points of the triangle.
-    std::optional<double> even_alpha(uint32_t triangle) const;
+    /// How often ends_ray() is true, where that is as often at all points of the triangle.
+    std::optional<double> uniform_alpha(uint32_t triangle) const;
 
     /// The nearest hit with 0 <= t <= far, from either side. Direction need not have unit length;
     /// a zero or non-finite one hits nothing. An origin may be arbitrarily far away.
-    Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                  double far = std::numeric_limits<double>::infinity()) const;
+    RayHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                     double far = std::numeric_limits<double>::infinity()) const;
 
     /// Whether first_hit would hit; faster.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
 
-    /// The same without an end, sooner among rays that the same triangles block (see Blockers).
-    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, Blockers& blockers) const;
+    /// The same without an end, sooner among rays that the same triangles block (see RecentBlockers).
+    bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
+                  RecentBlockers& blockers) const;
 
     /// Lists the triangles that end rays where this one crosses them with 0 <= t <= far, in no
     /// order, as many as there is room for. How many were listed.
-    size_t crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                   std::span<uint32_t> list) const;
+    size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                        std::span<uint32_t> list) const;
 
     /// The nearest point of any triangle within `radius`. A small radius is faster; so is a
     /// triangle that may be near, which changes nothing else. With `enough`, some point within that
     /// distance will do where there is one.
     /// Where something transparent is nearest, the edge of what is not is found to an eighth of its
     /// triangle's size.
-    Closest closest_point(const glm::dvec3& point,
-                          double radius = std::numeric_limits<double>::infinity(),
-                          uint32_t perhaps = kNoTriangle, double enough = 0) const;
+    ClosestPoint closest_point(const glm::dvec3& point,
+                               double radius = std::numeric_limits<double>::infinity(),
+                               uint32_t perhaps = kNoTriangle, double enough = 0) const;
 
 private:
     struct Data;

@@ -28,22 +28,23 @@ double share(double value) {
 
 /// An alpha that comes from the picture's own channel and is 1 in all of it.
 bool covers_all(const Texture& texture, const image::TexelsPtr& texels) {
-    return texels && texture.channel == Channel::Alpha && texture.extension != Extension::Clip &&
-           texture.scale.x == 1 && texture.offset.x == 0 && texels->least.w >= kOpaque;
+    return texels && texture.channel == TextureChannel::Alpha &&
+           texture.extension != TextureExtension::Clip && texture.scale.x == 1 &&
+           texture.offset.x == 0 && texels->least.w >= kOpaque;
 }
 
 }  // namespace
 
-struct Skin::Slot {
-    using Sampler = image::Sampler;
+struct MeshSkin::Slot {
+    using TextureSampler = image::TextureSampler;
 
     Material material;
-    Sampler color;
-    Sampler roughness;
-    Sampler metallic;
-    Sampler emission;
-    Sampler alpha;
-    Sampler mix;
+    TextureSampler color;
+    TextureSampler roughness;
+    TextureSampler metallic;
+    TextureSampler emission;
+    TextureSampler alpha;
+    TextureSampler mix;
     bool cut_by_texel = false;  // the alpha sampler gives the share that is there, not the alpha
     bool opaque = true;         // but for vertex colors
     std::unique_ptr<Slot> other;
@@ -67,22 +68,22 @@ struct Skin::Slot {
     void prepare_alpha(image::TexelCache& texels) {
         const Texture& texture = material.alpha_texture;
         const image::TexelsPtr plain = texels.of(texture);
-        alpha = Sampler(texture, glm::dvec3(material.alpha), plain);
+        alpha = TextureSampler(texture, glm::dvec3(material.alpha), plain);
         const bool clip = material.alpha_mode == AlphaMode::Clip;
         opaque = plain ? covers_all(texture, plain) && !(clip && material.alpha_cutoff > kOpaque)
                        : (clip ? material.alpha >= material.alpha_cutoff : material.alpha >= 1);
         // Where texels stand for blocks, they must be cut before they are averaged. (Vertex colors
         // come after the texture; outside a clipped picture there is no texel to cut.)
-        const bool there_outside =
-            texture.extension == Extension::Clip && texture.offset.x >= material.alpha_cutoff;
+        const bool there_outside = texture.extension == TextureExtension::Clip &&
+                                   texture.offset.x >= material.alpha_cutoff;
         if (clip && plain && plain->reduced && !opaque && !material.vertex_colors &&
             !there_outside) {
             Texture shares = texture;
-            shares.channel = Channel::Red;
+            shares.channel = TextureChannel::Red;
             shares.scale = glm::dvec3(1);
             shares.offset = glm::dvec3(0);
-            alpha = Sampler(shares, glm::dvec3(material.alpha),
-                            texels.at_least(texture, material.alpha_cutoff));
+            alpha = TextureSampler(shares, glm::dvec3(material.alpha),
+                                   texels.at_least(texture, material.alpha_cutoff));
             cut_by_texel = true;
         }
     }
@@ -108,9 +109,9 @@ struct Skin::Slot {
         return share(uv && mix ? mix.number(*uv) : material.mix);
     }
 
-    Shown at(const std::optional<glm::dvec2>& uv, const glm::dvec4& tint) const {
-        Shown out{material.base_color, material.emission, material.roughness, material.metallic,
-                  material.specular};
+    SurfaceAppearance at(const std::optional<glm::dvec2>& uv, const glm::dvec4& tint) const {
+        SurfaceAppearance out{material.base_color, material.emission, material.roughness,
+                              material.metallic, material.specular};
         if (uv) {
             out.color = color.color(*uv);
             out.emission = emission.color(*uv);
@@ -121,7 +122,7 @@ struct Skin::Slot {
             out.color *= glm::dvec3(tint);
         if (!other)
             return out;
-        const Shown second = other->at(uv, tint);
+        const SurfaceAppearance second = other->at(uv, tint);
         const double t = mixed(uv);
         out.color = glm::mix(out.color, second.color, t);
         out.emission = glm::mix(out.emission, second.emission, t);
@@ -155,33 +156,33 @@ struct Skin::Slot {
     }
 };
 
-Skin::Skin(std::span<const Material> materials, image::TexelCache& texels)
+MeshSkin::MeshSkin(std::span<const Material> materials, image::TexelCache& texels)
     : otherwise_(std::make_unique<Slot>(Material{}, texels)) {
     slots_.reserve(materials.size());
     for (const Material& material : materials)
         slots_.emplace_back(material, texels);
 }
 
-Skin::~Skin() = default;
+MeshSkin::~MeshSkin() = default;
 
-const Skin::Slot& Skin::slot(uint16_t index) const {
+const MeshSkin::Slot& MeshSkin::slot(uint16_t index) const {
     return index < slots_.size() ? slots_[index] : *otherwise_;
 }
 
-const Material& Skin::material(uint16_t index) const {
+const Material& MeshSkin::material(uint16_t index) const {
     return slot(index).material;
 }
 
-bool Skin::varies(const Mesh& mesh, uint16_t index) const {
+bool MeshSkin::varies(const Mesh& mesh, uint16_t index) const {
     const Slot& own = slot(index);
     return (!mesh.uvs.empty() && own.textured()) || (!mesh.colors.empty() && own.colored());
 }
 
-bool Skin::textured(const Mesh& mesh, uint16_t index) const {
+bool MeshSkin::textured(const Mesh& mesh, uint16_t index) const {
     return !mesh.uvs.empty() && lodestone::textured(slot(index).material);
 }
 
-bool Skin::see_through(const Mesh& mesh) const {
+bool MeshSkin::see_through(const Mesh& mesh) const {
     const bool colors =
         std::any_of(mesh.colors.begin(), mesh.colors.end(),
                     [](const glm::vec4& color) { return static_cast<double>(color.w) < kOpaque; });
@@ -197,7 +198,7 @@ bool Skin::see_through(const Mesh& mesh) const {
     });
 }
 
-bool Skin::transmits() const {
+bool MeshSkin::transmits() const {
     return std::any_of(slots_.begin(), slots_.end(),
                        [](const Slot& own) { return own.transmission() > 0; });
 }
@@ -205,11 +206,11 @@ bool Skin::transmits() const {
 namespace {
 
 /// What a point's look-ups need of the mesh.
-struct Place {
+struct SkinLookup {
     std::optional<glm::dvec2> uv;
     glm::dvec4 tint{1.0};
 
-    Place(const Mesh& mesh, uint32_t triangle, double u, double v) {
+    SkinLookup(const Mesh& mesh, uint32_t triangle, double u, double v) {
         const Triangle& t = mesh.triangles[triangle];
         if (!mesh.uvs.empty())
             uv = glm::dvec2(interpolated(mesh.uvs, t, u, v));
@@ -220,24 +221,24 @@ struct Place {
 
 }  // namespace
 
-Shown Skin::mean(uint16_t index) const {
+SurfaceAppearance MeshSkin::mean(uint16_t index) const {
     return slot(index).at(std::nullopt, glm::dvec4(1.0));
 }
 
-Shown Skin::at(const Mesh& mesh, uint32_t triangle, double u, double v) const {
-    const Place place(mesh, triangle, u, v);
+SurfaceAppearance MeshSkin::at(const Mesh& mesh, uint32_t triangle, double u, double v) const {
+    const SkinLookup place(mesh, triangle, u, v);
     return slot(mesh.slot(triangle)).at(place.uv, place.tint);
 }
 
-double Skin::alpha(const Mesh& mesh, uint32_t triangle, double u, double v) const {
+double MeshSkin::alpha(const Mesh& mesh, uint32_t triangle, double u, double v) const {
     const Slot& own = slot(mesh.slot(triangle));
     if (!own.sees_through(!mesh.colors.empty()))
         return 1;
-    const Place place(mesh, triangle, u, v);
+    const SkinLookup place(mesh, triangle, u, v);
     return own.alpha_at(place.uv, place.tint);
 }
 
-std::optional<double> Skin::even_alpha(const Mesh& mesh, uint16_t index) const {
+std::optional<double> MeshSkin::uniform_alpha(const Mesh& mesh, uint16_t index) const {
     const Slot& own = slot(index);
     const bool colors = !mesh.colors.empty();
     if (!own.sees_through(colors))
@@ -247,7 +248,7 @@ std::optional<double> Skin::even_alpha(const Mesh& mesh, uint16_t index) const {
     return own.alpha_at(std::nullopt, glm::dvec4(1));
 }
 
-double Skin::opacity(const Mesh& mesh, uint32_t triangle, double u, double v) const {
+double MeshSkin::opacity(const Mesh& mesh, uint32_t triangle, double u, double v) const {
     return alpha(mesh, triangle, u, v) * (1 - slot(mesh.slot(triangle)).transmission());
 }
 

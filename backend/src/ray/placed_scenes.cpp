@@ -33,12 +33,12 @@ double entry(const Box3& box, const glm::dvec3& origin, const glm::dvec3& invers
 
 }  // namespace
 
-void PlacedScenes::add(std::shared_ptr<const Scene> scene, const Bound& bound, const Affine& world,
-                       uint32_t name) {
+void PlacedScenes::add(std::shared_ptr<const MeshScene> scene, const Bound& bound,
+                       const Affine& world, uint32_t name) {
     const double volume = glm::determinant(world.linear);
     if (!scene || bound.empty() || !world.finite() || !(std::abs(volume) > 0))
         return;
-    Placed placed;
+    PlacedScene placed;
     placed.inverse.linear = glm::inverse(world.linear);
     placed.inverse.offset = -(placed.inverse.linear * world.offset);
     if (!placed.inverse.finite())
@@ -64,7 +64,7 @@ void PlacedScenes::finish() {
 /// Where both sides together are hit least: by the surface area heuristic over kSplits slices of
 /// each axis. source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
 uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles) {
-    const auto bin_of = [&](const Placed& placed, int axis) {
+    const auto bin_of = [&](const PlacedScene& placed, int axis) {
         const double size = middles.high[axis] - middles.low[axis];
         const double share = (placed.box.center()[axis] - middles.low[axis]) / size;
         const double at = share * kSplits;
@@ -112,7 +112,7 @@ uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles
         return first;
     const auto middle = std::stable_partition(
         placed_.begin() + first, placed_.begin() + last,
-        [&](const Placed& placed) { return bin_of(placed, axis_of_least) <= bin_of_least; });
+        [&](const PlacedScene& placed) { return bin_of(placed, axis_of_least) <= bin_of_least; });
     return static_cast<uint32_t>(middle - placed_.begin());
 }
 
@@ -145,11 +145,11 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
     if (cells_.empty() || !(glm::dot(direction, direction) > 0))
         return;
     const glm::dvec3 inverse = 1.0 / direction;
-    struct Open {
+    struct PendingCell {
         uint32_t cell;
         double near;
     };
-    std::array<Open, 64> stack;  // a tree is no deeper than that
+    std::array<PendingCell, 64> stack;  // a tree is no deeper than that
     size_t depth = 0;
     const auto open = [&](uint32_t index, double near) {
         if (near <= far)
@@ -160,7 +160,7 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
         const auto [index, near] = stack[--depth];
         if (!(near <= far))  // something nearer was found since
             continue;
-        const Cell& cell = cells_[index];
+        const SceneCell& cell = cells_[index];
         if (cell.count == 0) {
             // The nearer one first: what it hides is not looked at.
             const double left = entry(cells_[index + 1].box, origin, inverse, far);
@@ -175,18 +175,18 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
             continue;
         }
         for (uint32_t i = cell.first; i < cell.first + cell.count; ++i) {
-            const Placed& placed = placed_[i];
+            const PlacedScene& placed = placed_[i];
             if (entry(placed.box, origin, inverse, far) <= far && visit(placed))
                 return;
         }
     }
 }
 
-PlacedScenes::Hit PlacedScenes::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                                          double far) const {
-    Hit best;
-    walk(origin, direction, far, [&](const Placed& placed) {
-        const ray::Hit hit =
+PlacedScenes::PlacedHit PlacedScenes::first_hit(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double far) const {
+    PlacedHit best;
+    walk(origin, direction, far, [&](const PlacedScene& placed) {
+        const ray::RayHit hit =
             placed.scene->first_hit(placed.inverse(origin), placed.inverse.linear * direction, far);
         if (hit.hit && (hit.t < best.t || (hit.t == best.t && placed.name < best.name))) {
             best = {true, placed.name, hit.triangle, hit.u, hit.v, hit.t};
@@ -205,17 +205,17 @@ bool PlacedScenes::occluded(const glm::dvec3& origin, const glm::dvec3& directio
 
 bool PlacedScenes::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                             uint32_t& blocker) const {
-    const auto blocks = [&](const Placed& placed) {
+    const auto blocks = [&](const PlacedScene& placed) {
         return placed.scene->occluded(placed.inverse(origin), placed.inverse.linear * direction,
                                       far);
     };
     if (blocker < placed_.size() && glm::dot(direction, direction) > 0) {
-        const Placed& last = placed_[blocker];
+        const PlacedScene& last = placed_[blocker];
         if (entry(last.box, origin, 1.0 / direction, far) <= far && blocks(last))
             return true;
     }
     bool blocked = false;
-    walk(origin, direction, far, [&](const Placed& placed) {
+    walk(origin, direction, far, [&](const PlacedScene& placed) {
         blocked = blocks(placed);
         if (blocked)
             blocker = static_cast<uint32_t>(&placed - placed_.data());

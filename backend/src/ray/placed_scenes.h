@@ -14,12 +14,12 @@ namespace lodestone::ray {
 class PlacedScenes {
 public:
     /// What a hit is named by. A placement that cannot be inverted or is not finite is never hit.
-    void add(std::shared_ptr<const Scene> scene, const Bound& bound, const Affine& world,
+    void add(std::shared_ptr<const MeshScene> scene, const Bound& bound, const Affine& world,
              uint32_t name);
     /// Sorts what was added into a tree of boxes.
     void finish();
 
-    struct Hit {
+    struct PlacedHit {
         bool hit = false;
         uint32_t name = 0;
         uint32_t triangle = kNoTriangle;
@@ -28,8 +28,8 @@ public:
         double t = std::numeric_limits<double>::infinity();  // point = origin + t direction
     };
     /// The nearest hit with 0 <= t <= far; among equally near ones the one that was added first.
-    Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                  double far = std::numeric_limits<double>::infinity()) const;
+    PlacedHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                        double far = std::numeric_limits<double>::infinity()) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     /// The same, sooner where `blocker` is what blocked a ray beside this one: it is tried first,
     /// and becomes what blocks this one. It changes no answer. kNothing: none is known.
@@ -41,13 +41,13 @@ public:
     const Box3& box() const { return all_; }
 
 private:
-    struct Placed {
-        std::shared_ptr<const Scene> scene;
+    struct PlacedScene {
+        std::shared_ptr<const MeshScene> scene;
         Affine inverse;
         Box3 box;
         uint32_t name = 0;
     };
-    struct Cell {
+    struct SceneCell {
         Box3 box;
         uint32_t first = 0;  // of placed_; inside: the second child, the first comes right after it
         uint32_t count = 0;  // 0: inside
@@ -59,8 +59,8 @@ private:
     void walk(const glm::dvec3& origin, const glm::dvec3& direction, double& far,
               const Visit& visit) const;
 
-    std::vector<Placed> placed_;
-    std::vector<Cell> cells_;
+    std::vector<PlacedScene> placed_;
+    std::vector<SceneCell> cells_;
     Box3 all_;
 };
 

@@ -9,10 +9,10 @@
 
 namespace lodestone::ray {
 
-void Blockers::add(const std::array<glm::vec3, 3>& corners) {
+void RecentBlockers::add(const std::array<glm::vec3, 3>& corners) {
     // Of the longest edge; rounding is some fiftieth of that.
     constexpr float kSlack = 1e-5f;
-    Triangles& four = fours_[next_ / 4];
+    PlueckerTriangles& four = fours_[next_ / 4];
     const size_t lane = next_ % 4;
     next_ = (next_ + 1) % (4 * kFours);
     const auto put = [&](std::array<Four, 3>& to, const glm::vec3& value) {
@@ -33,13 +33,13 @@ void Blockers::add(const std::array<glm::vec3, 3>& corners) {
     four.slack[lane] = kSlack * longest;
 }
 
-bool Blockers::block(const glm::vec3& origin, const glm::vec3& direction) const {
+bool RecentBlockers::block(const glm::vec3& origin, const glm::vec3& direction) const {
     const glm::vec3 moment = glm::cross(origin, direction);
     const auto dot = [](const std::array<Four, 3>& a, const glm::vec3& b) {
         return a[0] * b.x + a[1] * b.y + a[2] * b.z;
     };
     decltype(Four{} < Four{}) found{};
-    for (const Triangles& four : fours_) {
+    for (const PlueckerTriangles& four : fours_) {
         // Ahead where the ray passes all edges on one side: that of the front, or of the back.
         const Four below = four.height - dot(four.normal, origin);
         auto front = below < -four.slack;

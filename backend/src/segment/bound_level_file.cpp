@@ -10,9 +10,9 @@ namespace {
 // The number changes with the layout; a machine of the other byte order reads another one.
 constexpr uint64_t kMagic = 0x33646e756f42644cu;
 
-using deform::Anchor;
 using deform::BoundLevel;
-using deform::Witness;
+using deform::PoseErrorSample;
+using deform::SurfaceAnchor;
 
 /// Visits every array of a level in the order they lie in the file.
 template <typename Level, typename Visit>
@@ -26,17 +26,17 @@ void for_each_array(Level& level, const Visit& visit) {
     visit(level.places);
     visit(level.anchors);
     visit(level.normals);
-    visit(level.witnesses.of_source);
-    visit(level.witnesses.of_level);
+    visit(level.error_samples.of_source);
+    visit(level.error_samples.of_level);
 }
 
 void put(std::string& bytes, const void* data, size_t size) {
     bytes.append(static_cast<const char*>(data), size);
 }
 
-class Reader {
+class BoundLevelReader {
 public:
-    Reader(const char* data, size_t size) : data_(data), left_(size) {}
+    BoundLevelReader(const char* data, size_t size) : data_(data), left_(size) {}
 
     uint64_t number() {
         uint64_t value = 0;
@@ -82,8 +82,9 @@ std::string bytes_of(const BoundLevels& levels) {
     for (const BoundLevel& level : levels) {
         for_each_array(level, [&](const auto& values) {
             using T = typename std::decay_t<decltype(values)>::value_type;
-            static_assert(sizeof(Anchor) == 8 * sizeof(float) &&
-                          sizeof(Witness) == 11 * sizeof(float));  // no gaps of unknown content
+            static_assert(sizeof(SurfaceAnchor) == 8 * sizeof(float) &&
+                          sizeof(PoseErrorSample) ==
+                              11 * sizeof(float));  // no gaps of unknown content
             const uint64_t count = values.size();
             put(bytes, &count, sizeof count);
             put(bytes, values.data(), values.size() * sizeof(T));
@@ -103,7 +104,7 @@ BoundLevels bound_levels_of(const std::string& bytes) {
     std::memcpy(&hash, bytes.data() + content, sizeof hash);
     if (hash != hash_of(bytes.data(), content))
         fail(Status::BadFile, "bound levels are not what was written");
-    Reader reader(bytes.data(), content);
+    BoundLevelReader reader(bytes.data(), content);
     if (reader.number() != kMagic)
         fail(Status::BadFile, "bound levels of another version");
     const uint64_t count = reader.number();

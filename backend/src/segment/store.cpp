@@ -191,7 +191,7 @@ uint64_t Store::save_bound(Hash bind_hash, const BoundLevels& levels) const {
 }
 
 uint64_t Store::write(const Model& model, const Job& job) const {
-    job.stage(Stage::Store);
+    job.stage(JobStage::Store);
     make_folder(folder_ / "r");
     const FileLock lock(folder_ / "lock", job);
 

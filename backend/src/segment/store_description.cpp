@@ -56,7 +56,7 @@ Json out(const Texture& t, PictureList& pictures) {
     return {{"picture", pictures.index_of(t.picture)},
             {"channel", static_cast<int>(t.channel)},
             {"extension", static_cast<int>(t.extension)},
-            {"closest", t.interpolation == Interpolation::Closest},
+            {"closest", t.interpolation == TextureInterpolation::Closest},
             {"to_picture", t.to_picture},
             {"scale", out(t.scale)},
             {"offset", out(t.offset)}};
@@ -126,7 +126,7 @@ Json out(const Primitive& p) {
 }
 
 Json out(const Representation& r) {
-    const Summary& s = r.summary;
+    const RepresentationSummary& s = r.summary;
     Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
                  {"max_error", s.max_error},      {"hash", hex16(s.hash)},
                  {"center", out(s.bound.center)}, {"radius", s.bound.radius},
@@ -216,12 +216,12 @@ Json describe(const Model& model) {
         Json one = {{"uid", object.uid},
                     {"name", object.name},
                     {"deforms", object.deforms},
-                    {"role", object.role == Role::Environment ? "environment"
-                             : object.role == Role::Automatic ? "automatic"
-                                                              : "ordinary"},
+                    {"role", object.role == ObjectRole::Environment ? "environment"
+                             : object.role == ObjectRole::Automatic ? "automatic"
+                                                                    : "ordinary"},
                     {"source_hash", hex16(object.source_hash)},
                     {"build_hash", hex16(object.build_hash)}};
-        if (object.of_parts)
+        if (object.made_of_parts)
             one["of_parts"] = true;
         if (object.bind_hash != 0)
             one["bind_hash"] = hex16(object.bind_hash);

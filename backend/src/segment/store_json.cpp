@@ -105,10 +105,10 @@ Texture texture(const Json& material, const char* key, const Pictures& pictures)
     if (index >= pictures.size())
         fail(Status::BadFile, "a texture names picture ", index, " of ", pictures.size());
     t.picture = pictures[index];
-    t.channel = choice(json, "channel", Channel::Luma);
-    t.extension = choice(json, "extension", Extension::Mirror);
-    t.interpolation =
-        json.at("closest").get<bool>() ? Interpolation::Closest : Interpolation::Linear;
+    t.channel = choice(json, "channel", TextureChannel::Luma);
+    t.extension = choice(json, "extension", TextureExtension::Mirror);
+    t.interpolation = json.at("closest").get<bool>() ? TextureInterpolation::Closest
+                                                     : TextureInterpolation::Linear;
     const std::vector<double> mapping = numbers(json, "to_picture", 6);
     std::copy(mapping.begin(), mapping.end(), t.to_picture.begin());
     t.scale = vector(json, "scale");
@@ -231,7 +231,7 @@ std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
 
 Representation representation(const Json& json, size_t object_count, size_t material_count) {
     Representation r;
-    Summary& s = r.summary;
+    RepresentationSummary& s = r.summary;
     s.kind = kind_named(json.at("kind").get<std::string>());
     s.error = number(json, "error");
     s.max_error = number(json, "max_error");
@@ -268,12 +268,12 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     o.uid = json.at("uid").get<std::string>();
     o.name = json.at("name").get<std::string>();
     o.deforms = json.at("deforms").get<bool>();
-    o.role = json.at("role") == "environment" ? Role::Environment
-             : json.at("role") == "automatic" ? Role::Automatic
-                                              : Role::Ordinary;
+    o.role = json.at("role") == "environment" ? ObjectRole::Environment
+             : json.at("role") == "automatic" ? ObjectRole::Automatic
+                                              : ObjectRole::Ordinary;
     o.source_hash = hash(json, "source_hash");
     o.build_hash = hash(json, "build_hash");
-    o.of_parts = json.value("of_parts", false);
+    o.made_of_parts = json.value("of_parts", false);
     if (json.contains("bind_hash"))
         o.bind_hash = hash(json, "bind_hash");
     if (json.contains("attributes"))
@@ -281,14 +281,14 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
     double last = -1;
     for (const Json& one : json.at("representations")) {
         o.representations.push_back(representation(one, object_count, material_count));
-        const Summary& s = o.representations.back().summary;
+        const RepresentationSummary& s = o.representations.back().summary;
         if (s.error <= last || (last < 0 && s.error != 0))
             fail(Status::BadFile, "errors of '", o.name, "' do not rise from 0");
         if (last >= 0 && s.kind == Kind::Assembly)
             fail(Status::BadFile, "'", o.name, "' has an assembly that is not its finest level");
         last = s.error;
     }
-    if (o.of_parts && !o.group())
+    if (o.made_of_parts && !o.group())
         fail(Status::BadFile, "'", o.name, "' is made of parts, but is no group");
     return o;
 }

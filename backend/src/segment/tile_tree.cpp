@@ -45,7 +45,7 @@ void put_transform(std::string& text, const Affine& transform) {
 constexpr uint64_t kMostTiles = uint64_t{1} << 20u;
 
 /// What all placements of one object share: its chain of tiles, worked out once.
-struct Chain {
+struct TileChain {
     std::vector<double> geometric_errors;  // by LOD number
     Bound bound;                           // of every level and of all below
     uint64_t tiles = 0;  // of every level and of all below, kMostTiles + 1 at most
@@ -85,7 +85,7 @@ private:
 
     void plan(ObjectIndex index) {
         const Object& object = model_.objects[index];
-        Chain& chain = chains_[index];
+        TileChain& chain = chains_[index];
         double least = 0;
         for (size_t lod = 0; lod < object.representations.size(); ++lod) {
             const Representation& representation = object.representations[lod];
@@ -120,7 +120,7 @@ private:
             put_transform(text, placement->transform);
             text += ',';
         }
-        Chain& chain = chains_[index];
+        TileChain& chain = chains_[index];
         if (chain.text_end > 0) {
             text.append(text, chain.text_begin, chain.text_end - chain.text_begin);
             return;
@@ -133,7 +133,7 @@ private:
     /// Coarse to fine, behind the first brace, opened once for each level and closed at the end.
     void put_chain(std::string& text, ObjectIndex index) {
         const Object& object = model_.objects[index];
-        const Chain& chain = chains_[index];
+        const TileChain& chain = chains_[index];
         size_t open = 0;
         for (size_t lod = object.representations.size(); lod-- > 0;) {
             const Representation& representation = object.representations[lod];
@@ -181,7 +181,7 @@ private:
     }
 
     const Model& model_;
-    std::vector<Chain> chains_;
+    std::vector<TileChain> chains_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 constexpr double kTolerance = 1e-3;  // of the spacing
 
 /// Evenly spaced values, the same for all vertices of a line.
-struct Axis {
+struct GridAxis {
     double first = 0;
     double step = 0;
     size_t count = 0;
@@ -27,7 +27,7 @@ struct Axis {
 };
 
 /// The lines along one axis when the first ones are evenly spaced; whether all are is for line().
-std::optional<Axis> lines_of(const Mesh& mesh, int axis) {
+std::optional<GridAxis> lines_of(const Mesh& mesh, int axis) {
     float low = mesh.positions[0][axis];
     float high = low;
     for (const glm::vec3& p : mesh.positions) {
@@ -50,7 +50,7 @@ std::optional<Axis> lines_of(const Mesh& mesh, int axis) {
     const double steps = std::round(size / next);
     if (!(steps >= 1 && steps < static_cast<double>(mesh.positions.size())))
         return {};
-    return Axis{double{low}, size / steps, static_cast<size_t>(steps) + 1};
+    return GridAxis{double{low}, size / steps, static_cast<size_t>(steps) + 1};
 }
 
 /// Whether every cell is two triangles that look the same way; sets grid.turned.
@@ -99,8 +99,8 @@ bool cells_are_cut(const Mesh& mesh, HeightGrid& grid, const std::vector<uint32_
 }
 
 std::optional<HeightGrid> grid_in(const Mesh& mesh, int across, int along) {
-    const std::optional<Axis> x = lines_of(mesh, across);
-    const std::optional<Axis> y = lines_of(mesh, along);
+    const std::optional<GridAxis> x = lines_of(mesh, across);
+    const std::optional<GridAxis> y = lines_of(mesh, along);
     if (!x || !y || x->count * y->count != mesh.positions.size() ||
         2 * (x->count - 1) * (y->count - 1) != mesh.triangles.size())
         return {};
@@ -126,9 +126,9 @@ std::optional<HeightGrid> grid_in(const Mesh& mesh, int across, int along) {
 
 /// Values at `count` evenly spaced samples from those at `from` of them: the piecewise linear curve
 /// with the least squared distance that begins and ends where the finer one does. `stride` apart.
-class Resampler {
+class LineResampler {
 public:
-    Resampler(size_t from, size_t count) : from_(from), count_(count) {
+    LineResampler(size_t from, size_t count) : from_(from), count_(count) {
         // What each fine value contributes to the integrals of f with the coarse tents: those of
         // the fine tents with the coarse ones, by Simpson's rule on each piece, which is exact.
         const double ratio =
@@ -149,7 +149,7 @@ public:
     void run(const double* values, double* out, std::vector<double>& scratch) const {
         std::vector<double>& right = scratch;
         right.assign(2 * count_, 0.0);
-        for (const Term& term : terms_)
+        for (const ResampleTerm& term : terms_)
             right[term.sample] += term.weight * values[term.from];
         out[0] = values[0];
         out[count_ - 1] = values[from_ - 1];
@@ -174,7 +174,7 @@ public:
     }
 
 private:
-    struct Term {
+    struct ResampleTerm {
         uint32_t from;
         uint32_t sample;
         double weight;
@@ -206,14 +206,14 @@ private:
 
     size_t from_;
     size_t count_;
-    std::vector<Term> terms_;
+    std::vector<ResampleTerm> terms_;
 };
 
 /// One number a vertex, resampled along rows, then along columns.
 std::vector<double> resampled(const HeightGrid& grid, size_t columns, size_t rows,
                               const std::vector<double>& values) {
-    const Resampler across(grid.columns, columns);
-    const Resampler along(grid.rows, rows);
+    const LineResampler across(grid.columns, columns);
+    const LineResampler along(grid.rows, rows);
     std::vector<double> scratch;
     std::vector<double> half(columns * grid.rows);
     for (size_t row = 0; row < grid.rows; ++row)

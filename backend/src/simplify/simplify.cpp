@@ -97,7 +97,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     if (next == targets.size())
         return results;
     Adjacency adjacency;
-    CollapseMesh working = open(mesh, job, others, &adjacency);
+    CollapseMesh working = open_collapse_mesh(mesh, job, others, &adjacency);
     if (working.live == 0) {
         for (; next < targets.size() && !tracked; ++next)
             results.push_back(whole(first_triangles(mesh, targets[next])));
@@ -105,7 +105,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     }
     const size_t start = working.live;
     const size_t goal = targets.back();
-    Reducer reducer(working, options);
+    CollapseReducer reducer(working, options);
     const bool best = options.mode == SimplifyMode::Best;
     for (; next < targets.size(); ++next) {
         // What every place has to come from an input vertex for is left alone.
@@ -124,7 +124,7 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
             FitOptions options_of_fit = best ? kBestFit : kFastFit;
             if (puts_back && reached)
                 options_of_fit.insert = std::min(spare, (targets[next] - working.live) / 2);
-            fit(working, mesh, adjacency, options_of_fit, job);
+            fit_surface(working, mesh, adjacency, options_of_fit, job);
             if (options_of_fit.insert > 0 && !working.normals.empty())
                 adjacency.build(working);
             results.push_back(taken(working, corner_normals(working, mesh, adjacency, job)));

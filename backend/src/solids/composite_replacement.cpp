@@ -27,8 +27,9 @@ constexpr int kClearRounds = 4;
 constexpr uint64_t kClearRays = 8192;  // each round
 constexpr int kSubdivisions = 2;
 
-Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::VisiblePoint& at) {
-    Sample out;
+ClusterSample sample_at(const Mesh& mesh, const ray::SkinPtr& skin,
+                        const measure::VisiblePoint& at) {
+    ClusterSample out;
     out.point = at.point;
     out.triangle = at.triangle;
     const glm::dvec3 normal = area_vector(mesh, at.triangle);
@@ -40,9 +41,9 @@ Sample sample_at(const Mesh& mesh, const ray::SkinPtr& skin, const measure::Visi
 }
 
 /// Of what can be seen.
-Samples seen(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
-             const CompositeOptions& options) {
-    Samples out;
+ClusterSamples seen(const Mesh& mesh, const ray::MeshScene& scene, const ray::SkinPtr& skin,
+                    const CompositeOptions& options) {
+    ClusterSamples out;
     const measure::VisibleSampler sampler(mesh, scene, options.seed);
     if (sampler.empty())
         return out;
@@ -61,13 +62,13 @@ Samples seen(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin
 }
 
 /// Of all there is, hidden or not, but what is transparent.
-Samples all_of(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
-               const CompositeOptions& options) {
-    Samples out;
+ClusterSamples all_of(const Mesh& mesh, const ray::MeshScene& scene, const ray::SkinPtr& skin,
+                      const CompositeOptions& options) {
+    ClusterSamples out;
     const measure::VisibleSampler sampler(mesh, scene, options.seed);
     if (sampler.empty())
         return out;
-    const measure::Sobol numbers(measure::scramble(options.seed) + 3);
+    const measure::SobolPoints numbers(measure::scramble(options.seed) + 3);
     for (uint32_t i = 0; i < options.samples; ++i) {
         const measure::VisiblePoint at = sampler.on_surface(numbers.point(i));
         if (scene.shows(at.triangle, at.u, at.v))
@@ -96,7 +97,8 @@ Solid solid_of(const Attributes& attributes) {
 }
 
 /// What of it can be seen, by rays; clear solids count as much as they cover.
-Attributes measured(const Clustered& level, const CompositeOptions& options, const Job& job) {
+Attributes measured(const ClusteredComposite& level, const CompositeOptions& options,
+                    const Job& job) {
     const Mesh mesh = as_large_triangles(level.composite);
     std::vector<Material> materials;
     bool clear = false;
@@ -106,11 +108,11 @@ Attributes measured(const Clustered& level, const CompositeOptions& options, con
     }
     image::TexelCache texels;
     const ray::SkinPtr skin =
-        clear ? std::make_shared<const ray::Skin>(materials, texels) : nullptr;
+        clear ? std::make_shared<const ray::MeshSkin>(materials, texels) : nullptr;
     measure::VisibleOptions visible;
     visible.rays = kClearRays;
     visible.seed = options.seed;
-    return measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, visible, {}, job)
+    return measure::measure_visible(mesh, ray::MeshScene(mesh, skin), skin, visible, {}, job)
         .attributes;
 }
 
@@ -168,7 +170,7 @@ Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
 
 /// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that
 /// is nearest where it has none.
-std::vector<uint32_t> clusters_of(const Mesh& mesh, const Clusters& clusters) {
+std::vector<uint32_t> clusters_of(const Mesh& mesh, const SampleClusters& clusters) {
     std::vector<std::map<uint32_t, uint32_t>> votes(mesh.triangles.size());
     for (uint32_t i = 0; i < clusters.all().size(); ++i) {
         for (const uint32_t sample : clusters.all()[i].samples)
@@ -200,12 +202,12 @@ std::vector<uint32_t> clusters_of(const Mesh& mesh, const Clusters& clusters) {
 }
 
 /// What can be seen of each cluster where the others are taken away.
-class Alone {
+class IsolatedClusters {
 public:
-    Alone(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed)
+    IsolatedClusters(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed)
         : mesh_(mesh), skin_(skin), seed_(seed) {}
 
-    const Attributes& of(const Cluster& cluster, uint32_t index,
+    const Attributes& of(const SampleCluster& cluster, uint32_t index,
                          const std::vector<uint32_t>& cluster_of, const Job& job) {
         const auto [known, fresh] = known_.try_emplace(cluster.number);
         if (!fresh)
@@ -219,7 +221,7 @@ public:
         options.seed = seed_;
         if (!part.empty())
             known->second =
-                measure::measure_visible(part, ray::Scene(part, skin_), skin_, options, {}, job)
+                measure::measure_visible(part, ray::MeshScene(part, skin_), skin_, options, {}, job)
                     .attributes;
         return known->second;
     }
@@ -232,15 +234,15 @@ private:
 };
 
 /// A clear solid while its size is still looked for.
-struct Shelled {
+struct ShelledSolid {
     Solid solid;
     double density = 0;  // of the unscaled shell; 0: a solid
 };
 
 /// `airy`: made of many parts, so that even what looks dense is none.
-Shelled shelled(const Attributes& attributes, bool airy) {
+ShelledSolid shelled(const Attributes& attributes, bool airy) {
     constexpr double kSolid = 0.9;  // what covers more of its shell is one
-    Shelled out;
+    ShelledSolid out;
     const bool box = boxlike(attributes);
     const auto shell = box ? shell_box(attributes) : shell_ellipsoid(attributes);
     if (!shell || (!airy && shell->opacity >= kSolid)) {
@@ -254,7 +256,8 @@ Shelled shelled(const Attributes& attributes, bool airy) {
 }
 
 /// Whether no single part makes up much of the cluster.
-bool made_of_many(const Cluster& cluster, const Samples& samples, std::span<const uint32_t> parts) {
+bool made_of_many(const SampleCluster& cluster, const ClusterSamples& samples,
+                  std::span<const uint32_t> parts) {
     constexpr size_t kFewest = 8;
     if (parts.empty())
         return false;
@@ -282,22 +285,23 @@ Mesh as_large_triangles(const Composite& composite) {
     return tessellate(swollen, kSubdivisions);
 }
 
-std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
-                                  const Attributes& wanted, const CompositeOptions& options,
-                                  const Job& job) {
-    std::vector<Clustered> out;
-    const ray::Scene scene(mesh, skin);
-    Samples samples = seen(mesh, scene, skin, options);
-    if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
+std::vector<ClusteredComposite> composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                           const Attributes& wanted,
+                                           const CompositeOptions& options, const Job& job) {
+    std::vector<ClusteredComposite> out;
+    const ray::MeshScene scene(mesh, skin);
+    ClusterSamples samples = seen(mesh, scene, skin, options);
+    if (samples.points.size() < SampleClusters::kFewestSamples || !(samples.area > 0) ||
+        wanted.empty())
         return out;
-    Clusters clusters(std::move(samples));
+    SampleClusters clusters(std::move(samples));
     Attributes whole = wanted;
     std::optional<VisibleSolids> sure;
     if (options.shape && options.settled > 0) {
         sure.emplace(options.settled, options.seed);
         measure::VisibleOptions visible;
         visible.rays = options.settled;
-        visible.settled = kSettledWhole;
+        visible.settled = kSettledComposite;
         visible.seed = options.seed;
         const Attributes again =
             measure::measure_visible(mesh, scene, skin, visible, {}, job).attributes;
@@ -314,26 +318,27 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
             break;
         if (count < options.least)
             continue;
-        Clustered level;
-        for (const Cluster& cluster : clusters.all()) {
+        ClusteredComposite level;
+        for (const SampleCluster& cluster : clusters.all()) {
             level.composite.solids.push_back(solid_of(cluster.attributes));
             level.composite.solids.back().slot = static_cast<uint16_t>(level.clusters.size());
             level.attributes.push_back(cluster.attributes);
             level.clusters.push_back(cluster.number);
             level.opacities.push_back(1);
         }
-        match_whole(level.composite, whole, lowest(mesh), visible, options.shape, options.rounds,
-                    job);
+        match_composite(level.composite, whole, lowest(mesh), visible, options.shape,
+                        options.rounds, job);
         if (sure)
-            settle_whole(level.composite, whole, lowest(mesh), *sure, job);
+            settle_composite(level.composite, whole, lowest(mesh), *sure, job);
         out.push_back(std::move(level));
     }
     return out;
 }
 
-std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& skin,
-                                        std::span<const uint32_t> parts, const Attributes& wanted,
-                                        const CompositeOptions& options, const Job& job) {
+std::vector<ClusteredComposite> clear_composites(const Mesh& whole, const ray::SkinPtr& skin,
+                                                 std::span<const uint32_t> parts,
+                                                 const Attributes& wanted,
+                                                 const CompositeOptions& options, const Job& job) {
     // A shell through the middle of a cluster's surface leaves gaps between clusters; one around it
     // is this much larger (a ball's outside and its variances: sqrt(5 / 3)).
     constexpr double kAround = 1.2;
@@ -342,7 +347,7 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
     constexpr double kMostDepth = 6;
     constexpr double kMostOpaque = 0.98;
     constexpr double kLongest = 1.0 / 8;  // over the radius
-    std::vector<Clustered> out;
+    std::vector<ClusteredComposite> out;
     std::vector<uint32_t> source;
     const Mesh mesh = divided(whole, kLongest * bound_of(whole.positions).radius, source);
     std::vector<uint32_t> part_of;
@@ -350,12 +355,13 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
         if (!parts.empty())
             part_of.push_back(parts[triangle]);
     }
-    const ray::Scene scene(mesh, skin);
-    Samples samples = all_of(mesh, scene, skin, options);
-    if (samples.points.size() < Clusters::kFewestSamples || !(samples.area > 0) || wanted.empty())
+    const ray::MeshScene scene(mesh, skin);
+    ClusterSamples samples = all_of(mesh, scene, skin, options);
+    if (samples.points.size() < SampleClusters::kFewestSamples || !(samples.area > 0) ||
+        wanted.empty())
         return out;
-    Clusters clusters(std::move(samples));
-    Alone alone(mesh, skin, options.seed);
+    SampleClusters clusters(std::move(samples));
+    IsolatedClusters alone(mesh, skin, options.seed);
     const double floor = lowest(mesh);
     for (const size_t count : kCounts) {
         if (count > options.most)
@@ -365,11 +371,11 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
         if (solids < 2 || (!out.empty() && out.back().clusters.size() == solids))
             break;
         const std::vector<uint32_t> cluster_of = clusters_of(mesh, clusters);
-        Clustered level;
-        std::vector<Shelled> shells;
+        ClusteredComposite level;
+        std::vector<ShelledSolid> shells;
         bool clear = false;
         for (uint32_t i = 0; i < solids; ++i) {
-            const Cluster& cluster = clusters.all()[i];
+            const SampleCluster& cluster = clusters.all()[i];
             const Attributes& attributes = alone.of(cluster, i, cluster_of, job);
             if (attributes.empty())
                 continue;
@@ -386,7 +392,7 @@ std::vector<Clustered> clear_composites(const Mesh& whole, const ray::SkinPtr& s
         for (int round = 0; round < kClearRounds; ++round) {
             level.composite.solids.clear();
             level.opacities.clear();
-            for (const Shelled& shell : shells) {
+            for (const ShelledSolid& shell : shells) {
                 Solid solid = shell.solid;
                 double opacity = 1;
                 if (shell.density > 0) {

@@ -13,7 +13,7 @@
 namespace lodestone::solids {
 
 /// One level: a solid for each cluster, with a slot of its own.
-struct Clustered {
+struct ClusteredComposite {
     Composite composite;
     std::vector<Attributes> attributes;  // of the clusters, in the order of the solids
     std::vector<uint32_t> clusters;      // levels share what has the same number
@@ -26,7 +26,7 @@ struct CompositeOptions {
     bool shape = true;      // match centroid and variances of the whole, not its area alone
     int rounds = 12;        // of matching, at most
     uint32_t settled =
-        262144;        // rays that see mesh and solids for settle_whole(), with `shape`; 0: not
+        262144;        // rays that see mesh and solids for settle_composite(), with `shape`; 0: not
     size_t least = 4;  // parts
     size_t most = 32;
     uint32_t samples = 8192;  // rays that find what is clustered
@@ -40,9 +40,9 @@ struct CompositeOptions {
 /// are the mesh's (`wanted`), or where no sizes give all of these (plates around a closed body) the
 /// ratios of the variances. No solid reaches below the lowest point of the mesh. Empty where
 /// nothing can be seen. The same bits on any number of threads.
-std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
-                                  const Attributes& wanted, const CompositeOptions& options,
-                                  const Job& job = {});
+std::vector<ClusteredComposite> composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                           const Attributes& wanted,
+                                           const CompositeOptions& options, const Job& job = {});
 
 /// Likewise of what has much air between its parts (foliage, crowds): clusters of all of its
 /// surface, hidden or not, each as opaque as it is alone, in a shell around its surface. All shells
@@ -51,9 +51,11 @@ std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin,
 /// that fills its shell and is not of many parts is a solid. Nothing where nothing is clear.
 /// source: 4.3.3, 4.36, 4.37 for each cluster; differs: shells are a fifth larger than the
 /// variances ask for, which would leave gaps between clusters.
-std::vector<Clustered> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
-                                        std::span<const uint32_t> parts, const Attributes& wanted,
-                                        const CompositeOptions& options, const Job& job = {});
+std::vector<ClusteredComposite> clear_composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                                 std::span<const uint32_t> parts,
+                                                 const Attributes& wanted,
+                                                 const CompositeOptions& options,
+                                                 const Job& job = {});
 
 /// For rays: few triangles an ellipsoid, with its area.
 Mesh as_large_triangles(const Composite& composite);

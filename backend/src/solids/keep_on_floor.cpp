@@ -29,7 +29,7 @@ void stretch(Primitive& primitive, double along, double across) {
 
 }  // namespace
 
-Reach reach_of(const Primitive& primitive, bool box) {
+HeightRange reach_of(const Primitive& primitive, bool box) {
     double sum = 0;
     double squares = 0;
     for (int i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ Reach reach_of(const Primitive& primitive, bool box) {
 Primitive standing_on(const Primitive& primitive, bool box, double floor) {
     // What would have to become another thing (tilted and far below the floor) is moved instead.
     constexpr double kMost = 2;
-    const Reach before = reach_of(primitive, box);
+    const HeightRange before = reach_of(primitive, box);
     const double height = before.high - before.low;
     if (!(before.high - floor > kSameHeight * height) ||
         !(std::abs(before.low - floor) > kSameHeight * height))
@@ -54,7 +54,7 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
     double whole_along = 1;
     double whole_across = 1;
     for (int round = 0; round < kRounds; ++round) {
-        const Reach now = reach_of(out, box);
+        const HeightRange now = reach_of(out, box);
         const double along = (before.high - floor) / (now.high - now.low);
         stretch(out, along, 1);
         // Between what a width does to tops (squared) and to sides.
@@ -77,7 +77,7 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
 }
 
 Primitive kept_above(const Primitive& primitive, bool box, double floor) {
-    const Reach reach = reach_of(primitive, box);
+    const HeightRange reach = reach_of(primitive, box);
     if (!(reach.low < floor))
         return primitive;
     Primitive out = standing_on(primitive, box, floor);

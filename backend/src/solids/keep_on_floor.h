@@ -7,11 +7,11 @@
 namespace lodestone::solids {
 
 /// Lowest and highest point along Z.
-struct Reach {
+struct HeightRange {
     double low = 0;
     double high = 0;
 };
-Reach reach_of(const Primitive& primitive, bool box);
+HeightRange reach_of(const Primitive& primitive, bool box);
 
 /// The same top and surface area, but the lowest point at `floor`: heights are stretched, what that
 /// does to the area is taken from the width, and of what is tilted also from the top. Only moved

@@ -17,41 +17,41 @@ constexpr double kGrowth = 0.7;
 constexpr double kMostStep = 1.5;
 
 /// How far off in shares of what is wanted: area, centroid (radii of gyration), variances.
-struct Miss {
+struct MatchError {
     double area = 0;
     double centroid = 0;
     double shape = 0;
 
-    explicit Miss(const Missing& missing)
+    explicit MatchError(const MatchResidual& missing)
         : area(std::abs(missing.area)), centroid(glm::length(missing.centroid)) {
         for (int i = 0; i < 3; ++i)
             shape += glm::dot(missing.variances[i], missing.variances[i]);
         shape = std::sqrt(shape);
     }
-    Miss(double of_area, double of_centroid, double of_shape)
+    MatchError(double of_area, double of_centroid, double of_shape)
         : area(of_area), centroid(of_centroid), shape(of_shape) {}
 };
 
 }  // namespace
 
-void match_whole(Composite& composite, const Attributes& wanted, double floor,
-                 const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
+void match_composite(Composite& composite, const Attributes& wanted, double floor,
+                     const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
     // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
     constexpr double kFew = 1.0 / 8;
     constexpr double kAll = 1;
     constexpr int kLast = 3;
     constexpr int kMost = 8;  // where it is far off: solids that stand and hide much of each other
-    const Miss far{0.01, 0.003, 0.005};
-    const Miss rough{0.004, 0.004, 0.004};
-    const Miss exact{0.001, 0.0005, 0.001};
+    const MatchError far{0.01, 0.003, 0.005};
+    const MatchError rough{0.004, 0.004, 0.004};
+    const MatchError exact{0.001, 0.0005, 0.001};
     // Plates around a closed body have no size that gives both its area and its variances: after so
     // many rounds the ratios of these are enough, as for a single solid.
     constexpr int kPatience = 5;
-    const auto within = [&](const Miss& miss, const Miss& most) {
+    const auto within = [&](const MatchError& miss, const MatchError& most) {
         return miss.area <= most.area &&
                (!shape || (miss.centroid <= most.centroid && miss.shape <= most.shape));
     };
-    const auto worst = [&](const Miss& miss) {
+    const auto worst = [&](const MatchError& miss) {
         const double area = miss.area / exact.area;
         return shape ? std::max({area, miss.centroid / exact.centroid, miss.shape / exact.shape})
                      : area;
@@ -61,14 +61,15 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
     int last = 0;  // rounds with all rays
     bool size = true;
     std::vector<measure::SurfaceInertia> each;
-    Experience experience;
+    BroydenCorrection experience;
     bool near = false;
     for (int round = 0; last < (near ? kLast : kMost); ++round) {
         measure::SurfaceInertia now = visible.of(composite, last > 0 ? kAll : kFew, job, &each);
         if (now.empty())
             break;
         size = size && (last > 0 || round < kPatience);
-        if (last == 0 && (within(Miss(missing_of(now, wanted, size)), rough) || round >= rounds)) {
+        if (last == 0 &&
+            (within(MatchError(match_residual(now, wanted, size)), rough) || round >= rounds)) {
             ++last;
             now = visible.of(composite, kAll, job, &each);
             if (now.empty())
@@ -76,18 +77,19 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
         } else if (last > 0) {
             ++last;
         }
-        const Missing missing = missing_of(now, wanted, size);
-        const double off = worst(Miss(missing));
+        const MatchResidual missing = match_residual(now, wanted, size);
+        const double off = worst(MatchError(missing));
         if (last > 0 && off < least) {
             least = off;
             best = composite;
-            near = !shape || within(Miss(missing), far);
+            near = !shape || within(MatchError(missing), far);
         }
         if (last > 0 && off <= 1)
             break;
         if (shape) {
             // Few rays are too unsure to learn from.
-            make_up(composite, now, each, missing, size, floor, last > 0 ? &experience : nullptr);
+            gauss_newton_step(composite, now, each, missing, size, floor,
+                              last > 0 ? &experience : nullptr);
             continue;
         }
         const double scale =
@@ -101,8 +103,8 @@ void match_whole(Composite& composite, const Attributes& wanted, double floor,
         composite = std::move(best);
 }
 
-void settle_whole(Composite& composite, const Attributes& wanted, double floor,
-                  const VisibleSolids& visible, const Job& job) {
+void settle_composite(Composite& composite, const Attributes& wanted, double floor,
+                      const VisibleSolids& visible, const Job& job) {
     constexpr double kStands = 1e-6;  // radii of gyration
     constexpr double kMostScale = 1.02;
     std::vector<measure::SurfaceInertia> each;

@@ -12,18 +12,18 @@
 namespace lodestone::solids {
 namespace {
 
-constexpr size_t kNumbers = Experience::kNumbers;
+constexpr size_t kNumbers = BroydenCorrection::kNumbers;
 constexpr size_t kUnknowns = 6;    // of a solid: a move, logarithms of three stretches
 constexpr double kMostMove = 0.5;  // radii of gyration
 constexpr double kMostStretch = 0.4;
-using Row = Experience::Row;
+using Row = BroydenCorrection::Row;
 
 double trace_of(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
 }
 
 /// Numbers whose squares sum up to those of the parts; off the diagonal every one counts twice.
-Row numbers_of(const Missing& of) {
+Row numbers_of(const MatchResidual& of) {
     const double twice = std::sqrt(2.0);
     const glm::dmat3& v = of.variances;
     return {of.area, of.centroid.x, of.centroid.y,   of.centroid.z,   v[0][0],
@@ -40,14 +40,14 @@ glm::dvec3 growth_of(const Solid& solid) {
 }
 
 /// Lowest point, and how much lower it gets with the logarithm of each half size.
-struct Foot {
+struct LowestPoint {
     double low = 0;
     glm::dvec3 sinks{0.0};
 };
 
-Foot foot_of(const Solid& solid) {
+LowestPoint foot_of(const Solid& solid) {
     const Primitive& primitive = solid.primitive;
-    Foot out;
+    LowestPoint out;
     out.low = reach_of(primitive, solid.box).low;
     const double half = primitive.center.z - out.low;
     for (int i = 0; i < 3; ++i) {
@@ -58,9 +58,9 @@ Foot foot_of(const Solid& solid) {
 }
 
 /// What one unknown does to the whole.
-class Effects {
+class MatchingJacobian {
 public:
-    Effects(const measure::SurfaceInertia& now, bool size)
+    MatchingJacobian(const measure::SurfaceInertia& now, bool size)
         : now_(now),
           variances_(now.moments / now.area),
           trace_(trace_of(variances_)),
@@ -93,7 +93,7 @@ public:
 
 private:
     Row row(double area, const glm::dvec3& centroid, const glm::dmat3& variances) const {
-        Missing out{area, centroid / gyration_, variances / trace_};
+        MatchResidual out{area, centroid / gyration_, variances / trace_};
         if (!size_)
             out.variances -= variances_ * (trace_of(out.variances) / trace_);
         return numbers_of(out);
@@ -146,8 +146,8 @@ std::vector<double> places_of(const Composite& composite) {
 
 }  // namespace
 
-void Experience::learn(const std::vector<double>& at, double unit,
-                       const std::vector<double>& weight, const Row& missing) {
+void BroydenCorrection::learn(const std::vector<double>& at, double unit,
+                              const std::vector<double>& weight, const Row& missing) {
     constexpr double kLeast = 1e-16;  // of a step that tells anything
     corrections_.resize(at.size(), Row{});
     if (effect_.size() == at.size()) {
@@ -174,10 +174,11 @@ void Experience::learn(const std::vector<double>& at, double unit,
     effect_.clear();
 }
 
-Missing missing_of(const measure::SurfaceInertia& now, const Attributes& wanted, bool size) {
+MatchResidual match_residual(const measure::SurfaceInertia& now, const Attributes& wanted,
+                             bool size) {
     const glm::dmat3 should = wanted.moments / wanted.visible_area;
     const double trace = trace_of(should);
-    Missing out;
+    MatchResidual out;
     out.area = wanted.visible_area / now.area - 1;
     if (!(trace > 0) || !(trace_of(now.moments) > 0))
         return out;
@@ -187,11 +188,12 @@ Missing missing_of(const measure::SurfaceInertia& now, const Attributes& wanted,
     return out;
 }
 
-void make_up(Composite& composite, const measure::SurfaceInertia& now,
-             const std::vector<measure::SurfaceInertia>& each, const Missing& missing, bool size,
-             double floor, Experience* experience) {
+void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
+                       const std::vector<measure::SurfaceInertia>& each,
+                       const MatchResidual& missing, bool size, double floor,
+                       BroydenCorrection* experience) {
     const size_t solids = composite.solids.size();
-    const Effects effects(now, size);
+    const MatchingJacobian effects(now, size);
     const double mean = now.area / static_cast<double>(solids);
     if (!(mean > 0) || !(effects.gyration() > 0))
         return;
@@ -199,7 +201,7 @@ void make_up(Composite& composite, const measure::SurfaceInertia& now,
     // what shows little would otherwise not be moved at all.
     std::vector<Row> effect(kUnknowns * solids);
     std::vector<double> weight(effect.size(), 0);
-    std::vector<Foot> feet;
+    std::vector<LowestPoint> feet;
     for (size_t i = 0; i < solids; ++i) {
         const Solid& solid = composite.solids[i];
         feet.push_back(foot_of(solid));

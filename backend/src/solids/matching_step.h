@@ -13,18 +13,19 @@ namespace lodestone::solids {
 
 /// What is missing of what is seen of the whole: shares of the area, radii of gyration, variances
 /// over their trace (of their ratios alone, where the size is not asked for).
-struct Missing {
+struct MatchResidual {
     double area = 0;
     glm::dvec3 centroid{0.0};
     glm::dmat3 variances{0.0};
 };
-Missing missing_of(const measure::SurfaceInertia& now, const Attributes& wanted, bool size);
+MatchResidual match_residual(const measure::SurfaceInertia& now, const Attributes& wanted,
+                             bool size);
 
 /// What steps did otherwise than they should have, because solids hide each other: what one unknown
 /// does is corrected along each step by what that one was seen to do. Of one composite and one
 /// `size`, measured by the same rays.
 /// source: Broyden, A class of methods for solving nonlinear simultaneous equations, 1965.
-class Experience {
+class BroydenCorrection {
 public:
     static constexpr size_t kNumbers = 10;  // area, three of the centroid, six of the variances
     using Row = std::array<double, kNumbers>;
@@ -50,8 +51,9 @@ private:
 /// Where a solid would sink below `floor` it stands there, and the others do more. `each`: what is
 /// seen of each. No step is larger than half of a solid or of the radius of gyration.
 /// `experience`: of the steps before, or null.
-void make_up(Composite& composite, const measure::SurfaceInertia& now,
-             const std::vector<measure::SurfaceInertia>& each, const Missing& missing, bool size,
-             double floor, Experience* experience = nullptr);
+void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
+                       const std::vector<measure::SurfaceInertia>& each,
+                       const MatchResidual& missing, bool size, double floor,
+                       BroydenCorrection* experience = nullptr);
 
 }  // namespace lodestone::solids

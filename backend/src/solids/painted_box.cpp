@@ -21,20 +21,20 @@ constexpr double kOneColor = 0.3;
 constexpr double kMerged = 0.25;
 
 /// Vertices of one color: light by color, and light on them.
-struct Shade {
+struct VertexShade {
     glm::dvec4 sum{0.0};
     double vertices = 1;
 
     glm::dvec3 color() const { return glm::dvec3(sum) / sum.w; }
 };
 
-Shade merged(const Shade& a, const Shade& b) {
+VertexShade merged(const VertexShade& a, const VertexShade& b) {
     return {a.sum + b.sum, a.vertices + b.vertices};
 }
 
 /// What merging two adds to the sum of squares over all vertices: beside others any side may be all
 /// that is seen.
-double price(const Shade& a, const Shade& b) {
+double price(const VertexShade& a, const VertexShade& b) {
     const glm::dvec3 color = merged(a, b).color();
     const glm::dvec3 from_a = a.color() - color;
     const glm::dvec3 from_b = b.color() - color;
@@ -43,7 +43,7 @@ double price(const Shade& a, const Shade& b) {
 
 /// Merges the nearest two again and again, as long as all that adds at most `most`. `shade_of`: the
 /// number of each vertex's.
-void merge(std::vector<Shade>& shades, std::vector<size_t>& shade_of, double most) {
+void merge(std::vector<VertexShade>& shades, std::vector<size_t>& shade_of, double most) {
     while (shades.size() > 1) {
         double least = std::numeric_limits<double>::infinity();
         size_t first = 0;
@@ -82,12 +82,12 @@ std::optional<PaintedBox> painted_box(const Primitive& box, const Material& mate
         fail(Status::Internal, "a box has ", out.mesh.positions.size(), " vertices, not ",
              shown.size());
     const auto vertices = static_cast<double>(shown.size());
-    Shade all{glm::dvec4(0.0), vertices};
+    VertexShade all{glm::dvec4(0.0), vertices};
     for (const glm::dvec4& one : shown)
         all.sum += glm::dvec4(one.w * glm::dvec3(one), one.w);
     if (!(all.sum.w > 0))
         return std::nullopt;
-    std::vector<Shade> shades;
+    std::vector<VertexShade> shades;
     double off = 0;
     for (const glm::dvec4& one : shown) {
         shades.push_back(
@@ -102,7 +102,7 @@ std::optional<PaintedBox> painted_box(const Primitive& box, const Material& mate
     std::iota(shade_of.begin(), shade_of.end(), size_t{0});
     merge(shades, shade_of, kMerged * kMerged * square);
     glm::dvec3 most(0.0);
-    for (const Shade& shade : shades)
+    for (const VertexShade& shade : shades)
         most = glm::max(most, shade.color());
     const glm::dvec3 base = glm::min(most, glm::dvec3(1.0));
     out.material.vertex_colors = true;

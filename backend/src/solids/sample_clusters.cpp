@@ -15,15 +15,15 @@ constexpr double kColorDistance = 0.5;
 constexpr int kMeans = 12;  // rounds of 2-means
 
 /// Of the samples of a cluster, of which each stands for `area`.
-Attributes attributes_of(const std::vector<Sample>& samples, const std::vector<uint32_t>& cluster,
-                         double area) {
+Attributes attributes_of(const std::vector<ClusterSample>& samples,
+                         const std::vector<uint32_t>& cluster, double area) {
     Attributes out;
     const auto count = static_cast<double>(cluster.size());
     measure::NormalMoments normals;
     out.color = glm::dvec3(0.0);
     out.roughness = out.metallic = out.specular = 0;
     for (const uint32_t i : cluster) {
-        const Sample& sample = samples[i];
+        const ClusterSample& sample = samples[i];
         out.centroid += sample.point / count;
         out.color += sample.shown.color / count;
         out.emission += sample.shown.emission / count;
@@ -44,13 +44,14 @@ Attributes attributes_of(const std::vector<Sample>& samples, const std::vector<u
 
 }  // namespace
 
-Clusters::Clusters(Samples samples) : samples_(std::move(samples)), clusters_(1), whole_(1, 0) {
+SampleClusters::SampleClusters(ClusterSamples samples)
+    : samples_(std::move(samples)), clusters_(1), whole_(1, 0) {
     for (uint32_t i = 0; i < samples_.points.size(); ++i)
         clusters_[0].samples.push_back(i);
     clusters_[0].attributes = attributes_of(samples_.points, clusters_[0].samples, samples_.area);
 }
 
-void Clusters::split_to(size_t count, const Job& job) {
+void SampleClusters::split_to(size_t count, const Job& job) {
     while (clusters_.size() < count) {
         job.check();
         size_t largest = clusters_.size();
@@ -66,9 +67,9 @@ void Clusters::split_to(size_t count, const Job& job) {
             whole_[largest] = 1;
             continue;
         }
-        Cluster other;
+        SampleCluster other;
         other.samples = std::move(*second);
-        for (Cluster* cluster : {&clusters_[largest], &other}) {
+        for (SampleCluster* cluster : {&clusters_[largest], &other}) {
             cluster->number = numbers_++;
             cluster->attributes = attributes_of(samples_.points, cluster->samples, samples_.area);
         }
@@ -77,27 +78,27 @@ void Clusters::split_to(size_t count, const Job& job) {
     }
 }
 
-std::optional<std::vector<uint32_t>> Clusters::split(Cluster& cluster) const {
-    const std::vector<Sample>& samples = samples_.points;
+std::optional<std::vector<uint32_t>> SampleClusters::split(SampleCluster& cluster) const {
+    const std::vector<ClusterSample>& samples = samples_.points;
     const double unit =
         kColorDistance * std::sqrt(cluster.spread() / cluster.attributes.visible_area);
-    struct Mean {
+    struct ClusterMean {
         glm::dvec3 point{0.0};
         glm::dvec3 color{0.0};
     };
     const glm::dvec3 reach =
         cluster.attributes.axes[0] * std::sqrt(cluster.spread() / cluster.attributes.visible_area);
-    std::array<Mean, 2> means;
+    std::array<ClusterMean, 2> means;
     for (size_t side = 0; side < 2; ++side)
         means[side] = {cluster.attributes.centroid + (side == 0 ? -0.5 : 0.5) * reach,
                        cluster.attributes.color};
     std::vector<uint8_t> sides(cluster.samples.size(), 0);
     std::array<size_t, 2> counts{};
     for (int round = 0; round < kMeans; ++round) {
-        std::array<Mean, 2> sums;
+        std::array<ClusterMean, 2> sums;
         counts = {};
         for (size_t i = 0; i < sides.size(); ++i) {
-            const Sample& sample = samples[cluster.samples[i]];
+            const ClusterSample& sample = samples[cluster.samples[i]];
             std::array<double, 2> off{};
             for (size_t side = 0; side < 2; ++side) {
                 const glm::dvec3 arm = sample.point - means[side].point;

@@ -111,18 +111,18 @@ void keep_thickness(glm::dvec3& half) {
 }
 
 /// The primitive whose variances are the object's, and how much of its area can be seen.
-struct Matched {
+struct MatchedPrimitive {
     Primitive primitive;
     double density = 0;
 };
 
 /// Nothing where the object has no extent to match, or is in two heaps.
 template <typename Match, typename Measure>
-std::optional<Matched> matched(const Attributes& attributes, const Bound& bound, Match match,
-                               Measure measure, double reach) {
+std::optional<MatchedPrimitive> matched(const Attributes& attributes, const Bound& bound,
+                                        Match match, Measure measure, double reach) {
     if (!usable(attributes))
         return std::nullopt;
-    Matched out;
+    MatchedPrimitive out;
     Primitive& primitive = out.primitive;
     primitive.center = attributes.centroid;
     primitive.axes = axes_of(attributes);
@@ -146,7 +146,7 @@ std::optional<Matched> matched(const Attributes& attributes, const Bound& bound,
 template <typename Match, typename Measure>
 std::optional<Primitive> fit(const Attributes& attributes, const Bound& bound, Match match,
                              Measure measure, double reach) {
-    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+    const std::optional<MatchedPrimitive> found = matched(attributes, bound, match, measure, reach);
     if (!found)
         return std::nullopt;
     Primitive out = found->primitive;
@@ -165,21 +165,21 @@ std::optional<Primitive> fit(const Attributes& attributes, const Bound& bound, M
 }
 
 template <typename Match, typename Measure>
-std::optional<Clear> fit_clear(const Attributes& attributes, const Bound& bound, Match match,
-                               Measure measure, double reach) {
-    const std::optional<Matched> found = matched(attributes, bound, match, measure, reach);
+std::optional<ClearSolid> fit_clear(const Attributes& attributes, const Bound& bound, Match match,
+                                    Measure measure, double reach) {
+    const std::optional<MatchedPrimitive> found = matched(attributes, bound, match, measure, reach);
     if (!found || !(found->density >= kFaintest && found->density < kClear))
         return std::nullopt;
-    return Clear{found->primitive, found->density};
+    return ClearSolid{found->primitive, found->density};
 }
 
 /// 32 Gauss-Legendre nodes on 0...1.
-struct Gauss {
+struct GaussLegendre {
     static constexpr int kCount = 32;
     std::array<double, kCount> at;
     std::array<double, kCount> weight;
 
-    Gauss() {
+    GaussLegendre() {
         for (int i = 0; i < kCount; ++i) {
             double x = std::cos(3.14159265358979323846 * (i + 0.75) / (kCount + 0.5));
             double slope = 1;
@@ -202,21 +202,21 @@ struct Gauss {
 
 }  // namespace
 
-Shell box_shell(const glm::dvec3& half_size) {
+ShellMoments box_shell(const glm::dvec3& half_size) {
     const glm::dvec3 side = 2.0 * half_size;
     const glm::dvec3 faces(side.y * side.z, side.z * side.x, side.x * side.y);
-    Shell out;
+    ShellMoments out;
     out.area = 2 * (faces.x + faces.y + faces.z);
     for (int i = 0; i < 3; ++i)
         out.variances[i] = (1 + 4 * faces[i] / out.area) * side[i] * side[i] / 12;  // A.14
     return out;
 }
 
-Shell ellipsoid_shell(const glm::dvec3& half_size) {
+ShellMoments ellipsoid_shell(const glm::dvec3& half_size) {
     // One octant of the unit sphere u, dA = |u / h| hx hy hz dw. The shortest half axis is c (u's
     // height z), the longest a (angle 0). Where the axes differ much the integrand bends within
     // c / b of the equator and b / a of the long axis: sinh spreads those places out.
-    static const Gauss kGauss;
+    static const GaussLegendre kGauss;
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(),
               [&](int i, int j) { return half_size[i] > half_size[j]; });
@@ -228,8 +228,8 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     constexpr double kQuarter = 1.57079632679489661923;
     const double end_z = std::asinh(1 / bend_z);
     const double end_angle = std::asinh(kQuarter / bend_angle);
-    std::array<double, Gauss::kCount> weights;  // of heights
-    std::array<double, Gauss::kCount> z_squares;
+    std::array<double, GaussLegendre::kCount> weights;  // of heights
+    std::array<double, GaussLegendre::kCount> z_squares;
     for (size_t j = 0; j < weights.size(); ++j) {
         const double t = end_z * kGauss.at[j];
         const double z = std::min(1.0, bend_z * std::sinh(t));
@@ -238,7 +238,7 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
     }
     double area = 0;
     glm::dvec3 seconds(0.0);
-    for (int i = 0; i < Gauss::kCount; ++i) {
+    for (int i = 0; i < GaussLegendre::kCount; ++i) {
         const double s = end_angle * kGauss.at[i];
         const double angle = bend_angle * std::sinh(s);
         const double angle_weight = kGauss.weight[i] * end_angle * bend_angle * std::cosh(s);
@@ -266,7 +266,7 @@ Shell ellipsoid_shell(const glm::dvec3& half_size) {
         seconds += glm::dvec3(a * a * x * x * across_sum, b * b * y * y * across_sum,
                               c * c * (sum - across_sum));
     }
-    Shell out;
+    ShellMoments out;
     out.area = 8 * area;
     for (int i = 0; i < 3; ++i)
         out.variances[order[i]] = seconds[i] / area;
@@ -285,11 +285,11 @@ bool boxlike(const Attributes& attributes) {
     return attributes.normal_moment >= kBoxMoment;
 }
 
-std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound) {
+std::optional<ClearSolid> fit_clear_box(const Attributes& attributes, const Bound& bound) {
     return fit_clear(attributes, bound, match_box, box_shell, kBoxReach);
 }
 
-std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound) {
+std::optional<ClearSolid> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound) {
     return fit_clear(attributes, bound, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
 }
 
@@ -301,7 +301,7 @@ Primitive settled(Primitive primitive, const Attributes& rough, const Attributes
     return primitive;
 }
 
-Clear settled(Clear clear, const Attributes& rough, const Attributes& sure) {
+ClearSolid settled(ClearSolid clear, const Attributes& rough, const Attributes& sure) {
     if (rough.empty() || sure.empty())
         return clear;
     clear.primitive.center += sure.centroid - rough.centroid;
@@ -309,15 +309,15 @@ Clear settled(Clear clear, const Attributes& rough, const Attributes& sure) {
     return clear;
 }
 
-std::optional<Clear> shell_box(const Attributes& attributes) {
+std::optional<ClearSolid> shell_box(const Attributes& attributes) {
     const auto found = matched(attributes, Bound{}, match_box, box_shell, kBoxReach);
-    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+    return found ? std::optional<ClearSolid>({found->primitive, found->density}) : std::nullopt;
 }
 
-std::optional<Clear> shell_ellipsoid(const Attributes& attributes) {
+std::optional<ClearSolid> shell_ellipsoid(const Attributes& attributes) {
     const auto found =
         matched(attributes, Bound{}, match_ellipsoid, ellipsoid_shell, kEllipsoidReach);
-    return found ? std::optional<Clear>({found->primitive, found->density}) : std::nullopt;
+    return found ? std::optional<ClearSolid>({found->primitive, found->density}) : std::nullopt;
 }
 
 double surface_alpha(double opacity) {

@@ -28,7 +28,7 @@ std::optional<Primitive> fit_ellipsoid(const Attributes& attributes, const Bound
 bool boxlike(const Attributes& attributes);
 
 /// A primitive that shows what is behind it.
-struct Clear {
+struct ClearSolid {
     Primitive primitive;
     double opacity = 1;  // of the whole; its surface is crossed twice (surface_alpha)
 };
@@ -37,8 +37,8 @@ struct Clear {
 /// centroid and variances, unscaled, as opaque as there is visible area. Nothing where a solid
 /// serves better or all but a fiftieth would be air.
 /// source: 4.3.3, 4.36, 4.37
-std::optional<Clear> fit_clear_box(const Attributes& attributes, const Bound& bound);
-std::optional<Clear> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
+std::optional<ClearSolid> fit_clear_box(const Attributes& attributes, const Bound& bound);
+std::optional<ClearSolid> fit_clear_ellipsoid(const Attributes& attributes, const Bound& bound);
 
 /// Many rays settle a solid: so many times those that it was fitted by, or fewer, when the last
 /// half of them changed no more (VisibleOptions). 4,096 rays know the centroid of the reference
@@ -51,22 +51,22 @@ inline constexpr uint64_t kRaysOfClear = 16;
 /// A primitive fitted by few rays (`rough`) as more of them (`sure`) see the same object: moved
 /// with the centroid, and scaled with the area; or, if it is clear, more or less opaque with it.
 Primitive settled(Primitive primitive, const Attributes& rough, const Attributes& sure);
-Clear settled(Clear clear, const Attributes& rough, const Attributes& sure);
+ClearSolid settled(ClearSolid clear, const Attributes& rough, const Attributes& sure);
 
 /// A clear primitive whatever it covers: opacity may be more than 1, where no shell is dense
 /// enough. Nothing where there is no extent to match.
-std::optional<Clear> shell_box(const Attributes& attributes);
-std::optional<Clear> shell_ellipsoid(const Attributes& attributes);
+std::optional<ClearSolid> shell_box(const Attributes& attributes);
+std::optional<ClearSolid> shell_ellipsoid(const Attributes& attributes);
 
 /// What each crossing of a shell must cover so that two of them cover `opacity`.
 double surface_alpha(double opacity);
 
 /// Surface area, and the mean square of the surface's points along each axis.
-struct Shell {
+struct ShellMoments {
     double area = 0;
     glm::dvec3 variances{0.0};
 };
-Shell box_shell(const glm::dvec3& half_size);
-Shell ellipsoid_shell(const glm::dvec3& half_size);
+ShellMoments box_shell(const glm::dvec3& half_size);
+ShellMoments ellipsoid_shell(const glm::dvec3& half_size);
 
 }  // namespace lodestone::solids

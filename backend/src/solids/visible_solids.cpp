@@ -17,7 +17,7 @@ namespace {
 /// Solids of one kind, each in the frame in which it is the unit ball, or the cube -1...1. Single
 /// precision: points are relative to the middle of all. All of them are asked for at once, four in
 /// one instruction, which takes less time than to stop at the first.
-struct Frames {
+struct SolidFrames {
     std::array<std::vector<float>, 12> columns;  // of a 3 x 4 matrix, row by row
 
     void add(const Primitive& primitive, const glm::dvec3& middle) {
@@ -82,11 +82,11 @@ struct Frames {
     }
 };
 
-class Scene {
+class SolidScene {
 public:
-    Scene(const Composite& composite, const glm::dvec3& middle) {
+    SolidScene(const Composite& composite, const glm::dvec3& middle) {
         for (const Solid& solid : composite.solids) {
-            Frames& frames = solid.box ? boxes_ : balls_;
+            SolidFrames& frames = solid.box ? boxes_ : balls_;
             number_.push_back(frames.size());
             frames.add(solid.primitive, middle);
         }
@@ -114,14 +114,14 @@ private:
         return out != 0;
     }
 
-    Frames balls_;
-    Frames boxes_;
+    SolidFrames balls_;
+    SolidFrames boxes_;
     std::vector<size_t> number_;  // of a solid among its kind
     std::vector<int32_t> met_;
 };
 
 /// Area and moments about a fixed point.
-struct Sums {
+struct MomentSums {
     double area = 0;
     glm::dvec3 first{0.0};
     glm::dmat3 second{0.0};
@@ -131,7 +131,7 @@ struct Sums {
         first += weight * arm;
         second += weight * glm::outerProduct(arm, arm);
     }
-    void add(double weight, const Sums& other) {
+    void add(double weight, const MomentSums& other) {
         area += weight * other.area;
         first += weight * other.first;
         second += weight * other.second;
@@ -150,21 +150,21 @@ struct Sums {
 };
 
 /// A point of a solid's surface.
-struct Place {
+struct SolidPoint {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0.0};
     double weight = 1;  // of its area, over the mean
 };
 
 /// `turn`: cosine and sine of where around.
-Place on_ball(const Primitive& primitive, double area, double u, const glm::dvec2& turn) {
+SolidPoint on_ball(const Primitive& primitive, double area, double u, const glm::dvec2& turn) {
     const double z = 1 - 2 * u;
     const double radius = std::sqrt(std::max(0.0, 1 - z * z));
     const glm::dvec3 unit(radius * turn.x, radius * turn.y, z);
     const glm::dvec3& half = primitive.half_size;
     const glm::dvec3 steep = unit / half;
     const double length = glm::length(steep);
-    Place out;
+    SolidPoint out;
     out.point = primitive.center + primitive.axes * (half * unit);
     out.normal = primitive.axes * (steep / length);
     out.weight = 4 * std::numbers::pi * half.x * half.y * half.z * length / area;
@@ -178,14 +178,14 @@ glm::dvec3 turned(const glm::dvec3& normal, const glm::dvec3& along) {
     return along.x * right + along.y * glm::cross(normal, right) + along.z * normal;
 }
 
-Place on_box(const Primitive& primitive, int face, double u, double v) {
+SolidPoint on_box(const Primitive& primitive, int face, double u, double v) {
     const int axis = face / 2;
     const double sign = face % 2 == 0 ? 1 : -1;
     glm::dvec3 at(0.0);
     at[axis] = sign;
     at[(axis + 1) % 3] = 2 * u - 1;
     at[(axis + 2) % 3] = 2 * v - 1;
-    Place out;
+    SolidPoint out;
     out.point = primitive.center + primitive.axes * (primitive.half_size * at);
     out.normal = sign * primitive.axes[axis];
     return out;
@@ -194,7 +194,7 @@ Place on_box(const Primitive& primitive, int face, double u, double v) {
 }  // namespace
 
 VisibleSolids::VisibleSolids(uint32_t rays, uint64_t seed) {
-    const measure::Sobol sobol(measure::scramble(seed) + 5);
+    const measure::SobolPoints sobol(measure::scramble(seed) + 5);
     rays_.resize(rays);
     for (uint32_t i = 0; i < rays; ++i) {
         const std::array<double, 4> u = sobol.point(i);
@@ -210,7 +210,7 @@ VisibleSolids::VisibleSolids(uint32_t rays, uint64_t seed) {
 
 measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double share, const Job& job,
                                           std::vector<measure::SurfaceInertia>* each) const {
-    struct Patch {
+    struct SolidPatch {
         size_t solid;
         int face;  // of a box
         double up_to;
@@ -223,12 +223,12 @@ measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double sha
     for (const Solid& solid : composite.solids)
         middle += solid.primitive.center / static_cast<double>(count);
     double area = 0;
-    std::vector<Sums> seen(count);  // of each solid
-    std::vector<Patch> patches;
+    std::vector<MomentSums> seen(count);  // of each solid
+    std::vector<SolidPatch> patches;
     for (size_t i = 0; i < count; ++i) {
         const auto& [box, primitive, slot] = composite.solids[i];
         const glm::dvec3& half = primitive.half_size;
-        const Shell shell = box ? box_shell(half) : ellipsoid_shell(half);
+        const ShellMoments shell = box ? box_shell(half) : ellipsoid_shell(half);
         seen[i].add(shell.area, primitive.center - middle);
         for (int axis = 0; axis < 3; ++axis)
             seen[i].second += shell.area * shell.variances[axis] *
@@ -243,19 +243,19 @@ measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double sha
     const auto rays = static_cast<size_t>(share * static_cast<double>(rays_.size()));
     if (!(area > 0) || !std::isfinite(area) || rays == 0)
         return {};
-    Scene scene(composite, middle);
-    std::vector<Sums> hidden(count);
+    SolidScene scene(composite, middle);
+    std::vector<MomentSums> hidden(count);
     for (size_t ray = 0; ray < rays; ++ray) {
         if (ray % 1024 == 0)
             job.check();
-        const Ray& one = rays_[ray];
+        const LeavingRay& one = rays_[ray];
         const double at = static_cast<double>(one.at) * area;
-        const auto patch =
-            std::upper_bound(patches.begin(), patches.end() - 1, at,
-                             [](double value, const Patch& other) { return value < other.up_to; });
+        const auto patch = std::upper_bound(
+            patches.begin(), patches.end() - 1, at,
+            [](double value, const SolidPatch& other) { return value < other.up_to; });
         const double part = std::clamp((at - (patch->up_to - patch->area)) / patch->area, 0.0, 1.0);
         const Solid& solid = composite.solids[patch->solid];
-        const Place place =
+        const SolidPoint place =
             solid.box ? on_box(solid.primitive, patch->face, part, static_cast<double>(one.across))
                       : on_ball(solid.primitive, patch->area, part, glm::dvec2(one.around));
         const glm::dvec3 along = turned(place.normal, glm::dvec3(one.along));
@@ -263,7 +263,7 @@ measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double sha
         if (scene.hidden(patch->solid, solid.box, glm::vec3(arm), glm::vec3(along)))
             hidden[patch->solid].add(place.weight, arm);
     }
-    Sums all;
+    MomentSums all;
     for (size_t i = 0; i < count; ++i) {
         seen[i].add(-area / static_cast<double>(rays), hidden[i]);
         all.add(1, seen[i]);

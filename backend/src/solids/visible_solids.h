@@ -29,13 +29,13 @@ public:
                                std::vector<measure::SurfaceInertia>* each = nullptr) const;
 
 private:
-    struct Ray {
+    struct LeavingRay {
         float at = 0;                       // of all area, 0...1
         float across = 0;                   // of a face, 0...1
         glm::vec2 around{1.0f, 0.0f};       // of a ball: cosine and sine
         glm::vec3 along{0.0f, 0.0f, 1.0f};  // where it leaves to, around the normal (cosine)
     };
-    std::vector<Ray> rays_;
+    std::vector<LeavingRay> rays_;
 };
 
 }  // namespace lodestone::solids

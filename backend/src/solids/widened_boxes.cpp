@@ -8,16 +8,16 @@
 
 namespace lodestone::solids {
 
-double Thin::thickness() const {
+double ThinPart::thickness() const {
     return 2 * std::max(box.half_size.y, box.half_size.z);
 }
 
-std::optional<Thin> thin_of(const Mesh& part, const Attributes& attributes) {
+std::optional<ThinPart> find_thin_part(const Mesh& part, const Attributes& attributes) {
     constexpr double kLongest = 12;  // over the thickness, at least
-    const std::optional<Clear> shell = shell_box(attributes);
+    const std::optional<ClearSolid> shell = shell_box(attributes);
     if (!shell)
         return std::nullopt;
-    Thin out{shell->primitive, attributes.visible_area};
+    ThinPart out{shell->primitive, attributes.visible_area};
     // Variances are those of a box of another thickness all along: ends are the part's own.
     const glm::dvec3 along = out.box.axes[0];
     double low = std::numeric_limits<double>::infinity();
@@ -35,8 +35,8 @@ std::optional<Thin> thin_of(const Mesh& part, const Attributes& attributes) {
     return out;
 }
 
-Clear widened(const Thin& thin, double width, double floor) {
-    Clear out{thin.box, 1};
+ClearSolid widened_box(const ThinPart& thin, double width, double floor) {
+    ClearSolid out{thin.box, 1};
     out.primitive.half_size.y = out.primitive.half_size.z = 0.5 * width;
     out.primitive = kept_above(out.primitive, true, floor);
     out.opacity = std::min(1.0, thin.visible_area / box_shell(out.primitive.half_size).area);

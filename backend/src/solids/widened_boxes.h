@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Widened: clear boxes for what is long and thinner than a pixel.
+// Widened boxes: clear boxes for what is long and thinner than a pixel.
 #pragma once
 
 #include "solids/solid_replacement.h"
@@ -9,7 +9,7 @@
 namespace lodestone::solids {
 
 /// Long and thin: a post, wire, rail, mast or twig.
-struct Thin {
+struct ThinPart {
     Primitive box;  // as long as it is and as thick as its variances say, the long axis first
     double visible_area = 0;
 
@@ -18,10 +18,10 @@ struct Thin {
 };
 
 /// Of a loose part with these attributes, if it is at least 12 times longer than thick.
-std::optional<Thin> thin_of(const Mesh& part, const Attributes& attributes);
+std::optional<ThinPart> find_thin_part(const Mesh& part, const Attributes& attributes);
 
 /// So wide across (metres, more than it is thick), as long, and as much more transparent as it is
 /// wider: area times opacity stays. None reaches below `floor`.
-Clear widened(const Thin& thin, double width, double floor);
+ClearSolid widened_box(const ThinPart& thin, double width, double floor);
 
 }  // namespace lodestone::solids

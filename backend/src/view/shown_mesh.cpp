@@ -13,7 +13,7 @@ constexpr uint64_t kCompositeTriangles = 640;  // 32 ellipsoids
 
 }  // namespace
 
-uint64_t shown_triangles(const Summary& summary) {
+uint64_t shown_triangles(const RepresentationSummary& summary) {
     switch (summary.kind) {
         case Kind::Mesh:
             return summary.cost.triangles;

@@ -11,7 +11,7 @@ inline constexpr uint64_t kBoxTriangles = 12;
 
 /// How many there are: of composites a guess from above, since a summary does not count their
 /// parts; 0 for assemblies.
-uint64_t shown_triangles(const Summary& summary);
+uint64_t shown_triangles(const RepresentationSummary& summary);
 
 /// They themselves, but for assemblies. A mesh must be resident.
 Mesh shown_mesh(const Representation& representation);

@@ -23,22 +23,22 @@ constexpr uint32_t kSiblings = 64;
 
 constexpr double kUnit = 32767;
 
-const Representation& shown(const Model& model, const choose::Node& node) {
+const Representation& shown(const Model& model, const choose::CutNode& node) {
     return model.objects.at(node.object).representations.at(node.lod);
 }
 
 /// What is below each node.
-struct Below {
+struct ChoicesBelow {
     uint64_t triangles = 0;
     uint64_t choices = 0;
 
     bool few() const { return triangles <= kFewTriangles && choices <= kFewChoices; }
 };
 
-std::vector<Below> count_below(const Model& model, const choose::Cut& cut) {
-    std::vector<Below> below(cut.nodes.size());
+std::vector<ChoicesBelow> count_below(const Model& model, const choose::Cut& cut) {
+    std::vector<ChoicesBelow> below(cut.nodes.size());
     for (size_t i = cut.nodes.size(); i-- > 0;) {  // children follow their parents
-        const choose::Node& node = cut.nodes[i];
+        const choose::CutNode& node = cut.nodes[i];
         if (!node.opened && (node.hidden & kCameraRays) == 0)
             below[i] = {shown_triangles(shown(model, node).summary), 1};
         if (node.parent != choose::kNoParent) {
@@ -49,8 +49,9 @@ std::vector<Below> count_below(const Model& model, const choose::Cut& cut) {
     return below;
 }
 
-void count_in(Hasher& hasher, const Model& model, const choose::Node& node, const Affine& world,
-              const Piece& piece, const std::vector<glm::dvec3>& colors) {
+void hash_piece(Hasher& hasher, const Model& model, const choose::CutNode& node,
+                const Affine& world, const BatchPiece& piece,
+                const std::vector<glm::dvec3>& colors) {
     double rows[12];
     world.to_rows(rows);
     hasher.value(shown(model, node).summary.hash).bytes(rows, sizeof rows);
@@ -70,17 +71,17 @@ std::array<uint8_t, 4> displayed(const glm::dvec3& linear, double alpha) {
 }
 
 /// What of a material a viewport shows.
-struct Paint {
+struct ViewportPaint {
     glm::dvec3 color{0.8};  // linear
     double alpha = 1;
     bool emits = false;
     bool vertex_colors = false;
 };
 
-Paint paint_of(const Material& material, int depth = 0) {
+ViewportPaint paint_of(const Material& material, int depth = 0) {
     constexpr double kSeenThroughGlass = 0.75;
     constexpr int kMostMixed = 8;
-    Paint paint;
+    ViewportPaint paint;
     paint.color = material.base_color;
     paint.vertex_colors = material.vertex_colors;
     if (material.alpha_mode != AlphaMode::Opaque)
@@ -94,7 +95,7 @@ Paint paint_of(const Material& material, int depth = 0) {
         paint.color = material.emission / std::max(1.0, brightest);
     }
     if (material.other && depth < kMostMixed) {
-        const Paint other = paint_of(*material.other, depth + 1);
+        const ViewportPaint other = paint_of(*material.other, depth + 1);
         const double mix = std::clamp(material.mix, 0.0, 1.0);
         paint.color = glm::mix(paint.color, other.color, mix);
         paint.alpha = glm::mix(paint.alpha, other.alpha, mix);
@@ -105,8 +106,8 @@ Paint paint_of(const Material& material, int depth = 0) {
 }
 
 /// The paints of a representation's slots, at least one.
-std::vector<Paint> paints_of(const Model& model, const Representation& representation) {
-    std::vector<Paint> paints;
+std::vector<ViewportPaint> paints_of(const Model& model, const Representation& representation) {
+    std::vector<ViewportPaint> paints;
     for (const uint32_t material : representation.materials)
         paints.push_back(paint_of(model.materials.at(material)));
     if (paints.empty())
@@ -115,23 +116,23 @@ std::vector<Paint> paints_of(const Model& model, const Representation& represent
 }
 
 /// Adds pieces to a BatchMesh.
-class Painter {
+class BatchPainter {
 public:
-    explicit Painter(BatchMesh& out) : out_(out) {}
+    explicit BatchPainter(BatchMesh& out) : out_(out) {}
 
-    void add(const Mesh& mesh, const Piece& piece, const Affine& world,
-             const std::vector<Paint>& paints) {
+    void add(const Mesh& mesh, const BatchPiece& piece, const Affine& world,
+             const std::vector<ViewportPaint>& paints) {
         const size_t last =
             std::min<size_t>(mesh.triangles.size(), static_cast<size_t>(piece.first + piece.count));
         added_.assign(mesh.positions.size(), {kNone, 0});
         const glm::dmat3 turn = normal_matrix(world.linear);
         for (size_t t = static_cast<size_t>(piece.first); t < last; ++t) {
             const uint16_t slot = mesh.slot(t);
-            const Paint& paint = paints[std::min<size_t>(slot, paints.size() - 1)];
+            const ViewportPaint& paint = paints[std::min<size_t>(slot, paints.size() - 1)];
             Triangle triangle;
             for (int corner = 0; corner < 3; ++corner) {
                 const uint32_t vertex = mesh.triangles[t][corner];
-                Added& known = added_.at(vertex);
+                AddedVertex& known = added_.at(vertex);
                 if (known.index == kNone || known.slot != slot)
                     known = {add_vertex(mesh, vertex, world, turn, paint), slot};
                 triangle[corner] = known.index;
@@ -142,7 +143,7 @@ public:
 
 private:
     static constexpr uint32_t kNone = ~uint32_t{0};
-    struct Added {
+    struct AddedVertex {
         uint32_t index = kNone;
         uint16_t slot = 0;
     };
@@ -155,7 +156,7 @@ private:
     }
 
     uint32_t add_vertex(const Mesh& mesh, uint32_t vertex, const Affine& world,
-                        const glm::dmat3& turn, const Paint& paint) {
+                        const glm::dmat3& turn, const ViewportPaint& paint) {
         out_.positions.emplace_back(world(glm::dvec3(mesh.positions[vertex])));
         std::array<int16_t, 4> normal{0, 0, 0, static_cast<int16_t>(paint.emits ? kUnit : 0)};
         if (!mesh.normals.empty()) {
@@ -177,30 +178,30 @@ private:
     }
 
     BatchMesh& out_;
-    std::vector<Added> added_;  // by vertex of the mesh
+    std::vector<AddedVertex> added_;  // by vertex of the mesh
 };
 
 /// Puts pieces into batches.
-class Sorter {
+class BatchSorter {
 public:
-    Sorter(const Model& model, const choose::Cut& cut, const std::vector<glm::dvec3>& colors)
+    BatchSorter(const Model& model, const choose::Cut& cut, const std::vector<glm::dvec3>& colors)
         : model_(model), cut_(cut), colors_(colors), below_(count_below(model, cut)) {}
 
-    std::vector<Batch> run() {
+    std::vector<ViewerBatch> run() {
         for (size_t i = 0; i < cut_.chosen.size(); ++i) {
             const uint32_t index = cut_.chosen[i];
-            const choose::Node& node = cut_.nodes[index];
+            const choose::CutNode& node = cut_.nodes[index];
             if ((node.hidden & kCameraRays) != 0)
                 continue;
             const uint64_t all = shown_triangles(shown(model_, node).summary);
-            Open& open = open_[bucket(index)];
+            OpenBatch& open = open_[bucket(index)];
             for (uint64_t first = 0; first < all;) {
                 const uint64_t room = kMostInBatch - open.batch.triangles;
                 if (room < std::min(all - first, kMostInBatch) && !open.batch.pieces.empty())
                     close(open);
-                const Piece piece{static_cast<uint32_t>(i), first,
-                                  std::min(all - first, kMostInBatch)};
-                count_in(open.hasher, model_, node, cut_.world(node), piece, colors_);
+                const BatchPiece piece{static_cast<uint32_t>(i), first,
+                                       std::min(all - first, kMostInBatch)};
+                hash_piece(open.hasher, model_, node, cut_.world(node), piece, colors_);
                 open.batch.pieces.push_back(piece);
                 open.batch.triangles += piece.count;
                 first += piece.count;
@@ -214,8 +215,8 @@ public:
     }
 
 private:
-    struct Open {
-        Batch batch;
+    struct OpenBatch {
+        ViewerBatch batch;
         Hasher hasher;
     };
     using Bucket = std::tuple<uint32_t, uint32_t>;  // node, siblings
@@ -236,7 +237,7 @@ private:
         return {above, 1 + cut_.nodes[top].placement / kSiblings};
     }
 
-    void close(Open& open) {
+    void close(OpenBatch& open) {
         open.batch.key = std::max<Hash>(open.hasher.result(), 1);
         batches_.push_back(std::move(open.batch));
         open = {};
@@ -245,33 +246,33 @@ private:
     const Model& model_;
     const choose::Cut& cut_;
     const std::vector<glm::dvec3>& colors_;
-    std::vector<Below> below_;
-    std::map<Bucket, Open> open_;
-    std::vector<Batch> batches_;
+    std::vector<ChoicesBelow> below_;
+    std::map<Bucket, OpenBatch> open_;
+    std::vector<ViewerBatch> batches_;
 };
 
 }  // namespace
 
-std::vector<Batch> batches_of(const Model& model, const choose::Cut& cut,
-                              const std::vector<glm::dvec3>& colors) {
+std::vector<ViewerBatch> batches_of(const Model& model, const choose::Cut& cut,
+                                    const std::vector<glm::dvec3>& colors) {
     if (!colors.empty() && colors.size() != cut.chosen.size())
         fail(Status::InvalidArgument, colors.size(), " colors for ", cut.chosen.size(),
              " chosen occurrences");
-    return Sorter(model, cut, colors).run();
+    return BatchSorter(model, cut, colors).run();
 }
 
-BatchMesh mesh_of(const Model& model, const choose::Cut& cut, const Batch& batch,
+BatchMesh mesh_of(const Model& model, const choose::Cut& cut, const ViewerBatch& batch,
                   const std::vector<glm::dvec3>& colors, const Job& job) {
     BatchMesh out;
     out.triangles.reserve(static_cast<size_t>(batch.triangles));
-    Painter painter(out);
-    for (const Piece& piece : batch.pieces) {
+    BatchPainter painter(out);
+    for (const BatchPiece& piece : batch.pieces) {
         job.check();
-        const choose::Node& node = cut.nodes.at(cut.chosen.at(piece.choice));
+        const choose::CutNode& node = cut.nodes.at(cut.chosen.at(piece.choice));
         const Representation& representation = shown(model, node);
-        std::vector<Paint> paints = paints_of(model, representation);
+        std::vector<ViewportPaint> paints = paints_of(model, representation);
         if (!colors.empty())
-            paints = {Paint{colors.at(piece.choice), 1, false, false}};
+            paints = {ViewportPaint{colors.at(piece.choice), 1, false, false}};
         if (representation.summary.kind == Kind::Mesh) {
             painter.add(representation.mesh(), piece, cut.world(node), paints);
             continue;

@@ -11,16 +11,16 @@
 namespace lodestone::view {
 
 /// A part of what one of cut.chosen draws. A mesh with more triangles than a batch has is cut up.
-struct Piece {
+struct BatchPiece {
     uint32_t choice = 0;
     uint64_t first = 0;  // triangle
     uint64_t count = 0;
 };
 
-struct Batch {
+struct ViewerBatch {
     Hash key = 0;  // of everything it shows, its colors included; never 0
     uint64_t triangles = 0;
-    std::vector<Piece> pieces;  // in the order of cut.chosen
+    std::vector<BatchPiece> pieces;  // in the order of cut.chosen
 };
 
 /// Most triangles of one batch; composites, which do not tell theirs before, may exceed it.
@@ -28,8 +28,8 @@ inline constexpr uint64_t kMostInBatch = 200'000;
 
 /// Whatever cameras see of a cut, each triangle in exactly one batch. `colors`: linear, by choice,
 /// in place of the materials'; empty: none. cost: O(nodes).
-std::vector<Batch> batches_of(const Model& model, const choose::Cut& cut,
-                              const std::vector<glm::dvec3>& colors = {});
+std::vector<ViewerBatch> batches_of(const Model& model, const choose::Cut& cut,
+                                    const std::vector<glm::dvec3>& colors = {});
 
 /// Ready for a graphics card.
 struct BatchMesh {
@@ -45,7 +45,7 @@ struct BatchMesh {
 
 /// The meshes of its choices must be resident. Throws Error(Internal) for one that is not,
 /// Error(Cancelled).
-BatchMesh mesh_of(const Model& model, const choose::Cut& cut, const Batch& batch,
+BatchMesh mesh_of(const Model& model, const choose::Cut& cut, const ViewerBatch& batch,
                   const std::vector<glm::dvec3>& colors = {}, const Job& job = {});
 
 }  // namespace lodestone::view

@@ -13,7 +13,7 @@ namespace {
 
 uint32_t level_within(const Object& object, uint32_t lod, uint64_t limit, uint64_t& triangles) {
     for (size_t i = lod; i < object.representations.size(); ++i) {
-        const Summary& summary = object.representations[i].summary;
+        const RepresentationSummary& summary = object.representations[i].summary;
         triangles = shown_triangles(summary);
         if (summary.kind != Kind::Assembly && triangles <= limit)
             return static_cast<uint32_t>(i);
@@ -45,7 +45,7 @@ std::vector<uint32_t> surface_levels(const Model& model, const choose::Cut& cut,
     for (uint64_t limit = std::max(most_triangles, kBoxTriangles);; limit /= 2) {
         uint64_t total = 0;
         for (size_t i = 0; i < levels.size(); ++i) {
-            const choose::Node& node = cut.nodes.at(cut.chosen[i]);
+            const choose::CutNode& node = cut.nodes.at(cut.chosen[i]);
             uint64_t triangles = 0;
             levels[i] = level_within(model.objects.at(node.object), node.lod, limit, triangles);
             total += triangles;
@@ -55,15 +55,15 @@ std::vector<uint32_t> surface_levels(const Model& model, const choose::Cut& cut,
     }
 }
 
-Surface surface_of(const Model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
-                   const Job& job) {
+ViewerSurface surface_of(const Model& model, const choose::Cut& cut,
+                         const std::vector<uint32_t>& levels, const Job& job) {
     if (levels.size() != cut.chosen.size())
         fail(Status::InvalidArgument, levels.size(), " levels for ", cut.chosen.size(),
              " chosen occurrences");
     std::vector<std::vector<glm::vec3>> parts(levels.size());
     parallel_for(levels.size(), [&](size_t i) {
         job.check();
-        const choose::Node& node = cut.nodes.at(cut.chosen[i]);
+        const choose::CutNode& node = cut.nodes.at(cut.chosen[i]);
         if ((node.hidden & kCameraRays) != 0)
             return;
         const Affine& world = cut.world(node);
@@ -74,7 +74,7 @@ Surface surface_of(const Model& model, const choose::Cut& cut, const std::vector
                 parts[i].emplace_back(world(glm::dvec3(mesh.positions.at(triangle[corner]))));
         }
     });
-    Surface surface;
+    ViewerSurface surface;
     size_t corners = 0;
     for (const std::vector<glm::vec3>& part : parts)
         corners += part.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surface: what a cut draws, as loose triangles for viewers that show it in false colors.
+// ViewerSurface: what a cut draws, as loose triangles for viewers that show it in false colors.
 #pragma once
 
 #include "choose/cut.h"
@@ -15,15 +15,15 @@ inline constexpr uint32_t kBoxOnly = ~uint32_t{0};
 std::vector<uint32_t> surface_levels(const Model& model, const choose::Cut& cut,
                                      uint64_t most_triangles);
 
-struct Surface {
+struct ViewerSurface {
     std::vector<glm::vec3> corners;  // three for each triangle, in the world
     std::vector<uint32_t> owners;    // of each triangle: its position in cut.chosen
 };
 
 /// `levels` as above; their meshes must be resident. Without what cameras do not see. The same on
 /// any number of threads. Throws Error(Internal) for a mesh that is not resident, Error(Cancelled).
-Surface surface_of(const Model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
-                   const Job& job = {});
+ViewerSurface surface_of(const Model& model, const choose::Cut& cut,
+                         const std::vector<uint32_t>& levels, const Job& job = {});
 
 /// How light a triangle is shown, .55 ... 1: lit from above and a little from the side, on both
 /// sides alike, so that shapes can be told in one color.

@@ -36,7 +36,7 @@ TEST(Maths, StretchIsTheLargestSingularValue) {
 TEST(Maths, EigenFindsAxesOfATurnedDiagonal) {
     const glm::dmat3 r = turned(1.1, glm::normalize(glm::dvec3(3, -1, 2))).linear;
     const glm::dmat3 diagonal(1, 0, 0, 0, 9, 0, 0, 0, 4);
-    const Eigen eigen = eigen_symmetric(r * diagonal * glm::transpose(r));
+    const SymmetricEigen eigen = eigen_symmetric(r * diagonal * glm::transpose(r));
     EXPECT_NEAR(eigen.values.x, 9, 1e-12);
     EXPECT_NEAR(eigen.values.y, 4, 1e-12);
     EXPECT_NEAR(eigen.values.z, 1, 1e-12);

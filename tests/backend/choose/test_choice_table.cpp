@@ -15,10 +15,10 @@ namespace {
 /// A group that has a level which would do.
 bool opened_though_good(const Model& model, const View& view, const choose::Cut& cut,
                         uint32_t index) {
-    const choose::Node& node = cut.nodes[index];
+    const choose::CutNode& node = cut.nodes[index];
     if (!node.opened)
         return false;
-    const choose::Reason reason = choose::why(model, view, cut, index);
+    const choose::ChoiceReason reason = choose::explain_choice(model, view, cut, index);
     const Object& object = model.objects[node.object];
     for (size_t lod = 1; lod < object.representations.size(); ++lod) {
         if (lod <= node.coarsest &&
@@ -31,18 +31,18 @@ bool opened_though_good(const Model& model, const View& view, const choose::Cut&
 
 }  // namespace
 
-TEST(Table, OfAnEmptyGroupHasOneRow) {
+TEST(ChoiceTable, OfAnEmptyGroupHasOneRow) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
+    const choose::ChoiceTable table = choose::ChoiceTable::whole(model, model.root, kAllKinds);
     EXPECT_EQ(table.size(), 1u);
-    EXPECT_TRUE(choose::choose(table, View{}).chosen.empty());
+    EXPECT_TRUE(choose::choose_cut(table, View{}).chosen.empty());
 }
 
-TEST(Table, KeepsSiblingsBesideEachOther) {
+TEST(ChoiceTable, KeepsSiblingsBesideEachOther) {
     const Model model = bent::pairs(8);
-    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
+    const choose::ChoiceTable table = choose::ChoiceTable::whole(model, model.root, kAllKinds);
     EXPECT_EQ(table.size(), 3u);  // row, pair, ball: what is shared is there once
     const choose::TableObject& row = table.object(table.find(model.root));
     EXPECT_EQ(row.child_count, 4u);
@@ -54,14 +54,14 @@ TEST(Table, KeepsSiblingsBesideEachOther) {
     EXPECT_EQ(table.level(ball.first_level + 1).triangles, 80u);
 }
 
-TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
+TEST(ChoiceTable, KeepsAllToTheLastBitAlthoughItIsPacked) {
     Forest forest(17);
     Model& model = forest.model;
     // A sphere that is not around the middle of its box, and one that is as a signed zero.
     model.objects[0].representations[0].summary.bound.center += glm::dvec3(0.1, -0.0, 0.3);
     model.objects[1].demand = 3;
     model.objects[2].representations[0].summary.bound = {};
-    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
+    const choose::ChoiceTable table = choose::ChoiceTable::whole(model, model.root, kAllKinds);
     size_t wishes = 0;
     for (uint32_t row = 0; row < table.size(); ++row) {
         const Object& object = model.objects[table.object(row).object];
@@ -74,25 +74,25 @@ TEST(Table, KeepsAllToTheLastBitAlthoughItIsPacked) {
         for (uint32_t i = 0; i < table.object(row).child_count; ++i) {
             const Placement& placed = object.representations[0].assembly().placements[i];
             const choose::TableChild& child = table.child(table.object(row).first_child + i);
-            const choose::TableWish& wish = table.wish(child.wish);
+            const choose::PlacementOverrides& overrides = table.overrides(child.overrides);
             const Object& below = model.objects[placed.object];
             EXPECT_EQ(child.object, placed.object);
             EXPECT_EQ(child.offset, placed.transform.offset);
-            EXPECT_EQ(wish.importance, placed.importance);
-            EXPECT_EQ(wish.demand, below.demand);
-            EXPECT_EQ(wish.coarsest, placed.coarsest);
-            EXPECT_EQ(wish.finest, placed.finest);
-            EXPECT_EQ(wish.hidden, placed.hidden);
+            EXPECT_EQ(overrides.importance, placed.importance);
+            EXPECT_EQ(overrides.demand, below.demand);
+            EXPECT_EQ(overrides.coarsest, placed.coarsest);
+            EXPECT_EQ(overrides.finest, placed.finest);
+            EXPECT_EQ(overrides.hidden, placed.hidden);
             EXPECT_EQ(child.first_child, table.object(child.row).first_child);
             EXPECT_EQ(child.child_count, table.object(child.row).child_count);
             EXPECT_TRUE(below.group() || child.finest_error == 0);
-            wishes += child.wish != 0 ? 1 : 0;
+            wishes += child.overrides != 0 ? 1 : 0;
         }
     }
     EXPECT_GT(wishes, 2u);
 }
 
-TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
+TEST(ChoiceTable, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
     // Two balls at LOD 2 (20 triangles, .2 m) cost 2 (20 * 245 + 1500) = 12,800 bytes, at LOD 1
     // 42,200; a stand-in of 80 triangles and .15 m costs 21,100.
     Model model = models::row_of_balls(2);
@@ -100,7 +100,7 @@ TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
     models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));
     models::add_level(model, bent::kPair, 0.15, shapes::sphere(1, 1));
     summarize_assemblies(model, bottom_up(model));
-    const choose::Table table = choose::Table::whole(model, model.root, kAllKinds);
+    const choose::ChoiceTable table = choose::ChoiceTable::whole(model, model.root, kAllKinds);
     const choose::TableRow& pair = table.row(table.find(bent::kPair));
     EXPECT_EQ(table.level(pair.first_level).opens_from, 0.2);
     EXPECT_EQ(bent::drawn(model, models::view_from(1 + 0.15 * 640 + 0.1)), "pair 0 1");
@@ -109,7 +109,7 @@ TEST(Table, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
               "pair 0/left 2, pair 0/right 2");
 }
 
-TEST(Table, ASealedStandInIsNotOpenedThoughItsChildrenCostLess) {
+TEST(ChoiceTable, ASealedStandInIsNotOpenedThoughItsChildrenCostLess) {
     Model model = models::row_of_balls(2);
     models::add_level(model, bent::kBall, 0.1, shapes::sphere(1, 1));
     models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));
@@ -123,16 +123,16 @@ TEST(Table, ASealedStandInIsNotOpenedThoughItsChildrenCostLess) {
               "pair 0/left 1, pair 0/right 1");
 }
 
-TEST(Table, ChangesNoCutWhetherWholeOrMadeOnTheWay) {
+TEST(ChoiceTable, ChangesNoCutWhetherWholeOrMadeOnTheWay) {
     size_t openings = 0;
     for (uint32_t seed = 0; seed < 40; ++seed) {
         Forest forest(seed);
-        const choose::Table table =
-            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::ChoiceTable table =
+            choose::ChoiceTable::whole(forest.model, forest.model.root, kAllKinds);
         for (int i = 0; i < 20; ++i) {
             const View view = forest.view();
-            const choose::Cut cut = choose::choose(table, view);
-            expect_same(cut, choose::choose(forest.model, view));
+            const choose::Cut cut = choose::choose_cut(table, view);
+            expect_same(cut, choose::choose_cut(forest.model, view));
             for (uint32_t at = 0; at < cut.nodes.size(); ++at)
                 openings += opened_though_good(forest.model, view, cut, at) ? 1 : 0;
         }
@@ -140,26 +140,27 @@ TEST(Table, ChangesNoCutWhetherWholeOrMadeOnTheWay) {
     EXPECT_GT(openings, 100u);  // the forests have what this is about
 }
 
-TEST(Table, NothingIsOpenedInVain) {
+TEST(ChoiceTable, NothingIsOpenedInVain) {
     for (uint32_t seed = 100; seed < 140; ++seed) {
         Forest forest(seed);
         const Model& model = forest.model;
         for (int i = 0; i < 20; ++i) {
             const View view = forest.view();
-            const choose::Cut cut = choose::choose(model, view);
+            const choose::Cut cut = choose::choose_cut(model, view);
             std::vector<uint64_t> below(cut.nodes.size(), 0);
             std::vector<uint64_t> children(cut.nodes.size(), 0);
             for (size_t at = cut.nodes.size(); at-- > 0;) {
-                const choose::Node& node = cut.nodes[at];
+                const choose::CutNode& node = cut.nodes[at];
                 const Object& object = model.objects[node.object];
                 if (!node.opened)
                     below[at] =
                         object.representations[node.lod].summary.cost.bytes + kBytesPerOccurrence;
                 const auto index = static_cast<uint32_t>(at);
                 if (node.opened) {
-                    const choose::Reason reason = choose::why(model, view, cut, index);
+                    const choose::ChoiceReason reason =
+                        choose::explain_choice(model, view, cut, index);
                     for (size_t lod = object.representations.size(); lod-- > 1;) {
-                        const Summary& summary = object.representations[lod].summary;
+                        const RepresentationSummary& summary = object.representations[lod].summary;
                         if (lod > node.coarsest ||
                             !choose::good_enough(view, summary.error, reason.stretch, reason.z,
                                                  reason.chosen.total))
@@ -178,16 +179,17 @@ TEST(Table, NothingIsOpenedInVain) {
     }
 }
 
-TEST(Table, NoChoiceAsksForMoreThanThePixelError) {
+TEST(ChoiceTable, NoChoiceAsksForMoreThanThePixelError) {
     for (uint32_t seed = 200; seed < 220; ++seed) {
         Forest forest(seed);
-        const choose::Table table =
-            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::ChoiceTable table =
+            choose::ChoiceTable::whole(forest.model, forest.model.root, kAllKinds);
         View view = forest.view();
         for (view.pixel_error = 0.1; view.pixel_error < 64; view.pixel_error *= 1.5) {
-            const choose::Cut cut = choose::choose(table, view);
+            const choose::Cut cut = choose::choose_cut(table, view);
             for (const uint32_t node : cut.chosen) {
-                const choose::Reason reason = choose::why(forest.model, view, cut, node);
+                const choose::ChoiceReason reason =
+                    choose::explain_choice(forest.model, view, cut, node);
                 EXPECT_LE(reason.chosen.error_px * reason.chosen.total,
                           view.pixel_error * (1 + 1e-12));
             }
@@ -195,7 +197,7 @@ TEST(Table, NoChoiceAsksForMoreThanThePixelError) {
     }
 }
 
-TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
+TEST(ChoiceTable, WhyTellsWhatWasChosenByUnderAllThatBends) {
     for (uint32_t seed = 300; seed < 320; ++seed) {
         Forest forest(seed);
         View view = forest.view();
@@ -207,12 +209,13 @@ TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
         view.modifiers.when_dark = view.modifiers.when_moving = true;
         view.modifiers.closing = view.camera;
         view.modifiers.closing->position.x += 1;
-        const choose::Table table =
-            choose::Table::whole(forest.model, forest.model.root, kAllKinds);
-        const choose::Cut cut = choose::choose(table, view);
+        const choose::ChoiceTable table =
+            choose::ChoiceTable::whole(forest.model, forest.model.root, kAllKinds);
+        const choose::Cut cut = choose::choose_cut(table, view);
         for (const uint32_t index : cut.chosen) {
-            const choose::Reason reason = choose::why(forest.model, view, cut, index);
-            const choose::Node& node = cut.nodes[index];
+            const choose::ChoiceReason reason =
+                choose::explain_choice(forest.model, view, cut, index);
+            const choose::CutNode& node = cut.nodes[index];
             EXPECT_EQ(reason.chosen.error_px, choose::error_on_screen(table, view, cut, node));
             EXPECT_FALSE(reason.chosen.error_px * reason.chosen.total >
                          view.pixel_error * (1 + 1e-12));
@@ -221,14 +224,15 @@ TEST(Table, WhyTellsWhatWasChosenByUnderAllThatBends) {
     }
 }
 
-TEST(Table, IsSafeFromManyThreads) {
+TEST(ChoiceTable, IsSafeFromManyThreads) {
     Forest forest(7);
-    const choose::Table table = choose::Table::whole(forest.model, forest.model.root, kAllKinds);
+    const choose::ChoiceTable table =
+        choose::ChoiceTable::whole(forest.model, forest.model.root, kAllKinds);
     std::vector<View> views(32);
     for (View& view : views)
         view = forest.view();
     std::vector<choose::Cut> cuts(views.size());
-    parallel_for(views.size(), [&](size_t i) { cuts[i] = choose::choose(table, views[i]); });
+    parallel_for(views.size(), [&](size_t i) { cuts[i] = choose::choose_cut(table, views[i]); });
     for (size_t i = 0; i < views.size(); ++i)
-        expect_same(cuts[i], choose::choose(table, views[i]));
+        expect_same(cuts[i], choose::choose_cut(table, views[i]));
 }

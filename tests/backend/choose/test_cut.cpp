@@ -26,7 +26,7 @@ Model balls_with_levels() {
 
 }  // namespace
 
-TEST(Criterion, PixelGrowsWithDistanceAndNeverBelowTheNearClip) {
+TEST(DetailCriterion, PixelGrowsWithDistanceAndNeverBelowTheNearClip) {
     const View view = view_from(10, 1);
     EXPECT_NEAR(choose::pixel_size(view, 64), 0.1, 1e-12);
     EXPECT_EQ(choose::pixel_size(view, 0), choose::pixel_size(view, view.camera.near_clip));
@@ -37,25 +37,25 @@ TEST(Criterion, PixelGrowsWithDistanceAndNeverBelowTheNearClip) {
 }
 
 TEST(Cut, ModelWithoutRootIsRefused) {
-    EXPECT_THROW(choose::choose(Model{}, View{}), Error);
+    EXPECT_THROW(choose::choose_cut(Model{}, View{}), Error);
     View view;
     view.width = 0;
-    EXPECT_THROW(choose::choose(models::row_of_balls(2), view), Error);
+    EXPECT_THROW(choose::choose_cut(models::row_of_balls(2), view), Error);
     view = View{};
     view.pixel_error = std::nan("");
-    EXPECT_THROW(choose::choose(models::row_of_balls(2), view), Error);
+    EXPECT_THROW(choose::choose_cut(models::row_of_balls(2), view), Error);
 }
 
 TEST(Cut, EmptyGroupDrawsNothing) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    EXPECT_TRUE(choose::choose(model, View{}).chosen.empty());
+    EXPECT_TRUE(choose::choose_cut(model, View{}).chosen.empty());
 }
 
 TEST(Cut, ZeroPixelErrorDrawsTheOriginalsOnce) {
     const Model model = balls_with_levels();
-    const choose::Cut cut = choose::choose(model, view_from(1000, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1000, 0));
     ASSERT_EQ(cut.chosen.size(), 8u);
     for (const uint32_t index : cut.chosen)
         EXPECT_EQ(cut.nodes[index].lod, 0u);
@@ -77,21 +77,21 @@ TEST(Cut, AGroupWhoseStandInCostsMoreThanItsChildrenIsOpened) {
     add_level(model, model.root, 30, shapes::sphere(1, 2));  // the row: more than four spheres
     summarize_assemblies(model, bottom_up(model));
     View far = view_from(1e6, 1);
-    choose::Cut cut = choose::choose(model, far);
+    choose::Cut cut = choose::choose_cut(model, far);
     EXPECT_EQ(cut.kinds.at("box"), 8u);
     EXPECT_EQ(cut.nodes.size(), 1u + 4u + 8u);
     for (const uint32_t index : cut.chosen)
         EXPECT_EQ(choose::path_of(model, cut, index).substr(0, 5), "pair ");
     far.kinds = mask_of(Kind::Mesh);  // spheres for pairs cost less than the balls themselves
-    cut = choose::choose(model, far);
+    cut = choose::choose_cut(model, far);
     EXPECT_EQ(cut.chosen.size(), 1u);
     add_level(model, 1, 0.3, shapes::cube());
-    cut = choose::choose(model, far);
+    cut = choose::choose_cut(model, far);
     EXPECT_EQ(cut.chosen.size(), 4u);
     EXPECT_EQ(cut.nodes.size(), 1u + 4u);
     EXPECT_EQ(cut.triangles, 4u * 12u);
     add_level(model, model.root, 40, shapes::cube());
-    cut = choose::choose(model, far);
+    cut = choose::choose_cut(model, far);
     EXPECT_EQ(cut.chosen.size(), 1u);
     EXPECT_EQ(cut.nodes.size(), 1u);
     EXPECT_EQ(cut.largest_error_node, 0u);
@@ -99,7 +99,7 @@ TEST(Cut, AGroupWhoseStandInCostsMoreThanItsChildrenIsOpened) {
 
 TEST(Cut, FarGroupsAreNeverOpened) {
     const Model model = balls_with_levels();
-    const choose::Cut cut = choose::choose(model, view_from(1000, 1));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1000, 1));
     EXPECT_EQ(cut.chosen.size(), 4u);      // one stand-in a pair
     EXPECT_EQ(cut.nodes.size(), 1u + 4u);  // the row and the pairs
     EXPECT_EQ(choose::path_of(model, cut, cut.chosen[2]), "pair 2");
@@ -111,9 +111,9 @@ TEST(Cut, EveryChoiceIsTheCheapestThatIsGoodEnough) {
     const Model model = balls_with_levels();
     for (const double distance : {2.0, 9.0, 33.0, 150.0, 700.0}) {
         const View view = view_from(distance, 1);
-        const choose::Cut cut = choose::choose(model, view);
+        const choose::Cut cut = choose::choose_cut(model, view);
         for (const uint32_t index : cut.chosen) {
-            const choose::Node& node = cut.nodes[index];
+            const choose::CutNode& node = cut.nodes[index];
             const Object& object = model.objects[node.object];
             const double z = lodestone::distance(transformed(object.bound(), cut.world(node)),
                                                  view.camera.position);
@@ -132,7 +132,7 @@ TEST(Cut, CoarserPixelErrorNeverDrawsMore) {
     const Model model = balls_with_levels();
     uint64_t last = ~uint64_t{0};
     for (const double pixel_error : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 64.0}) {
-        const choose::Cut cut = choose::choose(model, view_from(20, pixel_error));
+        const choose::Cut cut = choose::choose_cut(model, view_from(20, pixel_error));
         EXPECT_LE(cut.triangles, last);
         EXPECT_LE(cut.largest_error_px, pixel_error + 1e-12);
         last = cut.triangles;
@@ -148,9 +148,9 @@ TEST(Cut, EnlargedPlacementIsHeldToItsStretch) {
     add_level(model, ball, 0.01, shapes::cube());
     summarize_assemblies(model, bottom_up(model));
     // 0.01 m enlarged ten times is one pixel at 64 m from the bound.
-    EXPECT_EQ(choose::choose(model, view_from(64 + 10 - 0.1, 1)).kinds.at("mesh"), 1u);
-    EXPECT_EQ(choose::choose(model, view_from(64 + 10 - 0.1, 1)).triangles, 1280u);
-    EXPECT_EQ(choose::choose(model, view_from(64 + 10 + 0.1, 1)).triangles, 12u);
+    EXPECT_EQ(choose::choose_cut(model, view_from(64 + 10 - 0.1, 1)).kinds.at("mesh"), 1u);
+    EXPECT_EQ(choose::choose_cut(model, view_from(64 + 10 - 0.1, 1)).triangles, 1280u);
+    EXPECT_EQ(choose::choose_cut(model, view_from(64 + 10 + 0.1, 1)).triangles, 12u);
 }
 
 TEST(Cut, OnlyKindsTheViewCanDrawAreChosen) {
@@ -162,11 +162,11 @@ TEST(Cut, OnlyKindsTheViewCanDrawAreChosen) {
     summarize(box, model);
     box.summary.error = 0.5;
     model.objects[1].representations.push_back(box);
-    EXPECT_EQ(choose::choose(model, view_from(1000, 2)).kinds.at("box"), 4u);
+    EXPECT_EQ(choose::choose_cut(model, view_from(1000, 2)).kinds.at("box"), 4u);
     View view = view_from(1000, 2);
     view.kinds = mask_of(Kind::Mesh);
-    EXPECT_EQ(choose::choose(model, view).kinds.count("box"), 0u);
-    EXPECT_EQ(choose::choose(model, view).kinds.at("mesh"), 4u);
+    EXPECT_EQ(choose::choose_cut(model, view).kinds.count("box"), 0u);
+    EXPECT_EQ(choose::choose_cut(model, view).kinds.at("mesh"), 4u);
 }
 
 TEST(Cut, CycleIsRefusedWithBothNames) {
@@ -188,7 +188,7 @@ TEST(Cut, CycleIsRefusedWithBothNames) {
 TEST(Cut, CancelledJobStops) {
     const int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
-    EXPECT_THROW(choose::choose(models::row_of_balls(4), view_from(1, 1), job), Error);
+    EXPECT_THROW(choose::choose_cut(models::row_of_balls(4), view_from(1, 1), job), Error);
 }
 
 TEST(Cut, ManyOccurrencesOfDeepSharing) {
@@ -208,7 +208,7 @@ TEST(Cut, ManyOccurrencesOfDeepSharing) {
     model.root = below;
     summarize_assemblies(model, bottom_up(model));
     EXPECT_EQ(totals(model).occurrences, 32768u);
-    const choose::Cut cut = choose::choose(model, view_from(10, 1));
+    const choose::Cut cut = choose::choose_cut(model, view_from(10, 1));
     EXPECT_EQ(cut.chosen.size(), 32768u);
     size_t seen = 0;
     for_each_occurrence(model, [&](const Occurrence& occurrence) {
@@ -230,11 +230,11 @@ TEST(Cut, GroupsThatPlaceAnotherTwiceSixtyTimesOverAreRefused) {
     model.root = below;
     summarize_assemblies(model, bottom_up(model));
     const View view = view_from(100, 0);
-    const choose::Table table = choose::Table::whole(model, model.root, view.kinds);
+    const choose::ChoiceTable table = choose::ChoiceTable::whole(model, model.root, view.kinds);
     const Job job;
     for (const uint64_t triangles : {uint64_t{0}, uint64_t{1} << 60u}) {
         choose::FactorField field(model, view);
-        choose::Chooser chooser(table, nullptr, view, field, job, 1000);
+        choose::CutChooser chooser(table, nullptr, view, field, job, 1000);
         choose::Cut cut;
         if (triangles == 0) {
             EXPECT_THROW(chooser.run(table.find(model.root), {}, cut), Error);

@@ -18,67 +18,68 @@ View from(double distance) {
 
 }  // namespace
 
-TEST(Budget, WithoutLimitsIsTheViewsOwnThreshold) {
+TEST(CutBudget, WithoutLimitsIsTheViewsOwnThreshold) {
     const Model model = bent::pairs();
-    const choose::Budgeted found = choose::choose_within(model, from(300), {});
+    const choose::BudgetedCut found = choose::fit_cut_to_budget(model, from(300), {});
     EXPECT_TRUE(found.fits);
     EXPECT_EQ(found.pixel_error, 0);
     EXPECT_EQ(found.cut.triangles, 4u * 1280u);
     EXPECT_EQ(found.cuts, 1u);
 }
 
-TEST(Budget, FindsTheLeastThresholdThatFits) {
+TEST(CutBudget, FindsTheLeastThresholdThatFits) {
     // Four balls of 20 triangles (LOD 2, .2 m) or two cubes of 12 (.4 m), seen from 300 m.
     const Model model = bent::pairs();
-    const choose::Budgeted balls = choose::choose_within(model, from(301), {80, 0});
+    const choose::BudgetedCut balls = choose::fit_cut_to_budget(model, from(301), {80, 0});
     EXPECT_EQ(balls.cut.triangles, 80u);
     EXPECT_NEAR(balls.pixel_error, 0.2 * 640 / 300, 1e-12);
-    const choose::Budgeted cubes = choose::choose_within(model, from(301), {79, 0});
+    const choose::BudgetedCut cubes = choose::fit_cut_to_budget(model, from(301), {79, 0});
     EXPECT_EQ(cubes.cut.triangles, 12u + 40u);  // the far pair first: its bound is 300.02 m away
-    const choose::Budgeted both = choose::choose_within(model, from(301), {51, 0});
+    const choose::BudgetedCut both = choose::fit_cut_to_budget(model, from(301), {51, 0});
     EXPECT_EQ(both.cut.triangles, 24u);
     EXPECT_NEAR(both.pixel_error, 0.4 * 640 / 300, 1e-12);
     View view = from(301);
     view.pixel_error = both.pixel_error;  // to the last bit
-    EXPECT_EQ(choose::choose(model, view).triangles, 24u);
+    EXPECT_EQ(choose::choose_cut(model, view).triangles, 24u);
     view.pixel_error = std::nextafter(both.pixel_error, 0);
-    EXPECT_EQ(choose::choose(model, view).triangles, 52u);
+    EXPECT_EQ(choose::choose_cut(model, view).triangles, 52u);
 }
 
-TEST(Budget, CountsBytesAsPovRayKeepsThem) {
+TEST(CutBudget, CountsBytesAsPovRayKeepsThem) {
     // 20 triangles once and 1,500 bytes for each of four balls.
     const Model model = bent::pairs();
     const uint64_t bytes = 20 * kBytesPerTriangle + 4 * kBytesPerOccurrence;
-    const choose::Budgeted found = choose::choose_within(model, from(301), {0, bytes});
+    const choose::BudgetedCut found = choose::fit_cut_to_budget(model, from(301), {0, bytes});
     EXPECT_EQ(found.cut.bytes, bytes);
     EXPECT_NEAR(found.pixel_error, 0.2 * 640 / 300, 1e-12);
-    EXPECT_LT(choose::choose_within(model, from(301), {0, bytes - 1}).cut.bytes, bytes);
+    EXPECT_LT(choose::fit_cut_to_budget(model, from(301), {0, bytes - 1}).cut.bytes, bytes);
 }
 
-TEST(Budget, IsNeverFinerThanTheView) {
+TEST(CutBudget, IsNeverFinerThanTheView) {
     const Model model = bent::pairs();
-    const choose::Budgeted found = choose::choose_within(model, view_from(301, 3), {1000000, 0});
+    const choose::BudgetedCut found =
+        choose::fit_cut_to_budget(model, view_from(301, 3), {1000000, 0});
     EXPECT_EQ(found.pixel_error, 3);
     EXPECT_EQ(found.cut.triangles, 24u);
 }
 
-TEST(Budget, WhereNothingFitsTheCoarsestIsMadeAndSaysSo) {
+TEST(CutBudget, WhereNothingFitsTheCoarsestIsMadeAndSaysSo) {
     const Model model = bent::pairs();
-    const choose::Budgeted found = choose::choose_within(model, from(301), {23, 0});
+    const choose::BudgetedCut found = choose::fit_cut_to_budget(model, from(301), {23, 0});
     EXPECT_FALSE(found.fits);
     EXPECT_EQ(found.cut.triangles, 24u);
     EXPECT_NEAR(found.pixel_error, 0.4 * 640 / 300, 1e-12);
-    EXPECT_FALSE(choose::choose_within(model, from(301), {0, 1}).fits);
+    EXPECT_FALSE(choose::fit_cut_to_budget(model, from(301), {0, 1}).fits);
 }
 
-TEST(Budget, IsNeverExceededAndMoreNeverMeansCoarser) {
+TEST(CutBudget, IsNeverExceededAndMoreNeverMeansCoarser) {
     Model model = bent::pairs(40);
     for (const bool bytes : {false, true}) {
         double last = std::numeric_limits<double>::infinity();
         for (uint64_t most = 200; most < 80000; most = most * 6 / 5) {
             const uint64_t limit = bytes ? 100 * most : most;
-            const choose::Budget budget{bytes ? 0 : limit, bytes ? limit : 0};
-            const choose::Budgeted found = choose::choose_within(model, from(40), budget);
+            const choose::CutBudget budget{bytes ? 0 : limit, bytes ? limit : 0};
+            const choose::BudgetedCut found = choose::fit_cut_to_budget(model, from(40), budget);
             if (found.fits) {
                 EXPECT_LE(bytes ? found.cut.bytes : found.cut.triangles, limit);
             }
@@ -89,12 +90,12 @@ TEST(Budget, IsNeverExceededAndMoreNeverMeansCoarser) {
     }
 }
 
-TEST(Budget, NothingFinerFitsWhateverBendsQuality) {
+TEST(CutBudget, NothingFinerFitsWhateverBendsQuality) {
     int found = 0;
     for (uint32_t seed = 0; seed < 60; ++seed) {
         forest::Forest forest(seed);
         View view = forest.view();
-        Modifiers& modifiers = view.modifiers;
+        QualityModifiers& modifiers = view.modifiers;
         view.pixel_error = seed % 3 == 0 ? 0.3 * forest.any() : 0;
         modifiers.lenses = {bent::lens(100 * forest.any(), 300 * forest.any(), 5),
                             bent::lens(-100 * forest.any(), 300 * forest.any(), 0.3)};
@@ -105,33 +106,33 @@ TEST(Budget, NothingFinerFitsWhateverBendsQuality) {
         if (seed % 5 == 2)
             modifiers.depth = 1.5;
         if (seed % 5 == 3)
-            modifiers.criterion = Criterion::Area;
+            modifiers.criterion = DetailCriterion::Area;
         if (seed % 5 == 4)
-            modifiers.criterion = Criterion::Feature;
+            modifiers.criterion = DetailCriterion::Feature;
         modifiers.when_moving = seed % 4 == 1;
         modifiers.when_dark = seed % 4 == 2;
         modifiers.off_screen = seed % 4 == 3 ? OffScreen::Shadows : OffScreen::Full;
-        const auto table = choose::Table::whole(forest.model, forest.model.root, view.kinds);
-        const choose::Cut finest = choose::choose(table, view);
+        const auto table = choose::ChoiceTable::whole(forest.model, forest.model.root, view.kinds);
+        const choose::Cut finest = choose::choose_cut(table, view);
         for (const double share : {0.02, 0.3, 0.9, 1.0}) {
             const auto part = [&](uint64_t all) {
                 return 1 + static_cast<uint64_t>(share * static_cast<double>(all));
             };
-            const choose::Budget budget{seed % 2 == 0 ? part(finest.triangles) : 0,
-                                        seed % 2 == 0 ? 0 : part(finest.bytes)};
-            const choose::Budgeted made = choose::choose_within(table, view, budget);
+            const choose::CutBudget budget{seed % 2 == 0 ? part(finest.triangles) : 0,
+                                           seed % 2 == 0 ? 0 : part(finest.bytes)};
+            const choose::BudgetedCut made = choose::fit_cut_to_budget(table, view, budget);
             EXPECT_LE(made.cuts, 3u);
             EXPECT_EQ(made.fits, budget.fits(made.cut));
             View other = view;
             other.pixel_error = made.pixel_error;
-            forest::expect_same(choose::choose(table, other), made.cut);
+            forest::expect_same(choose::choose_cut(table, other), made.cut);
             if (made.pixel_error == view.pixel_error || !made.fits)
                 continue;
             ++found;
             for (int i = 0; i < 60; ++i) {
                 other.pixel_error = std::nextafter(made.pixel_error, 0) * std::exp2(-0.2 * i);
                 EXPECT_FALSE(other.pixel_error >= view.pixel_error &&
-                             budget.fits(choose::choose(table, other)))
+                             budget.fits(choose::choose_cut(table, other)))
                     << other.pixel_error << " fits, too, not only " << made.pixel_error;
             }
             if (testing::Test::HasFailure()) {
@@ -143,15 +144,16 @@ TEST(Budget, NothingFinerFitsWhateverBendsQuality) {
     EXPECT_GT(found, 60);
 }
 
-TEST(Budget, ThresholdsAreExactToTheLastBit) {
-    for (const Criterion criterion : {Criterion::Resolution, Criterion::Feature, Criterion::Area}) {
+TEST(CutBudget, ThresholdsAreExactToTheLastBit) {
+    for (const DetailCriterion criterion :
+         {DetailCriterion::Resolution, DetailCriterion::Feature, DetailCriterion::Area}) {
         forest::Forest any(5);
         for (int i = 0; i < 200; ++i) {
             View view = any.view();
             view.modifiers.criterion = criterion;
             const double error = std::exp2(200 * any.any() - 100);
-            choose::Sight sight{100 * any.any(), any.any(), 2 * any.any(), 3 * any.any(),
-                                any.any()};
+            choose::OccurrenceSight sight{100 * any.any(), any.any(), 2 * any.any(), 3 * any.any(),
+                                          any.any()};
             const double least = choose::least_threshold(view, sight, error, 1, 3);
             view.pixel_error = least;
             EXPECT_TRUE(choose::good_enough(view, sight, error, 1, 3));
@@ -165,31 +167,31 @@ TEST(Budget, ThresholdsAreExactToTheLastBit) {
     EXPECT_EQ(choose::least_threshold(view, {0, 0, 1, 1, 0}, 1, 1, 2), kInfinity);
 }
 
-TEST(Budget, OneThingThatIsTooDearDoesNotFit) {
+TEST(CutBudget, OneThingThatIsTooDearDoesNotFit) {
     Model model;
     model.root = models::add_leaf(model, "ball", shapes::sphere(1, 3));
     summarize_assemblies(model, bottom_up(model));
-    EXPECT_FALSE(choose::choose_within(model, from(300), {1279, 0}).fits);
-    EXPECT_TRUE(choose::choose_within(model, from(300), {1280, 0}).fits);
+    EXPECT_FALSE(choose::fit_cut_to_budget(model, from(300), {1279, 0}).fits);
+    EXPECT_TRUE(choose::fit_cut_to_budget(model, from(300), {1280, 0}).fits);
 }
 
-TEST(Budget, LensesKeepTheirPartOfIt) {
+TEST(CutBudget, LensesKeepTheirPartOfIt) {
     const Model model = bent::pairs();
     View view = from(301);
     view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
-    EXPECT_EQ(drawn(model, choose::choose_within(model, view, {120, 0}).cut),
+    EXPECT_EQ(drawn(model, choose::fit_cut_to_budget(model, view, {120, 0}).cut),
               "pair 0/left 1, pair 0/right 2, pair 1 1");
 }
 
-TEST(Budget, ByDistancesIsRefused) {
+TEST(CutBudget, ByDistancesIsRefused) {
     View view = from(300);
-    view.modifiers.criterion = Criterion::Distance;
-    EXPECT_THROW(choose::choose_within(bent::pairs(), view, {1, 0}), Error);
+    view.modifiers.criterion = DetailCriterion::Distance;
+    EXPECT_THROW(choose::fit_cut_to_budget(bent::pairs(), view, {1, 0}), Error);
 }
 
-TEST(Budget, CancelledJobStops) {
+TEST(CutBudget, CancelledJobStops) {
     const int32_t cancel = 1;
     EXPECT_THROW(
-        choose::choose_within(bent::pairs(), from(300), {1, 0}, Job(&cancel, nullptr, nullptr)),
+        choose::fit_cut_to_budget(bent::pairs(), from(300), {1, 0}, Job(&cancel, nullptr, nullptr)),
         Error);
 }

@@ -30,14 +30,14 @@ View flat_view() {
     return view;
 }
 
-choose::Reason reason_of(const Model& model, const View& view, size_t position = 0) {
-    const choose::Cut cut = choose::choose(model, view);
-    return choose::why(model, view, cut, cut.chosen.at(position));
+choose::ChoiceReason reason_of(const Model& model, const View& view, size_t position = 0) {
+    const choose::Cut cut = choose::choose_cut(model, view);
+    return choose::explain_choice(model, view, cut, cut.chosen.at(position));
 }
 
 std::string refusal(const View& view) {
     try {
-        choose::choose(bent::pairs(), view);
+        choose::choose_cut(bent::pairs(), view);
     } catch (const Error& error) {
         return error.what();
     }
@@ -138,11 +138,14 @@ TEST(Motion, InsideAGroupOpensNothingAndCoarsensItsPartOnly) {
     View view = flat_view();
     view.modifiers.when_moving = true;
     bent::move(model, kPair, 1, models::moved(3, 0, 0.125));  // right, in both pairs
-    const choose::Cut cut = choose::choose(model, view);
+    const choose::Cut cut = choose::choose_cut(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
-    EXPECT_EQ(choose::why(model, view, cut, cut.chosen[0]).factors.motion, 1);
-    EXPECT_NEAR(choose::why(model, view, cut, cut.chosen[1]).factors.motion, std::sqrt(65.0), 1e-9);
-    EXPECT_EQ(choose::why(model, view, cut, cut.nodes[cut.chosen[1]].parent).factors.motion, 1);
+    EXPECT_EQ(choose::explain_choice(model, view, cut, cut.chosen[0]).factors.motion, 1);
+    EXPECT_NEAR(choose::explain_choice(model, view, cut, cut.chosen[1]).factors.motion,
+                std::sqrt(65.0), 1e-9);
+    EXPECT_EQ(
+        choose::explain_choice(model, view, cut, cut.nodes[cut.chosen[1]].parent).factors.motion,
+        1);
 }
 
 TEST(Motion, OfTheCameraCoarsensWhatCrossesTheScreen) {
@@ -160,9 +163,9 @@ TEST(Motion, OfTheCameraCoarsensWhatCrossesTheScreen) {
 }
 
 TEST(Darkness, IsWhatIsDisplayedOverTheMiddle) {
-    EXPECT_EQ(choose::displayed(0), 0);
-    EXPECT_NEAR(choose::displayed(1), 1, 1e-12);
-    EXPECT_NEAR(choose::displayed(0.21404114), 0.5, 1e-7);  // sRGB's
+    EXPECT_EQ(choose::displayed_radiance(0), 0);
+    EXPECT_NEAR(choose::displayed_radiance(1), 1, 1e-12);
+    EXPECT_NEAR(choose::displayed_radiance(0.21404114), 0.5, 1e-7);  // sRGB's
     EXPECT_EQ(choose::coarser_by_darkness(1), 1);
     EXPECT_EQ(choose::coarser_by_darkness(0.5), 1);
     EXPECT_EQ(choose::coarser_by_darkness(0.25), 2);
@@ -205,8 +208,8 @@ TEST(Darkness, DoesNotCountBeforeABrightBackgroundOrOnWhatGlows) {
     EXPECT_EQ(reason_of(model, view).factors.darkness, 1);
 }
 
-TEST(Factors, MultiplyAndStayWithinTheirRange) {
-    choose::Factors factors;
+TEST(DetailFactors, MultiplyAndStayWithinTheirRange) {
+    choose::DetailFactors factors;
     EXPECT_EQ(factors.total(), 1);
     factors = {2, 3, 1.5, 0.5, 2, 4, 1.5};
     EXPECT_DOUBLE_EQ(factors.total(), 2 * 3 * 1.5 * 0.5 / (2 * 4 * 1.5));
@@ -221,7 +224,7 @@ TEST(Factors, MultiplyAndStayWithinTheirRange) {
 TEST(Why, NamesTheNumbersOfTheChoice) {
     Model model = bent::pairs();
     const View view = view_from(301);
-    const choose::Reason reason = reason_of(model, view);
+    const choose::ChoiceReason reason = reason_of(model, view);
     EXPECT_EQ(reason.chosen.object, kPair);
     EXPECT_EQ(reason.chosen.lod, 1u);
     EXPECT_NEAR(reason.z, 300, 1e-9);
@@ -229,13 +232,13 @@ TEST(Why, NamesTheNumbersOfTheChoice) {
     EXPECT_NEAR(reason.chosen.error_px, 0.4 * 640 / 300, 1e-9);
     EXPECT_EQ(reason.stretch, 1);
     EXPECT_FALSE(reason.coarser);  // the row itself has none
-    const choose::Reason near = reason_of(model, view_from(201));
+    const choose::ChoiceReason near = reason_of(model, view_from(201));
     EXPECT_EQ(near.chosen.object, kBall);
     EXPECT_EQ(near.chosen.lod, 2u);
     ASSERT_TRUE(near.coarser);
     EXPECT_EQ(near.coarser->object, kPair);
     EXPECT_NEAR(near.coarser->error_px, 0.4 * 640 / 200, 1e-9);
-    const choose::Reason nearer = reason_of(model, view_from(101));
+    const choose::ChoiceReason nearer = reason_of(model, view_from(101));
     EXPECT_EQ(nearer.chosen.lod, 1u);
     ASSERT_TRUE(nearer.coarser);
     EXPECT_EQ(nearer.coarser->lod, 2u);
@@ -249,14 +252,14 @@ TEST(Why, FromInsideTheBoundTheDistanceIsTheNearClip) {
     EXPECT_EQ(reason_of(model, view).z, view.camera.near_clip);
     EXPECT_EQ(reason_of(model, view).chosen.lod, 0u);
     view.camera.position.x = std::nan("");
-    EXPECT_THROW(choose::choose(model, view), Error);
+    EXPECT_THROW(choose::choose_cut(model, view), Error);
 }
 
 TEST(Criteria, FeatureIsTheShareOfThePictureThatItCovers) {
     // From 300 m the picture is 300 x 168.75 m; a feature of .4 m is .16 of that.
     const Model model = bent::pairs();
     View view = view_from(301);
-    view.modifiers.criterion = Criterion::Feature;
+    view.modifiers.criterion = DetailCriterion::Feature;
     view.pixel_error = 0.16 / (300 * 168.75) * 1.0001;
     EXPECT_EQ(drawn(model, view), kUntouched);
     view.pixel_error *= 0.999;
@@ -266,7 +269,7 @@ TEST(Criteria, FeatureIsTheShareOfThePictureThatItCovers) {
 TEST(Criteria, DistanceServesTwiceAsFarForEachLevel) {
     const Model model = bent::pairs(2);
     View view = view_from(101);
-    view.modifiers.criterion = Criterion::Distance;
+    view.modifiers.criterion = DetailCriterion::Distance;
     view.pixel_error = 49;
     EXPECT_EQ(drawn(model, view), "pair 0 1");
     view.pixel_error = 101;  // the pair, and balls, are nearer
@@ -278,7 +281,7 @@ TEST(Criteria, DistanceServesTwiceAsFarForEachLevel) {
     summarize_assemblies(ball, bottom_up(ball));
     for (const auto& [threshold, lod] : {std::pair{101.0, 0u}, {99.0, 1u}, {49.0, 2u}}) {
         view.pixel_error = threshold;
-        EXPECT_EQ(choose::choose(ball, view).nodes[0].lod, lod);
+        EXPECT_EQ(choose::choose_cut(ball, view).nodes[0].lod, lod);
     }
 }
 
@@ -289,10 +292,10 @@ TEST(Criteria, AreaServesFourTimesAsMuchForEachFinerLevel) {
     models::add_level(ball, 0, 0.2, shapes::sphere(1, 0));
     summarize_assemblies(ball, bottom_up(ball));
     View view = flat_view();
-    view.modifiers.criterion = Criterion::Area;
+    view.modifiers.criterion = DetailCriterion::Area;
     const double share = 4 / (10 * 5.625);  // of its box, 2 x 2 m
     for (const auto& [threshold, lod] : {std::pair{1.01, 2u}, {0.99, 1u}, {0.26, 1u}, {0.24, 0u}}) {
         view.pixel_error = threshold * share;
-        EXPECT_EQ(choose::choose(ball, view).nodes[0].lod, lod) << threshold;
+        EXPECT_EQ(choose::choose_cut(ball, view).nodes[0].lod, lod) << threshold;
     }
 }

@@ -42,7 +42,7 @@ Placement& placement(Model& model, ObjectIndex group, size_t position) {
 
 choose::Cut cut_of(Model& model, const View& view) {
     summarize_assemblies(model, bottom_up(model));
-    return choose::choose(model, view);
+    return choose::choose_cut(model, view);
 }
 
 /// Path and level of everything drawn, e.g. "pair 0/left 2, pair 1 1".

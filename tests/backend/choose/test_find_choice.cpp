@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using choose::Drawn;
+using choose::DrawnState;
 using models::add_level;
 using models::moved;
 using models::view_from;
@@ -39,16 +39,16 @@ TEST(FindChoice, AnEmptyModelMissesEverything) {
     const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(1, 0));
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    const choose::Cut cut = choose::choose(model, View{});
-    EXPECT_EQ(choose::find_choice(model, cut, ball, {}).drawn, Drawn::Missing);
+    const choose::Cut cut = choose::choose_cut(model, View{});
+    EXPECT_EQ(choose::find_choice(model, cut, ball, {}).drawn, DrawnState::Missing);
 }
 
 TEST(FindChoice, OfManyOccurrencesTheOneThatIsThereIsFound) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     for (int i = 0; i < 8; ++i) {
         const choose::FoundChoice found = choose::find_choice(model, cut, 0, moved(3.0 * i, 0, 0));
-        ASSERT_EQ(found.drawn, Drawn::Itself) << i;
+        ASSERT_EQ(found.drawn, DrawnState::Itself) << i;
         EXPECT_NEAR(cut.world(cut.nodes[found.node]).offset.x, 3.0 * i, 1e-12);
         EXPECT_EQ(cut.nodes[found.node].object, 0u);
     }
@@ -56,24 +56,24 @@ TEST(FindChoice, OfManyOccurrencesTheOneThatIsThereIsFound) {
 
 TEST(FindChoice, SinglePrecisionIsNearEnoughAndAnotherPlaceIsNot) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(21.000002, 0, 0)).drawn, Drawn::Itself);
-    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(22, 0, 0)).drawn, Drawn::Missing);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(21.000002, 0, 0)).drawn, DrawnState::Itself);
+    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(22, 0, 0)).drawn, DrawnState::Missing);
 }
 
 TEST(FindChoice, WhatAGroupStandsForIsFoundInIt) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1000, 1));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1000, 1));
     const choose::FoundChoice found = choose::find_choice(model, cut, 0, moved(9, 0, 0));
-    ASSERT_EQ(found.drawn, Drawn::InGroup);
+    ASSERT_EQ(found.drawn, DrawnState::InGroup);
     EXPECT_EQ(cut.nodes[found.node].object, 1u);
     EXPECT_NEAR(cut.world(cut.nodes[found.node]).offset.x, 6, 1e-12);
 }
 
 TEST(FindChoice, AnOpenedGroupIsTold) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    EXPECT_EQ(choose::find_choice(model, cut, 1, moved(6, 0, 0)).drawn, Drawn::Opened);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    EXPECT_EQ(choose::find_choice(model, cut, 1, moved(6, 0, 0)).drawn, DrawnState::Opened);
 }
 
 TEST(FindChoice, WhatNoRaySeesIsNotDrawn) {
@@ -82,9 +82,9 @@ TEST(FindChoice, WhatNoRaySeesIsNotDrawn) {
     row.placements[1].hidden = kAllRays;
     model.objects[model.root].representations[0].payload =
         std::make_shared<const Assembly>(std::move(row));
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(6, 0, 0)).drawn, Drawn::NotDrawn);
-    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(12, 0, 0)).drawn, Drawn::Itself);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(6, 0, 0)).drawn, DrawnState::NotDrawn);
+    EXPECT_EQ(choose::find_choice(model, cut, 0, moved(12, 0, 0)).drawn, DrawnState::Itself);
 }
 
 TEST(MostDemanding, NothingImportantIsNamedNot) {

@@ -43,7 +43,7 @@ View view_at(double pixel_error) {
 }
 
 std::vector<int> chosen(const Model& model) {
-    const choose::Cut cut = choose::choose(model, view_at(0));
+    const choose::Cut cut = choose::choose_cut(model, view_at(0));
     std::vector<int> out;
     for (const uint32_t index : cut.chosen)
         out.push_back(cut.nodes[index].hidden);
@@ -93,7 +93,7 @@ TEST(Hidden, OnlyGroupsWithNothingHiddenInThemHaveStandIns) {
         EXPECT_GT(model.objects[index].representations.size(), 1u) << index;
     EXPECT_EQ(model.objects[model.root].representations.size(), 1u);
     // The right room's stand-in is hidden as the room is
-    const choose::Cut cut = choose::choose(model, view_at(1000));
+    const choose::Cut cut = choose::choose_cut(model, view_at(1000));
     ASSERT_EQ(cut.chosen.size(), 2u);
     EXPECT_EQ(cut.nodes[cut.chosen[0]].hidden, 0);
     EXPECT_EQ(cut.nodes[cut.chosen[1]].hidden, kReflectionRays);

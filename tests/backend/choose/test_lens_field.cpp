@@ -28,7 +28,7 @@ View through(const DetailLens& lens) {
 
 std::string refusal(const Model& model, const View& view) {
     try {
-        choose::choose(model, view);
+        choose::choose_cut(model, view);
     } catch (const Error& error) {
         return error.what();
     }
@@ -156,8 +156,8 @@ TEST(Lens, TogetherTheyStayWithinTheirRange) {
     View most = through(lens(0, 100, 64));
     view.modifiers.lenses[0].falloff = most.modifiers.lenses[0].falloff = 0;
     EXPECT_EQ(drawn(model, view), drawn(model, most));
-    const choose::Cut cut = choose::choose(model, view);
-    EXPECT_EQ(choose::why(model, view, cut, cut.chosen[0]).chosen.total, 64);
+    const choose::Cut cut = choose::choose_cut(model, view);
+    EXPECT_EQ(choose::explain_choice(model, view, cut, cut.chosen[0]).chosen.total, 64);
 }
 
 TEST(Lens, ForAListRefinesNothingElse) {
@@ -241,12 +241,13 @@ TEST(Lens, AGroupCountsAtLeastAsMuchAsAnythingInIt) {
             made.falloff = 2 * any(random);
             view.modifiers.lenses.push_back(made);
         }
-        const choose::Cut cut = choose::choose(model, view);
-        const choose::Factors none;
+        const choose::Cut cut = choose::choose_cut(model, view);
+        const choose::DetailFactors none;
         for (const uint32_t index : cut.chosen) {
-            const choose::Node& node = cut.nodes[index];
-            const double own = choose::why(model, view, cut, index).factors.lenses;
-            const double above = choose::why(model, view, cut, node.parent).factors.lenses;
+            const choose::CutNode& node = cut.nodes[index];
+            const double own = choose::explain_choice(model, view, cut, index).factors.lenses;
+            const double above =
+                choose::explain_choice(model, view, cut, node.parent).factors.lenses;
             EXPECT_LE(own, above * (1 + 1e-12));
         }
     }

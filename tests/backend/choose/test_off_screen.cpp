@@ -13,7 +13,7 @@ using namespace lodestone;
 using bent::ball;
 using bent::drawn;
 using choose::OffScreenField;
-using choose::Pyramid;
+using choose::ViewPyramid;
 using models::add_group;
 using models::add_leaf;
 using models::moved;
@@ -59,11 +59,11 @@ double shadows_only(const Model& model, const Bound& bound) {
 
 }  // namespace
 
-TEST(Pyramid, KnowsWhatIsOutside) {
+TEST(ViewPyramid, KnowsWhatIsOutside) {
     for (const double hand : {1.0, -1.0}) {  // also mirrored
         View view = view_from(0);
         view.camera.right *= hand;
-        const Pyramid pyramid(view);
+        const ViewPyramid pyramid(view);
         EXPECT_FALSE(pyramid.outside(ball({0, 10, 0}, 1)));
         EXPECT_FALSE(pyramid.outside(ball({0, 0, 0}, 1)));  // around the eye
         EXPECT_TRUE(pyramid.outside(ball({0, -5, 0}, 1)));
@@ -77,25 +77,25 @@ TEST(Pyramid, KnowsWhatIsOutside) {
     }
 }
 
-TEST(Pyramid, OrthographicShowsWhatIsBeforeItsFrame) {
+TEST(ViewPyramid, OrthographicShowsWhatIsBeforeItsFrame) {
     View view = view_from(0);
     view.camera.orthographic = true;
     view.camera.right = {10, 0, 0};
     view.camera.up = {0, 0, 5.625};
-    const Pyramid pyramid(view);
+    const ViewPyramid pyramid(view);
     EXPECT_FALSE(pyramid.outside(ball({5.5, 1000, 0}, 1)));
     EXPECT_TRUE(pyramid.outside(ball({6.2, 1000, 0}, 1)));
     EXPECT_TRUE(pyramid.outside(ball({0, -2, 0}, 1)));
 }
 
-TEST(Pyramid, ABlurredEdgeIsShown) {
+TEST(ViewPyramid, ABlurredEdgeIsShown) {
     View view = view_from(0);
     const Bound beside = ball({6, 10, 0}, 0.5);
-    EXPECT_TRUE(Pyramid(view).outside(beside));
+    EXPECT_TRUE(ViewPyramid(view).outside(beside));
     view.camera.focus_distance = 100;
     view.camera.aperture = 0.05;
     view.camera.near_clip = 0.1;  // what is there is blurred by half the frame
-    EXPECT_FALSE(Pyramid(view).outside(beside));
+    EXPECT_FALSE(ViewPyramid(view).outside(beside));
 }
 
 TEST(OffScreen, WhatMayBeInThePictureIsNotCoarser) {
@@ -147,7 +147,7 @@ TEST(OffScreen, NoPointOfAShadowInThePictureIsNearerThanItSays) {
     std::uniform_real_distribution<double> any(-1, 1);
     Model model = plain();
     const View view = from_origin(OffScreen::Shadows);
-    const Pyramid pyramid(view);
+    const ViewPyramid pyramid(view);
     for (int round = 0; round < 300; ++round) {
         const bool lamp = round % 2 == 1;
         Light light = sun({any(random), any(random), any(random)});
@@ -194,11 +194,12 @@ TEST(OffScreen, WhatAMirrorShowsIsAsFarAsTheWayToIt) {
     EXPECT_NEAR(coarser(metal), way / 19, 0.06 * way / 19);
     Material lacquer;
     lacquer.roughness = 0;
-    EXPECT_NEAR(coarser(lacquer) / coarser(metal), 1 / std::sqrt(choose::imaged(lacquer)), 1e-9);
+    EXPECT_NEAR(coarser(lacquer) / coarser(metal), 1 / std::sqrt(choose::imaged_share(lacquer)),
+                1e-9);
     Material rough;
     EXPECT_EQ(coarser(rough), kMostImportance);
-    EXPECT_EQ(choose::imaged(rough), 0);
-    EXPECT_EQ(choose::imaged(metal), 1);
+    EXPECT_EQ(choose::imaged_share(rough), 0);
+    EXPECT_EQ(choose::imaged_share(metal), 1);
 }
 
 TEST(OffScreen, APictureOfTheSkyLimitsIt) {
@@ -217,9 +218,10 @@ TEST(OffScreen, CutsAreCoarserOutsideAndTheSameInside) {
     const std::string coarse = drawn(model, view);
     EXPECT_NE(coarse, full);
     EXPECT_EQ(coarse.substr(0, coarse.find(", pair 1")), full.substr(0, full.find(", pair 1")));
-    const choose::Cut cut = choose::choose(model, view);
+    const choose::Cut cut = choose::choose_cut(model, view);
     EXPECT_LE(cut.largest_error_px, view.pixel_error);
-    EXPECT_EQ(choose::why(model, view, cut, cut.chosen.back()).factors.off_screen, kMostImportance);
+    EXPECT_EQ(choose::explain_choice(model, view, cut, cut.chosen.back()).factors.off_screen,
+              kMostImportance);
     view.pixel_error = 0;
     const std::string originals = drawn(model, view);
     view.modifiers.off_screen = OffScreen::Full;

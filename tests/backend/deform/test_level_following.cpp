@@ -20,8 +20,8 @@ namespace {
 
 using Bend = std::function<glm::dvec3(const glm::dvec3&)>;
 
-Pose pose_of(const Mesh& mesh, const Bend& bend = nullptr) {
-    Pose pose;
+PosedSurface pose_of(const Mesh& mesh, const Bend& bend = nullptr) {
+    PosedSurface pose;
     pose.connectivity = 1;
     pose.triangles = mesh.triangles;
     for (const glm::vec3& p : mesh.positions)
@@ -30,7 +30,7 @@ Pose pose_of(const Mesh& mesh, const Bend& bend = nullptr) {
 }
 
 /// The mesh with other positions; normals are left as they are.
-Mesh posed(const Mesh& mesh, const Pose& pose) {
+Mesh posed(const Mesh& mesh, const PosedSurface& pose) {
     Mesh out = mesh;
     out.positions = pose.points;
     return out;
@@ -42,9 +42,9 @@ std::vector<BoundLevel> bound(const Mesh& mesh, const std::vector<size_t>& targe
     positions.reserve(others.size());
     for (const Bend& bend : others)
         positions.push_back(pose_of(mesh, bend).points);
-    const Pose pose = pose_of(mesh);
+    const PosedSurface pose = pose_of(mesh);
     const PoseSurface surface(pose);
-    const deform::Binder binder(mesh, surface);
+    const deform::LevelBinder binder(mesh, surface);
     std::vector<BoundLevel> levels;
     for (simplify::TracedLevel& level : simplify::simplify_traced(mesh, positions, targets)) {
         auto made = binder.bind(std::move(level));
@@ -92,7 +92,7 @@ class Follow : public WithRays {};
 TEST_F(Follow, NothingIsMadeOfNothing) {
     const Mesh empty;
     EXPECT_TRUE(bound(empty, {}).empty());
-    const Pose pose;
+    const PosedSurface pose;
     const PoseSurface surface(pose);
     const BoundLevel level;
     ASSERT_TRUE(deform::follow(level, surface));
@@ -134,7 +134,7 @@ TEST_F(Follow, EveryVertexOfAClosedMeshEndsInExactlyOnePlace) {
 
 TEST_F(Follow, InThePoseItWasBoundInALevelIsItself) {
     const Mesh mesh = shapes::seamed_cylinder(48, 24);
-    const Pose pose = pose_of(mesh);
+    const PosedSurface pose = pose_of(mesh);
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {800, 100, 20})) {
         const auto same = deform::follow(level, surface);
@@ -151,7 +151,7 @@ TEST_F(Follow, AMovedTurnedAndScaledSurfaceTakesItsLevelsAlong) {
     const Mesh mesh = shapes::sphere(1, 4);
     const glm::dmat3 turn(glm::dvec3(0, 3, 0), glm::dvec3(0, 0, 3), glm::dvec3(3, 0, 0));
     const Bend bend = [&](const glm::dvec3& p) { return turn * p + glm::dvec3(5, -7, 2); };
-    const Pose pose = pose_of(mesh, bend);
+    const PosedSurface pose = pose_of(mesh, bend);
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {500, 60, 12})) {
         const auto moved = deform::follow(level, surface);
@@ -171,7 +171,7 @@ TEST_F(Follow, AMovedTurnedAndScaledSurfaceTakesItsLevelsAlong) {
 TEST_F(Follow, SeamsStayClosedAndFacesFlatWhereTheSurfaceBends) {
     const Mesh mesh = shapes::fine_cube(16);
     ASSERT_TRUE(closed(mesh));
-    const Pose pose = pose_of(mesh, [](const glm::dvec3& p) {
+    const PosedSurface pose = pose_of(mesh, [](const glm::dvec3& p) {
         return glm::dvec3(p.x + 0.3 * p.z * p.z, p.y, p.z * (1 + 0.2 * p.x));
     });
     const PoseSurface surface(pose);
@@ -191,7 +191,7 @@ TEST_F(Follow, SeamsStayClosedAndFacesFlatWhereTheSurfaceBends) {
 
 TEST_F(Follow, ABentRodHasLevelsNotMuchWorseThanItsOwn) {
     const Mesh mesh = rod();
-    const Pose pose = pose_of(mesh, curl);
+    const PosedSurface pose = pose_of(mesh, curl);
     const Mesh bent = posed(mesh, pose);
     const PoseSurface surface(pose);
     const std::vector<size_t> targets{4000, 1000, 250};
@@ -207,7 +207,7 @@ TEST_F(Follow, ABentRodHasLevelsNotMuchWorseThanItsOwn) {
 
 TEST_F(Follow, AFlatFlagThatWavesLaterKeepsTrianglesForItsWaves) {
     const Mesh mesh = shapes::grid(48);
-    const Pose pose = pose_of(mesh, wave);
+    const PosedSurface pose = pose_of(mesh, wave);
     const Mesh waving = posed(mesh, pose);
     const PoseSurface surface(pose);
     const auto error = [&](const std::vector<Bend>& others) {
@@ -231,7 +231,7 @@ TEST_F(Follow, ALevelStaysOnItsOwnSheetThoughAnotherLiesNearer) {
     for (glm::vec3& p : upper.positions)
         p.z = 0.0005f - 0.3f * (p.x - 0.5f) * (p.x - 0.5f);
     append(mesh, upper, Affine{});
-    Pose pose = pose_of(mesh);
+    PosedSurface pose = pose_of(mesh);
     for (size_t i = half; i < pose.points.size(); ++i)
         pose.points[i].z += 2;
     const PoseSurface surface(pose);
@@ -246,16 +246,16 @@ TEST_F(Follow, ALevelStaysOnItsOwnSheetThoughAnotherLiesNearer) {
 TEST_F(Follow, WhatIsKnownOfTheErrorIsWhatMeasuringFinds) {
     const Mesh mesh = rod();
     for (const Bend& bend : {Bend(nullptr), Bend(curl)}) {
-        const Pose pose = pose_of(mesh, bend);
+        const PosedSurface pose = pose_of(mesh, bend);
         const Mesh bent = posed(mesh, pose);
         const PoseSurface surface(pose);
         for (const BoundLevel& level : bound(mesh, {4000, 1000, 250, 60}, {curl})) {
             const Mesh moved = *deform::follow(level, surface);
-            const deform::Strayed strayed = deform::strayed(level, moved, surface);
+            const deform::PoseError pose_error = deform::pose_error(level, moved, surface);
             const double measured = deviation(bent, moved);
-            EXPECT_GT(strayed.error, 0.8 * measured);
-            EXPECT_LT(strayed.error, 1.5 * measured);
-            EXPECT_GE(strayed.max, strayed.error);
+            EXPECT_GT(pose_error.error, 0.8 * measured);
+            EXPECT_LT(pose_error.error, 1.5 * measured);
+            EXPECT_GE(pose_error.max, pose_error.error);
         }
     }
 }
@@ -268,44 +268,45 @@ TEST_F(Follow, AFoldThatOpensCountsInTheFrameWhereItIsOpen) {
             p = {1 - p.x, p.y, 1e-4f};
     }
     const BoundLevel level = bound(book, {60}).at(0);
-    const Pose shut = pose_of(book);
+    const PosedSurface shut = pose_of(book);
     const PoseSurface surface(shut);
-    const double before = deform::strayed(level, level.mesh, surface).error;
-    const Pose open = pose_of(shapes::grid(24), [](const glm::dvec3& p) {
+    const double before = deform::pose_error(level, level.mesh, surface).error;
+    const PosedSurface open = pose_of(shapes::grid(24), [](const glm::dvec3& p) {
         return glm::dvec3(p.x, p.y, 0.2 * std::sin(12 * p.y));
     });
     const PoseSurface opened(open);
     const Mesh moved = *deform::follow(level, opened);
     EXPECT_LT(before, 0.05);
-    EXPECT_GT(deform::strayed(level, moved, opened).error, 0.1);
+    EXPECT_GT(deform::pose_error(level, moved, opened).error, 0.1);
     EXPECT_GT(deviation(posed(book, open), moved), 0.1);
 }
 
 TEST_F(Follow, SurfacesThatSlideInThemselvesAreNotApart) {
     const Mesh mesh = shapes::grid(40);
-    const Pose pose = pose_of(mesh, [](const glm::dvec3& p) {
+    const PosedSurface pose = pose_of(mesh, [](const glm::dvec3& p) {
         return glm::dvec3(p.x + 0.05 * std::sin(3.14159265358979 * p.x), p.y, 0);
     });
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {600, 100})) {
         const Mesh moved = *deform::follow(level, surface);
-        EXPECT_LT(deform::strayed(level, moved, surface).error, 0.002);
+        EXPECT_LT(deform::pose_error(level, moved, surface).error, 0.002);
     }
 }
 
 TEST_F(Follow, GrowthIsThatOfLengths) {
     const Mesh mesh = shapes::sphere(1, 3);
-    const Pose pose = pose_of(mesh, [](const glm::dvec3& p) { return 3.0 * p; });
+    const PosedSurface pose = pose_of(mesh, [](const glm::dvec3& p) { return 3.0 * p; });
     const PoseSurface surface(pose);
     const BoundLevel level = bound(mesh, {100}).at(0);
-    EXPECT_NEAR(deform::strayed(level, *deform::follow(level, surface), surface).growth, 3, 1e-5);
+    EXPECT_NEAR(deform::pose_error(level, *deform::follow(level, surface), surface).growth, 3,
+                1e-5);
 }
 
 TEST_F(Follow, PolygonsCutTheOtherWayInThisFrameMakeNoDifference) {
     const Mesh mesh = shapes::grid(20);
-    Pose pose = pose_of(mesh, wave);
+    PosedSurface pose = pose_of(mesh, wave);
     const PoseSurface before(pose);
-    Pose cut = pose;
+    PosedSurface cut = pose;
     for (size_t i = 0; i + 1 < cut.triangles.size(); i += 2) {  // the cells' other diagonals
         const uint32_t a = cut.triangles[i].x;
         const uint32_t b = cut.triangles[i].y;
@@ -328,7 +329,7 @@ TEST_F(Follow, SurfacesThatCollapseToAPointOrALineStayFinite) {
     for (const Bend& bend : {Bend([](const glm::dvec3&) { return glm::dvec3(1, 2, 3); }),
                              Bend([](const glm::dvec3& p) { return glm::dvec3(p.x, 0, 0); }),
                              Bend([](const glm::dvec3& p) { return 1e30 * p; })}) {
-        const Pose pose = pose_of(mesh, bend);
+        const PosedSurface pose = pose_of(mesh, bend);
         const PoseSurface surface(pose);
         for (const BoundLevel& level : bound(mesh, {300, 20})) {
             const auto moved = deform::follow(level, surface);
@@ -344,7 +345,7 @@ TEST_F(Follow, DegenerateTrianglesInTheBindPoseAreBoundAllTheSame) {
     Mesh mesh = shapes::sphere(1, 3);
     for (size_t i = 0; i < mesh.positions.size(); i += 3)
         mesh.positions[i] = mesh.positions[0];
-    const Pose pose = pose_of(mesh);
+    const PosedSurface pose = pose_of(mesh);
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(mesh, {100, 10})) {
         EXPECT_NO_THROW(check(level));
@@ -355,7 +356,7 @@ TEST_F(Follow, DegenerateTrianglesInTheBindPoseAreBoundAllTheSame) {
 TEST_F(Follow, WhatHangsOnPointsThatAreNoNumbersOrNotThereIsNotDrawn) {
     const Mesh mesh = shapes::sphere(1, 3);
     const std::vector<BoundLevel> levels = bound(mesh, {100});
-    Pose pose = pose_of(mesh);
+    PosedSurface pose = pose_of(mesh);
     for (glm::vec3& p : pose.points)
         p.y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_FALSE(deform::follow(levels.at(0), PoseSurface(pose)));
@@ -372,11 +373,11 @@ TEST_F(Follow, WhatHangsOnPointsThatAreNoNumbersOrNotThereIsNotDrawn) {
 
 TEST_F(Follow, MeshThatThePoseIsNotOfIsNotBound) {
     const Mesh mesh = shapes::sphere(1, 3);
-    const Pose other = pose_of(shapes::sphere(2, 3));
+    const PosedSurface other = pose_of(shapes::sphere(2, 3));
     const std::vector<size_t> targets{100};
     auto traced = simplify::simplify_traced(mesh, {}, targets);
     const PoseSurface surface(other);
-    EXPECT_FALSE(deform::Binder(mesh, surface).bind(std::move(traced.at(0))));
+    EXPECT_FALSE(deform::LevelBinder(mesh, surface).bind(std::move(traced.at(0))));
 }
 
 TEST_F(Follow, AHubOfManyTrianglesTakesNoLongerThanOtherMeshes) {
@@ -389,12 +390,12 @@ TEST_F(Follow, AHubOfManyTrianglesTakesNoLongerThanOtherMeshes) {
         disk.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % kSpokes);
     }
     const double start = cpu_seconds();
-    const Pose pose = pose_of(disk, [](const glm::dvec3& p) { return 2.0 * p; });
+    const PosedSurface pose = pose_of(disk, [](const glm::dvec3& p) { return 2.0 * p; });
     const PoseSurface surface(pose);
     for (const BoundLevel& level : bound(disk, {40000, 2000, 100})) {
         const auto moved = deform::follow(level, surface);
         ASSERT_TRUE(moved);
-        EXPECT_LT(deform::strayed(level, *moved, surface).error, 0.1);
+        EXPECT_LT(deform::pose_error(level, *moved, surface).error, 0.1);
     }
     EXPECT_LT(cpu_seconds() - start, 20);
 }

@@ -150,13 +150,13 @@ TEST(Obj, MapsHaveOptionsChannelsAndKinds) {
         problems);
     ASSERT_EQ(m.size(), 6u);
     EXPECT_EQ(m[0].alpha_mode, AlphaMode::Blend);
-    EXPECT_EQ(m[0].alpha_texture.channel, Channel::Alpha);
+    EXPECT_EQ(m[0].alpha_texture.channel, TextureChannel::Alpha);
     EXPECT_NEAR(m[0].alpha, 0.5 * 0.75, 0.01);
-    EXPECT_EQ(m[1].roughness_texture.extension, Extension::Extend);
-    EXPECT_EQ(m[1].roughness_texture.channel, Channel::Luma);
+    EXPECT_EQ(m[1].roughness_texture.extension, TextureExtension::Extend);
+    EXPECT_EQ(m[1].roughness_texture.channel, TextureChannel::Luma);
     EXPECT_EQ(m[1].roughness_texture.to_picture[2], 0.5);
     EXPECT_NEAR(m[1].roughness, 0.25 + 0.5 * 0.5, 0.01);
-    EXPECT_EQ(m[1].metallic_texture.channel, Channel::Red);
+    EXPECT_EQ(m[1].metallic_texture.channel, TextureChannel::Red);
     EXPECT_EQ(m[1].emission_texture.scale, glm::dvec3(2.0));
     EXPECT_TRUE(m[2].bump_texture);
     EXPECT_DOUBLE_EQ(m[2].bump_distance, 0.005);
@@ -164,7 +164,7 @@ TEST(Obj, MapsHaveOptionsChannelsAndKinds) {
     EXPECT_FALSE(m[3].bump_texture);
     EXPECT_EQ(m[3].normal_strength, 2);
     EXPECT_TRUE(m[4].normal_texture);
-    EXPECT_EQ(m[5].alpha_texture.channel, Channel::Alpha);
+    EXPECT_EQ(m[5].alpha_texture.channel, TextureChannel::Alpha);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].code, "bump_height_guessed");
 }
@@ -202,14 +202,14 @@ TEST(Obj, TexturedMaterialsAreWrittenWithTheirPictures) {
     Material m;
     m.base_color_texture.picture = picture;
     m.base_color_texture.to_picture = {2, 0, 0.5, 0, 3, 0.25};
-    m.base_color_texture.interpolation = Interpolation::Closest;
+    m.base_color_texture.interpolation = TextureInterpolation::Closest;
     m.alpha_texture = m.base_color_texture;
-    m.alpha_texture.channel = Channel::Alpha;
+    m.alpha_texture.channel = TextureChannel::Alpha;
     m.alpha_mode = AlphaMode::Blend;
     m.emission_texture = m.base_color_texture;
     m.emission_texture.scale = glm::dvec3(3, 1, 0.5);
     m.roughness_texture = m.base_color_texture;
-    m.roughness_texture.channel = Channel::Blue;
+    m.roughness_texture.channel = TextureChannel::Blue;
     m.clearcoat = 0.5;
     m.normal_texture = m.base_color_texture;
     m.normal_texture.to_picture[1] = 1;  // sheared: MTL has no word for it
@@ -236,9 +236,9 @@ TEST(Obj, TexturedMaterialsAreWrittenWithTheirPictures) {
     EXPECT_EQ(seen.alpha_mode, AlphaMode::Blend);
     EXPECT_FALSE(seen.normal_texture);
     const auto texels = [](Texture texture) {
-        texture.interpolation = Interpolation::Closest;  // MTL cannot say it
+        texture.interpolation = TextureInterpolation::Closest;  // MTL cannot say it
         std::vector<glm::dvec4> out;
-        const image::Sampler sampler(texture, {});
+        const image::TextureSampler sampler(texture, {});
         for (int i = 0; i < 30; ++i) {
             const glm::dvec2 uv(0.13 * i, 0.071 * i);
             out.emplace_back(sampler.color(uv), sampler.number(uv));

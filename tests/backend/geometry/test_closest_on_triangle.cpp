@@ -39,12 +39,12 @@ TEST(NearestOnTriangle, ManyTrianglesGiveWhatOneAfterTheOtherDoes) {
         const glm::vec3 point = 0.5f * glm::vec3(number(random), number(random), number(random));
         std::vector<uint32_t> ring(count);
         std::iota(ring.begin(), ring.end(), 0u);
-        Spot together;
-        look_on(
+        TriangleSpot together;
+        nearest_of_triangles(
             ring, point, [&](uint32_t t) { return triangles[t]; }, together);
-        Spot single;
+        TriangleSpot single;
         for (const uint32_t t : ring) {
-            Spot spot = nearest_on(triangles[t], point);
+            TriangleSpot spot = nearest_spot(triangles[t], point);
             spot.triangle = t;
             if (spot.square < single.square)
                 single = spot;
@@ -59,12 +59,12 @@ TEST(NearestOnTriangle, ManyTrianglesGiveWhatOneAfterTheOtherDoes) {
 TEST(NearestOnTriangle, NothingFartherThanTheBestIsTaken) {
     const TrianglePoints corners{glm::vec3(0, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 1, 1)};
     const std::vector<uint32_t> ring{3, 4, 5, 6, 7};
-    Spot best{0.5f, 9, glm::vec3(1, 0, 0)};
-    look_on(
+    TriangleSpot best{0.5f, 9, glm::vec3(1, 0, 0)};
+    nearest_of_triangles(
         ring, glm::vec3(0.0f), [&](uint32_t) { return corners; }, best);
     EXPECT_EQ(best.triangle, 9u);
     best.square = 2;
-    look_on(
+    nearest_of_triangles(
         ring, glm::vec3(0.0f), [&](uint32_t) { return corners; }, best);
     EXPECT_EQ(best.triangle, 3u);  // the first of those that are equally near
 }

@@ -13,7 +13,7 @@
 #include <set>
 
 using namespace lodestone;
-using geometry::along_curve;
+using geometry::morton_order;
 
 namespace {
 
@@ -35,27 +35,27 @@ double length_along(const std::vector<glm::vec3>& points, const std::vector<uint
 
 TEST(Curve, NoPointsHaveNoOrder) {
     std::vector<uint32_t> first{7};
-    EXPECT_TRUE(along_curve({}, first).empty());
+    EXPECT_TRUE(morton_order({}, first).empty());
     EXPECT_TRUE(first.empty());
 }
 
 TEST(Curve, EveryPlaceIsThereOnceByItsFirstPoint) {
     const std::vector<glm::vec3> points{{1, 2, 3}, {0, 0, 0}, {1, 2, 3}, {-0.0f, 0, 0}, {1, 2, 3}};
     std::vector<uint32_t> first;
-    EXPECT_EQ(along_curve(points, first), (std::vector<uint32_t>{1, 0}));
+    EXPECT_EQ(morton_order(points, first), (std::vector<uint32_t>{1, 0}));
     EXPECT_EQ(first, (std::vector<uint32_t>{0, 1, 0, 1, 0}));
 }
 
 TEST(Curve, NeighborsInTheOrderLieNear) {
     std::vector<glm::vec3> points = lattice(64);
-    Random random(5);
+    PcgRandom random(5);
     for (size_t i = points.size(); i > 1; --i)
         std::swap(points[i - 1],
                   points[static_cast<size_t>(random.uniform() * static_cast<double>(i))]);
     std::vector<uint32_t> shuffled(points.size());
     std::iota(shuffled.begin(), shuffled.end(), 0u);
     std::vector<uint32_t> first;
-    const std::vector<uint32_t> order = along_curve(points, first);
+    const std::vector<uint32_t> order = morton_order(points, first);
     EXPECT_EQ(std::set<uint32_t>(order.begin(), order.end()).size(), points.size());
     EXPECT_LT(length_along(points, order), 2.0 * static_cast<double>(points.size()));
     EXPECT_GT(length_along(points, shuffled), 20.0 * static_cast<double>(points.size()));
@@ -66,7 +66,7 @@ TEST(Curve, PointsThatAreNowhereStandForThemselvesAndHaveNoPlace) {
     const float most = std::numeric_limits<float>::max();
     const std::vector<glm::vec3> points{{nan, 0, 0}, {most, 0, 0}, {-most, most, 0}, {nan, 0, 0}};
     std::vector<uint32_t> first;
-    EXPECT_EQ(along_curve(points, first).size(), 2u);
+    EXPECT_EQ(morton_order(points, first).size(), 2u);
     EXPECT_EQ(first, (std::vector<uint32_t>{0, 1, 2, 3}));
 }
 
@@ -79,23 +79,23 @@ TEST(Curve, ManyPointsInOneCellOfItAreStillToldApart) {
     const size_t distinct = points.size();
     points.insert(points.end(), points.begin(), points.end());
     std::vector<uint32_t> first;
-    EXPECT_EQ(along_curve(points, first).size(), distinct);
+    EXPECT_EQ(morton_order(points, first).size(), distinct);
     for (uint32_t i = 0; i < distinct; ++i) {
         EXPECT_EQ(first[i], i);
         EXPECT_EQ(first[distinct + i], i);
     }
 }
 
-TEST(Scratch, WithoutOneVectorsAreAsOthers) {
-    EXPECT_EQ(Scratch::current(), nullptr);
+TEST(ScratchArena, WithoutOneVectorsAreAsOthers) {
+    EXPECT_EQ(ScratchArena::current(), nullptr);
     ScratchVector<uint32_t> numbers(1000, 7);
     numbers.resize(2000, 8);
     EXPECT_EQ(std::accumulate(numbers.begin(), numbers.end(), 0u), 15000u);
 }
 
-TEST(Scratch, VectorsThatGrowKeepWhatTheyHave) {
+TEST(ScratchArena, VectorsThatGrowKeepWhatTheyHave) {
     for (const size_t expected : {size_t{0}, size_t{1000}, size_t{64} << 20u}) {
-        const Scratch scratch(expected);
+        const ScratchArena scratch(expected);
         ScratchVector<uint32_t> numbers[3];
         for (uint32_t i = 0; i < 30000; ++i)
             numbers[i % 3].push_back(i);
@@ -106,8 +106,8 @@ TEST(Scratch, VectorsThatGrowKeepWhatTheyHave) {
     }
 }
 
-TEST(Scratch, WhatIsGivenBackIsUsedAgain) {
-    Scratch scratch(1 << 20);
+TEST(ScratchArena, WhatIsGivenBackIsUsedAgain) {
+    ScratchArena scratch(1 << 20);
     void* const first = scratch.take(1000);
     void* const second = scratch.take(3000);
     void* const third = scratch.take(64);
@@ -120,14 +120,14 @@ TEST(Scratch, WhatIsGivenBackIsUsedAgain) {
     EXPECT_THROW(scratch.take(~size_t{0} - 10), std::bad_alloc);
 }
 
-TEST(Scratch, TheInnerOfTwoIsUsed) {
-    const Scratch outer(1000);
-    EXPECT_EQ(Scratch::current(), &outer);
+TEST(ScratchArena, TheInnerOfTwoIsUsed) {
+    const ScratchArena outer(1000);
+    EXPECT_EQ(ScratchArena::current(), &outer);
     {
-        const Scratch inner(1000);
-        EXPECT_EQ(Scratch::current(), &inner);
+        const ScratchArena inner(1000);
+        EXPECT_EQ(ScratchArena::current(), &inner);
     }
-    EXPECT_EQ(Scratch::current(), &outer);
+    EXPECT_EQ(ScratchArena::current(), &outer);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards Faces: the triangles, vertices and normals that polygons become.
+// Guards PolygonMesh: the triangles, vertices and normals that polygons become.
 #include "geometry/polygon_mesh.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace lodestone;
 
 namespace {
 
-/// Owns what a Faces looks at.
+/// Owns what a PolygonMesh looks at.
 struct Polygons {
     std::vector<float> positions;
     std::vector<uint32_t> vertices;
@@ -26,8 +26,8 @@ struct Polygons {
         starts.push_back(static_cast<uint32_t>(vertices.size()));
         vertices.insert(vertices.end(), face);
     }
-    Faces view() const {
-        Faces out;
+    PolygonMesh view() const {
+        PolygonMesh out;
         out.positions = positions.data();
         out.vertex_count = positions.size() / 3;
         out.vertices = vertices;
@@ -67,13 +67,13 @@ std::string refusal(const Polygons& polygons) {
 
 }  // namespace
 
-TEST(Faces, ATriangleOfAFaceOfOneCornerReadsNothingBeyondIt) {
+TEST(PolygonMesh, ATriangleOfAFaceOfOneCornerReadsNothingBeyondIt) {
     const std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
     const std::vector<uint32_t> vertices{0, 1, 2, 0, 0xfffffff0u};  // the last is not given
     const std::vector<uint32_t> starts{0, 3};
     const std::vector<uint32_t> triangles{0, 1, 2, 3, 0, 1};
     const std::vector<float> normals(12, 1.0f);
-    Faces faces;
+    PolygonMesh faces;
     faces.positions = positions.data();
     faces.vertex_count = 3;
     faces.vertices = {vertices.data(), 4};
@@ -86,7 +86,7 @@ TEST(Faces, ATriangleOfAFaceOfOneCornerReadsNothingBeyondIt) {
     check(mesh);
 }
 
-TEST(Faces, APoleOfManyLooksKeepsThemAll) {
+TEST(PolygonMesh, APoleOfManyLooksKeepsThemAll) {
     Polygons fan;
     constexpr uint32_t kSides = 2000;
     fan.positions = {0, 0, 1};
@@ -109,13 +109,13 @@ TEST(Faces, APoleOfManyLooksKeepsThemAll) {
     }
 }
 
-TEST(Faces, NothingBecomesNothing) {
+TEST(PolygonMesh, NothingBecomesNothing) {
     const Polygons none;
     EXPECT_EQ(refusal(none), "");
     EXPECT_TRUE(mesh_of(none.view(), 1).empty());
 }
 
-TEST(Faces, TrianglesNeedNoStarts) {
+TEST(PolygonMesh, TrianglesNeedNoStarts) {
     Polygons one;
     one.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     one.vertices = {2, 0, 1};
@@ -127,7 +127,7 @@ TEST(Faces, TrianglesNeedNoStarts) {
     EXPECT_EQ(refusal(one), "4 corners are not those of triangles");
 }
 
-TEST(Faces, FlatCubeKeepsItsEightVertices) {
+TEST(PolygonMesh, FlatCubeKeepsItsEightVertices) {
     const Mesh mesh = mesh_of(cube(0).view(), 1);
     EXPECT_EQ(mesh.positions.size(), 8u);
     EXPECT_EQ(mesh.triangles.size(), 12u);
@@ -136,14 +136,14 @@ TEST(Faces, FlatCubeKeepsItsEightVertices) {
     EXPECT_NEAR(surface_area(mesh), 24, 1e-6);
 }
 
-TEST(Faces, SmoothCubeHasTheNormalsOfItsDiagonals) {
+TEST(PolygonMesh, SmoothCubeHasTheNormalsOfItsDiagonals) {
     const Mesh mesh = mesh_of(cube(1).view(), 1);
     ASSERT_EQ(mesh.normals.size(), 8u);
     for (size_t i = 0; i < 8; ++i)
         EXPECT_LT(glm::length(mesh.normals[i] - mesh.positions[i] / std::sqrt(3.0f)), 1e-6f);
 }
 
-TEST(Faces, AnglesWeighNotTheNumberOfFaces) {
+TEST(PolygonMesh, AnglesWeighNotTheNumberOfFaces) {
     // A corner of a cube whose top is two triangles there: still the diagonal.
     Polygons corner;
     corner.positions = {0, 0, 0, -1, 0, 0, -1, -1, 0, 0, -1, 0, 0, -1, -1, 0, 0, -1, -1, 0, -1};
@@ -156,7 +156,7 @@ TEST(Faces, AnglesWeighNotTheNumberOfFaces) {
     EXPECT_LT(glm::length(mesh.normals[0] - glm::vec3(1, 1, 1) / std::sqrt(3.0f)), 1e-6f);
 }
 
-TEST(Faces, FlatAndSmoothFacesSplitTheVerticesBetweenThem) {
+TEST(PolygonMesh, FlatAndSmoothFacesSplitTheVerticesBetweenThem) {
     Polygons mixed = cube(1);
     mixed.smooth[1] = 0;
     const Mesh mesh = mesh_of(mixed.view(), 1);
@@ -167,7 +167,7 @@ TEST(Faces, FlatAndSmoothFacesSplitTheVerticesBetweenThem) {
     EXPECT_EQ(up, 4u);
 }
 
-TEST(Faces, FacesOfFourAreSplitInsideThemselves) {
+TEST(PolygonMesh, FacesOfFourAreSplitInsideThemselves) {
     Polygons arrow;
     arrow.positions = {0, 0, 0, 4, -1, 0, 1, 0, 0, 4, 1, 0};
     arrow.add({0, 1, 2, 3});  // its third corner looks inward
@@ -182,7 +182,7 @@ TEST(Faces, FacesOfFourAreSplitInsideThemselves) {
         EXPECT_LT(std::abs(area_vector(mesh, i).z), 4);
 }
 
-TEST(Faces, LargerFacesComeWithTheirTriangles) {
+TEST(PolygonMesh, LargerFacesComeWithTheirTriangles) {
     Polygons five;
     five.positions = {0, 0, 0, 2, 0, 0, 3, 1, 0, 1, 2, 0, -1, 1, 0};
     five.add({0, 1, 2});
@@ -199,7 +199,7 @@ TEST(Faces, LargerFacesComeWithTheirTriangles) {
     EXPECT_EQ(refusal(five), "triangle 1 uses corner 8 of 8");
 }
 
-TEST(Faces, SlotsOutsideAreTheNearest) {
+TEST(PolygonMesh, SlotsOutsideAreTheNearest) {
     Polygons slots = cube(0);
     slots.slots = {-3, 0, 1, 2, 9, 1};
     const Mesh mesh = mesh_of(slots.view(), 3);
@@ -207,7 +207,7 @@ TEST(Faces, SlotsOutsideAreTheNearest) {
     EXPECT_TRUE(mesh_of(slots.view(), 1).slots.empty());
 }
 
-TEST(Faces, SeamsOfTextureCoordinatesSplitVertices) {
+TEST(PolygonMesh, SeamsOfTextureCoordinatesSplitVertices) {
     Polygons seam;
     seam.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     seam.add({0, 1, 2});
@@ -218,12 +218,12 @@ TEST(Faces, SeamsOfTextureCoordinatesSplitVertices) {
     EXPECT_EQ(mesh.uvs[mesh.triangles[1].y], glm::vec2(.5, .5));
 }
 
-TEST(Faces, ColorsOfVerticesGoWithThem) {
+TEST(PolygonMesh, ColorsOfVerticesGoWithThem) {
     Polygons seam;
     seam.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     seam.add({0, 1, 2});
     seam.add({0, 2, 3});
-    Faces faces = seam.view();
+    PolygonMesh faces = seam.view();
     const std::vector<float> colors = {1, 0, 0, 1, 0, 1, 0, 1, .2f, .4f, .6f, .8f, 0, 0, 0, 0};
     faces.vertex_colors = colors.data();
     const glm::vec4 third(.2f, .4f, .6f, .8f);
@@ -238,7 +238,7 @@ TEST(Faces, ColorsOfVerticesGoWithThem) {
     EXPECT_EQ(mesh.colors[4], third);
 }
 
-TEST(Faces, LastDigitsOfGivenNormalsDoNotChangeTheMesh) {
+TEST(PolygonMesh, LastDigitsOfGivenNormalsDoNotChangeTheMesh) {
     const Hash made = hash_of(mesh_of(cube(1).view(), 1));
     Polygons given = cube(1);
     for (const uint32_t vertex : given.vertices) {
@@ -257,7 +257,7 @@ TEST(Faces, LastDigitsOfGivenNormalsDoNotChangeTheMesh) {
     EXPECT_EQ(hash_of(mesh_of(other.view(), 1)), made);
 }
 
-TEST(Faces, FacesThatDoNotFollowEachOtherAreNamed) {
+TEST(PolygonMesh, FacesThatDoNotFollowEachOtherAreNamed) {
     Polygons torn = cube(0);
     torn.starts[2] = 3;
     EXPECT_EQ(refusal(torn), "face 1 has the corners 4 to 3 of 24");
@@ -279,7 +279,7 @@ TEST(Faces, FacesThatDoNotFollowEachOtherAreNamed) {
     EXPECT_EQ(refusal(torn), "7 material slots for 6 faces");
 }
 
-TEST(Faces, FacesWithoutAreaAndNumbersThatAreNoneDoNoHarm) {
+TEST(PolygonMesh, FacesWithoutAreaAndNumbersThatAreNoneDoNoHarm) {
     Polygons bad = cube(1);
     bad.add({0, 0, 0, 0});
     bad.add({1, 2});

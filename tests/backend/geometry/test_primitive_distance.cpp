@@ -11,12 +11,12 @@ using namespace lodestone;
 
 namespace {
 
-glm::dvec3 point_in(Random& random, double size) {
+glm::dvec3 point_in(PcgRandom& random, double size) {
     return size * (2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0);
 }
 
 /// Turned, placed, and up to a hundred times longer than wide.
-Primitive any_primitive(Random& random) {
+Primitive any_primitive(PcgRandom& random) {
     Primitive out;
     out.center = point_in(random, 3);
     const glm::dvec3 x = glm::normalize(point_in(random, 1));
@@ -34,10 +34,10 @@ Primitive upright(const glm::dvec3& half_size) {
 }  // namespace
 
 TEST(PrimitiveDistance, OfABoxIsThatOfItsTwelveTriangles) {
-    Random random(1);
+    PcgRandom random(1);
     for (int i = 0; i < 50; ++i) {
         const Primitive box = any_primitive(random);
-        const ray::Scene scene(tessellate_box(box), nullptr, ray::Uses::ClosestPoints);
+        const ray::MeshScene scene(tessellate_box(box), nullptr, ray::SceneUse::ClosestPoints);
         for (int k = 0; k < 100; ++k) {
             const glm::dvec3 point = box.center + point_in(random, k < 50 ? 0.1 : 2);
             ASSERT_NEAR(distance_to_box(box, point), scene.closest_point(point).distance, 2e-6);
@@ -46,11 +46,11 @@ TEST(PrimitiveDistance, OfABoxIsThatOfItsTwelveTriangles) {
 }
 
 TEST(PrimitiveDistance, OfAnEllipsoidIsThatOfManyTriangles) {
-    Random random(2);
+    PcgRandom random(2);
     for (int i = 0; i < 10; ++i) {
         const Primitive ellipsoid = any_primitive(random);
-        const ray::Scene scene(tessellate_ellipsoid(ellipsoid, 6), nullptr,
-                               ray::Uses::ClosestPoints);
+        const ray::MeshScene scene(tessellate_ellipsoid(ellipsoid, 6), nullptr,
+                                   ray::SceneUse::ClosestPoints);
         for (int k = 0; k < 200; ++k) {
             const glm::dvec3 point = ellipsoid.center + point_in(random, k < 100 ? 0.1 : 2);
             ASSERT_NEAR(distance_to_ellipsoid(ellipsoid, point),
@@ -60,7 +60,7 @@ TEST(PrimitiveDistance, OfAnEllipsoidIsThatOfManyTriangles) {
 }
 
 TEST(PrimitiveDistance, OfAnEllipsoidIsExactAlongItsNormals) {
-    Random random(3);
+    PcgRandom random(3);
     for (int i = 0; i < 1000; ++i) {
         const Primitive ellipsoid = any_primitive(random);
         const glm::dvec3 on = glm::normalize(point_in(random, 1));

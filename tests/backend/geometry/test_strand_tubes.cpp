@@ -39,13 +39,13 @@ double volume(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(Strands, NothingGivesNothing) {
+TEST(HairStrands, NothingGivesNothing) {
     EXPECT_TRUE(tubes({}, {}, {}).empty());
     EXPECT_TRUE(tubes({}, {}, {0, 0}).empty());
     EXPECT_TRUE(tubes({{1, 2, 3}}, {0.1f}, {1}).empty());
 }
 
-TEST(Strands, OneSegmentIsAClosedPrism) {
+TEST(HairStrands, OneSegmentIsAClosedPrism) {
     const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 2}}, {0.1f, 0.1f}, {2});
     EXPECT_EQ(mesh.positions.size(), 6u);
     EXPECT_EQ(mesh.triangles.size(), 8u);
@@ -55,7 +55,7 @@ TEST(Strands, OneSegmentIsAClosedPrism) {
     check(mesh);
 }
 
-TEST(Strands, MantleIsAsLargeAsTheRoundTubes) {
+TEST(HairStrands, MantleIsAsLargeAsTheRoundTubes) {
     // Cauchy: equal perimeter, equal mean width over all directions.
     const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 2}}, {0.1f, 0.1f}, {2});
     double mantle = 0;
@@ -67,7 +67,7 @@ TEST(Strands, MantleIsAsLargeAsTheRoundTubes) {
     EXPECT_NEAR(mantle, 2 * std::numbers::pi * 0.1 * 2, 1e-5);
 }
 
-TEST(Strands, TipWithoutRadiusIsAPoint) {
+TEST(HairStrands, TipWithoutRadiusIsAPoint) {
     const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 1}}, {0.1f, 0}, {2});
     EXPECT_EQ(mesh.triangles.size(), 4u);
     EXPECT_TRUE(closed(mesh));
@@ -78,7 +78,7 @@ TEST(Strands, TipWithoutRadiusIsAPoint) {
     EXPECT_GT(volume(both), 0);
 }
 
-TEST(Strands, HairWasShadedAsIfItTurnedToItsTip) {
+TEST(HairStrands, HairWasShadedAsIfItTurnedToItsTip) {
     const Mesh mesh = tubes({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {0, 0.1f, 0}, {3});
     for (const glm::vec3& normal : mesh.normals)
         EXPECT_NEAR(normal.z, 0, 1e-6);
@@ -93,7 +93,7 @@ TEST(Strands, HairWasShadedAsIfItTurnedToItsTip) {
     }
 }
 
-TEST(Strands, StraightRunsCostOneSegmentAndBendsAreKept) {
+TEST(HairStrands, StraightRunsCostOneSegmentAndBendsAreKept) {
     std::vector<glm::vec3> line;
     std::vector<float> taper;
     for (int i = 0; i < 9; ++i) {
@@ -115,7 +115,7 @@ TEST(Strands, StraightRunsCostOneSegmentAndBendsAreKept) {
         EXPECT_NEAR(glm::length(n), 1, 1e-5);
 }
 
-TEST(Strands, EachStrandHasItsSlotAndTheUvOfItsRoot) {
+TEST(HairStrands, EachStrandHasItsSlotAndTheUvOfItsRoot) {
     const std::vector<glm::vec3> points{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}};
     const Mesh mesh = tubes(points, {.1f, .1f, .1f, .1f}, {2, 2}, {0, 3});
     ASSERT_EQ(mesh.slots.size(), 16u);
@@ -131,7 +131,7 @@ TEST(Strands, EachStrandHasItsSlotAndTheUvOfItsRoot) {
     EXPECT_EQ(second.uvs, std::vector<glm::vec2>(6, {0.75f, 1}));
 }
 
-TEST(Strands, ArraysThatDoNotFitAreRefused) {
+TEST(HairStrands, ArraysThatDoNotFitAreRefused) {
     EXPECT_THROW(tubes({{0, 0, 0}}, {}, {1}), Error);
     EXPECT_THROW(tubes({{0, 0, 0}}, {1}, {2}), Error);
     EXPECT_THROW(tubes({{0, 0, 0}}, {1}, {4294967295u, 2}), Error);
@@ -139,7 +139,7 @@ TEST(Strands, ArraysThatDoNotFitAreRefused) {
     EXPECT_THROW(tubes({{0, 0, 0}}, {1}, {1}, {}, {{0, 0}, {1, 1}}), Error);
 }
 
-TEST(Strands, BrokenPointsAreLeftOutAndTheRestIsDrawn) {
+TEST(HairStrands, BrokenPointsAreLeftOutAndTheRestIsDrawn) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const Mesh mesh = tubes({{0, 0, 0}, {nan, 0, 0}, {0, 0, 1}, {0, infinity, 0}, {0, 0, 1}},
@@ -155,7 +155,7 @@ TEST(Strands, BrokenPointsAreLeftOutAndTheRestIsDrawn) {
         EXPECT_NEAR(glm::length(n), 1, 1e-5);
 }
 
-TEST(Strands, AHundredThousandHairs) {
+TEST(HairStrands, AHundredThousandHairs) {
     std::vector<glm::vec3> points;
     for (int i = 0; i < 100000; ++i) {
         for (const glm::vec3& p : bow(5))

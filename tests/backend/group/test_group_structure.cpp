@@ -15,19 +15,19 @@ using namespace lodestone;
 namespace {
 
 double random_unit(int seed, uint64_t stream) {
-    return Random(static_cast<uint64_t>(seed), stream).uniform();
+    return PcgRandom(static_cast<uint64_t>(seed), stream).uniform();
 }
 
-group::Item point_item(const glm::dvec3& at, double half = 0.5) {
-    group::Item item;
+group::GroupingItem point_item(const glm::dvec3& at, double half = 0.5) {
+    group::GroupingItem item;
     item.box = {at - half, at + half};
     return item;
 }
 
 /// `clusters` heaps of `each` boxes, far from each other; items of a heap follow each other.
-std::vector<group::Item> heaps(int clusters, int each, double scale = 1,
-                               const glm::dvec3& origin = glm::dvec3(0.0)) {
-    std::vector<group::Item> items;
+std::vector<group::GroupingItem> heaps(int clusters, int each, double scale = 1,
+                                       const glm::dvec3& origin = glm::dvec3(0.0)) {
+    std::vector<group::GroupingItem> items;
     for (int i = 0; i < clusters * each; ++i) {
         const int number = i / each;
         const double heap = 1000.0 * number;
@@ -39,7 +39,7 @@ std::vector<group::Item> heaps(int clusters, int each, double scale = 1,
 }
 
 /// The items below every group, as sets of their numbers.
-std::set<std::set<uint32_t>> sets_of(const group::Tree& tree) {
+std::set<std::set<uint32_t>> sets_of(const group::GroupingTree& tree) {
     std::set<std::set<uint32_t>> out;
     const std::function<std::set<uint32_t>(uint32_t)> below = [&](uint32_t node) {
         std::set<uint32_t> items;
@@ -63,7 +63,7 @@ std::set<uint32_t> numbers(uint32_t first, uint32_t count) {
 }
 
 /// Every item once, nothing with fewer than two or more than `most` children but the root.
-void expect_whole(const group::Tree& tree, size_t items, size_t most) {
+void expect_whole(const group::GroupingTree& tree, size_t items, size_t most) {
     std::vector<int> seen(items, 0);
     std::vector<uint32_t> stack{tree.root};
     while (!stack.empty()) {
@@ -148,12 +148,12 @@ std::set<std::string> uids_of_groups(const Model& model) {
 
 TEST(ExpectedCost, IsThatOfTheBoxesByHand) {
     // Two pairs of unit cubes side by side, 8 apart: the whole is 10 x 2 x 1.
-    std::vector<group::Item> items;
+    std::vector<group::GroupingItem> items;
     for (const double x : {0.0, 9.0}) {
         for (const double y : {0.0, 1.0})
             items.push_back(point_item({x, y, 0}));
     }
-    group::Tree tree = group::flat_tree(4);
+    group::GroupingTree tree = group::flat_tree(4);
     EXPECT_DOUBLE_EQ(group::expected_cost(tree, items), 4);
     tree.nodes.resize(7);
     tree.nodes[5].children = {0, 1};
@@ -167,8 +167,8 @@ TEST(ExpectedCost, IsThatOfTheBoxesByHand) {
 
 TEST(Insertion, NothingOneAndTwoStayAsTheyAre) {
     for (const uint32_t count : {0u, 1u, 2u}) {
-        std::vector<group::Item> items(count, point_item({1, 2, 3}));
-        const group::Tree tree = group::insert_all(items, {}, {});
+        std::vector<group::GroupingItem> items(count, point_item({1, 2, 3}));
+        const group::GroupingTree tree = group::group_by_insertion(items, {}, {});
         EXPECT_EQ(tree.nodes[tree.root].children.size(), count);
         EXPECT_EQ(group::group_count(tree), 0u);
     }
@@ -177,11 +177,11 @@ TEST(Insertion, NothingOneAndTwoStayAsTheyAre) {
 TEST(Insertion, FarHeapsAreGroupsWhateverTheSeedScaleAndOrigin) {
     for (const uint64_t seed : {1u, 2u, 77u}) {
         for (const double scale : {1e-200, 1e-3, 1.0, 1e150}) {
-            const std::vector<group::Item> items =
+            const std::vector<group::GroupingItem> items =
                 heaps(2, 12, scale, glm::dvec3(scale * 1e5, -scale * 1e6, 0));
             group::StructureOptions options;
             options.seed = seed;
-            const group::Tree tree = group::insert_all(items, options, {});
+            const group::GroupingTree tree = group::group_by_insertion(items, options, {});
             expect_whole(tree, items.size(), options.most);
             const auto sets = sets_of(tree);
             EXPECT_TRUE(sets.contains(numbers(0, 12))) << seed << " " << scale;
@@ -191,17 +191,17 @@ TEST(Insertion, FarHeapsAreGroupsWhateverTheSeedScaleAndOrigin) {
 }
 
 TEST(Insertion, SameTreeInAnyOrderAndOnAnyNumberOfThreads) {
-    const std::vector<group::Item> items = heaps(5, 40);
+    const std::vector<group::GroupingItem> items = heaps(5, 40);
     std::vector<uint32_t> turned(items.size());  // number in `items` of each
     for (uint32_t i = 0; i < turned.size(); ++i)
         turned[i] = static_cast<uint32_t>((i * 77u + 13u) % turned.size());
-    std::vector<group::Item> others;
+    std::vector<group::GroupingItem> others;
     others.reserve(items.size());
     for (const uint32_t i : turned)
         others.push_back(items[i]);
-    const auto one = sets_of(group::insert_all(items, {}, {}));
+    const auto one = sets_of(group::group_by_insertion(items, {}, {}));
     std::set<std::set<uint32_t>> two;
-    for (const std::set<uint32_t>& members : sets_of(group::insert_all(others, {}, {}))) {
+    for (const std::set<uint32_t>& members : sets_of(group::group_by_insertion(others, {}, {}))) {
         std::set<uint32_t> named;
         for (const uint32_t i : members)
             named.insert(turned[i]);
@@ -209,47 +209,48 @@ TEST(Insertion, SameTreeInAnyOrderAndOnAnyNumberOfThreads) {
     }
     EXPECT_EQ(one, two);
     const ThreadLimit limit(1);
-    EXPECT_EQ(one, sets_of(group::insert_all(items, {}, {})));
+    EXPECT_EQ(one, sets_of(group::group_by_insertion(items, {}, {})));
 }
 
 TEST(Insertion, CostsFarLessThanAFlatGroupAndMoreOrdersNeverCostMore) {
-    const std::vector<group::Item> items = heaps(20, 30);
+    const std::vector<group::GroupingItem> items = heaps(20, 30);
     const double flat = group::expected_cost(group::flat_tree(items.size()), items);
     group::StructureOptions options;
     options.orders = 1;
-    const double one = group::expected_cost(group::insert_all(items, options, {}), items);
+    const double one = group::expected_cost(group::group_by_insertion(items, options, {}), items);
     options.orders = 8;
-    const double many = group::expected_cost(group::insert_all(items, options, {}), items);
+    const double many = group::expected_cost(group::group_by_insertion(items, options, {}), items);
     EXPECT_LE(many, one);
     EXPECT_LT(one, flat / 20);
 }
 
 TEST(Insertion, ThousandsOfThingsInOnePlaceAndOnesInsideTheOther) {
-    std::vector<group::Item> same(3000, point_item({5, 5, 5}));
-    expect_whole(group::insert_all(same, {}, {}), same.size(), 64);
-    std::vector<group::Item> points(2000, point_item({5, 5, 5}, 0));
-    expect_whole(group::insert_all(points, {}, {}), points.size(), 64);
-    std::vector<group::Item> nested;
+    std::vector<group::GroupingItem> same(3000, point_item({5, 5, 5}));
+    expect_whole(group::group_by_insertion(same, {}, {}), same.size(), 64);
+    std::vector<group::GroupingItem> points(2000, point_item({5, 5, 5}, 0));
+    expect_whole(group::group_by_insertion(points, {}, {}), points.size(), 64);
+    std::vector<group::GroupingItem> nested;
     nested.reserve(3000);
     for (int i = 0; i < 3000; ++i)
         nested.push_back(point_item({0, 0, 0}, std::pow(0.98, i)));
-    expect_whole(group::insert_all(nested, {}, {}), nested.size(), 3000);
-    std::vector<group::Item> huge;
+    expect_whole(group::group_by_insertion(nested, {}, {}), nested.size(), 3000);
+    std::vector<group::GroupingItem> huge;
     huge.reserve(300);
     for (int i = 0; i < 300; ++i)
         huge.push_back(point_item({(i % 2 == 0 ? 1 : -1) * 1e308, i, i}, 1e300));
-    expect_whole(group::insert_all(huge, {}, {}), huge.size(), 64);
+    expect_whole(group::group_by_insertion(huge, {}, {}), huge.size(), 64);
 }
 
 TEST(Insertion, TenThousandObjectsAreAllThereOnce) {  // bench_group tells how fast
-    const std::vector<group::Item> items = heaps(100, 100);
-    const group::Tree tree = group::insert_all(items, {}, {});
+    const std::vector<group::GroupingItem> items = heaps(100, 100);
+    const group::GroupingTree tree = group::group_by_insertion(items, {}, {});
     expect_whole(tree, items.size(), 64);
 }
 
 TEST(Insertion, StopsWhenAsked) {
     const int32_t cancel = 1;
-    EXPECT_THROW(group::insert_all(heaps(10, 100), {}, Job(&cancel, nullptr, nullptr)), Error);
+    EXPECT_THROW(group::group_by_insertion(heaps(10, 100), {}, Job(&cancel, nullptr, nullptr)),
+                 Error);
 }
 
 TEST(Structure, OccurrencesAreExactlyWhereTheyWere) {
@@ -310,7 +311,7 @@ TEST(Structure, GroupsOfTheSameMembersHaveTheSameUidsInAnyOrderAndBesideNewOnes)
 TEST(Structure, WhatNothingStandsForAndGroundStayApart) {
     Model model = bricks(60);
     const ObjectIndex ground =
-        models::add_leaf(model, "ground", shapes::sphere(0.5, 1), {}, Role::Environment);
+        models::add_leaf(model, "ground", shapes::sphere(0.5, 1), {}, ObjectRole::Environment);
     const ObjectIndex flag = models::add_leaf(model, "flag", shapes::sphere(0.5, 1));
     model.objects[flag].deforms = true;
     std::vector<Placement>& placements = change_placements(model, model.root);
@@ -347,10 +348,10 @@ TEST(Structure, CanBeTakenBack) {
     const size_t children = placements_of(model, model.root).size();
     const group::StructureReport report = structure(model);
     EXPECT_LT(placements_of(model, model.root).size(), children);
-    EXPECT_EQ(group::dissolve_made(model, model.root), report.made);
+    EXPECT_EQ(group::dissolve_made_groups(model, model.root), report.made);
     EXPECT_EQ(placements_of(model, model.root).size(), children);
     EXPECT_EQ(occurrences(model), before);
-    EXPECT_EQ(group::dissolve_made(model, model.root), 0u);
+    EXPECT_EQ(group::dissolve_made_groups(model, model.root), 0u);
 }
 
 TEST(Structure, BoundsThatAreNoNumbersAndEmptyThingsDoNoHarm) {

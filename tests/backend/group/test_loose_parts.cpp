@@ -55,7 +55,7 @@ Drawn drawn_by(const Model& model) {
             EXPECT_EQ(occurrence.world.offset, glm::dvec3(0.0));
             add_drawn(drawn, finest.mesh(), finest.materials);
         },
-        Below::Parts);
+        OccurrenceUnit::Parts);
     return drawn;
 }
 
@@ -67,7 +67,8 @@ Mesh strewn(size_t count, double spread = 100) {
         ball.uvs.assign(ball.positions.size(), glm::vec2(0.25f, 0.125f * static_cast<float>(i)));
         ball.colors.assign(ball.positions.size(), glm::vec4(0.5f, 0.25f, 1, 1));
         ball.slots.assign(ball.triangles.size(), static_cast<uint16_t>(i % 3));
-        const glm::dvec3 at(spread * Random(1, i).uniform(), spread * Random(2, i).uniform(), 0);
+        const glm::dvec3 at(spread * PcgRandom(1, i).uniform(), spread * PcgRandom(2, i).uniform(),
+                            0);
         append(mesh, ball, models::moved(at.x, at.y, at.z));
     }
     return mesh;
@@ -170,10 +171,10 @@ TEST(LooseParts, EveryTriangleStaysExactlyWhatItWas) {
 
 TEST(LooseParts, ItIsOneObjectAndOneOccurrenceAsBefore) {
     Model model = model_of(strewn(kHuts));
-    const Totals before = totals(model);
+    const ModelTotals before = totals(model);
     split(model);
-    const Totals after = totals(model);
-    EXPECT_TRUE(model.objects[0].of_parts);
+    const ModelTotals after = totals(model);
+    EXPECT_TRUE(model.objects[0].made_of_parts);
     EXPECT_EQ(model.objects[0].uid, "town");
     EXPECT_EQ(after.objects, before.objects);
     EXPECT_EQ(after.occurrences, before.occurrences);
@@ -317,7 +318,7 @@ TEST(LooseParts, WhatIsNearDoesNotForceWhatIsFarToBeFine) {
     Model whole = model_of(strewn(24, 1000));
     Model parts = whole;
     split(parts, true, 640);
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     settings.rays = 64;
     settings.samples = 64;
     const std::filesystem::path folder = own_scratch() / "loose_parts";
@@ -337,10 +338,11 @@ TEST(LooseParts, WhatIsNearDoesNotForceWhatIsFarToBeFine) {
     view.width = 640;
     view.height = 320;
     view.pixel_error = 0;
-    EXPECT_EQ(choose::choose(stored, view).triangles, totals(whole).triangles_placed);
+    EXPECT_EQ(choose::choose_cut(stored, view).triangles, totals(whole).triangles_placed);
     view.pixel_error = 1;
-    EXPECT_LT(2 * choose::choose(stored, view).triangles, choose::choose(whole, view).triangles);
-    const hierarchy::Report again =
+    EXPECT_LT(2 * choose::choose_cut(stored, view).triangles,
+              choose::choose_cut(whole, view).triangles);
+    const hierarchy::BuildReport again =
         hierarchy::build_hierarchy(parts, segment::Store(folder / "parts"), settings, problems, {});
     EXPECT_EQ(again.built, 0u);
 }

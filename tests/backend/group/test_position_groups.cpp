@@ -15,7 +15,7 @@ using namespace lodestone;
 namespace {
 
 double random_unit(int seed, uint64_t stream) {
-    return Random(static_cast<uint64_t>(seed), stream).uniform();
+    return PcgRandom(static_cast<uint64_t>(seed), stream).uniform();
 }
 
 /// A meadow: `count` stones at random places in a square, turned and stretched.
@@ -180,11 +180,11 @@ TEST(GroupByPosition, PlacesThatAreNoNumbersDoNotHang) {
 
 TEST(GroupByPosition, RoleIsKeptAndMistakesAreRefused) {
     Model model = meadow(100);
-    model.objects[model.root].role = Role::Environment;
+    model.objects[model.root].role = ObjectRole::Environment;
     EXPECT_THROW(group::group_by_position(model, 0), Error);
     EXPECT_THROW(group::group_by_position(model, 99), Error);
     EXPECT_THROW(group::group_by_position(model, model.root, 7), Error);
     group::group_by_position(model, model.root);
     for (size_t i = 1; i < model.objects.size(); ++i)
-        EXPECT_EQ(model.objects[i].role, Role::Environment);
+        EXPECT_EQ(model.objects[i].role, ObjectRole::Environment);
 }

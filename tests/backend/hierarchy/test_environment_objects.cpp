@@ -24,7 +24,7 @@ struct Plot {
 };
 
 /// Balls in rows, so many metres above a slab of 20 m that is `thickness` thick.
-Plot plot(double height, double thickness = 0.2, Role role = Role::Automatic) {
+Plot plot(double height, double thickness = 0.2, ObjectRole role = ObjectRole::Automatic) {
     Plot out;
     Model& model = out.model;
     out.ground = models::add_leaf(model, "ground", slab(10, thickness),
@@ -55,8 +55,10 @@ TEST(Ground, IsWhatMostOfTheOthersStandOn) {
     EXPECT_EQ(ground_in(plot(0.5).model), std::optional<size_t>(0));
     EXPECT_EQ(ground_in(plot(0.5, 3).model), std::nullopt) << "no block";
     EXPECT_EQ(ground_in(plot(-1).model), std::nullopt) << "no table top, with things below";
-    EXPECT_EQ(ground_in(plot(0.5, 0.2, Role::Ordinary).model), std::nullopt) << "told not to be";
-    EXPECT_EQ(ground_in(plot(0.5, 0.2, Role::Environment).model), std::nullopt) << "is marked";
+    EXPECT_EQ(ground_in(plot(0.5, 0.2, ObjectRole::Ordinary).model), std::nullopt)
+        << "told not to be";
+    EXPECT_EQ(ground_in(plot(0.5, 0.2, ObjectRole::Environment).model), std::nullopt)
+        << "is marked";
 }
 
 TEST(Ground, HasNothingBesideItThatIsNearlyAsLarge) {
@@ -85,7 +87,7 @@ TEST(Ground, IsToldOfAllThatIsBelowIt) {
 }
 
 TEST_F(Environment, NoSolidStandsForAGroundOrItsGroup) {
-    for (const Role role : {Role::Automatic, Role::Environment}) {
+    for (const ObjectRole role : {ObjectRole::Automatic, ObjectRole::Environment}) {
         Plot now = plot(0.5, 0.2, role);
         build_in(now.model, "ground");
         for (const ObjectIndex index : {now.ground, now.model.root}) {
@@ -114,7 +116,7 @@ TEST_F(Environment, StaysBesideTheSolidsThatStandOnIt) {
 }
 
 TEST_F(Environment, AnOrdinaryGroundMayBecomeABox) {
-    Plot now = plot(0.5, 0.2, Role::Ordinary);
+    Plot now = plot(0.5, 0.2, ObjectRole::Ordinary);
     build_in(now.model, "ordinary");
     size_t solids = 0;
     for (const Object& object : now.model.objects) {

@@ -74,24 +74,24 @@ TEST_F(Layers, StartLineOnATrackDoesNotVanishAtOnePixel) {
     const std::vector<uint64_t> uses = hierarchy::uses_of(model);
     hierarchy::OpenedGroup opened(model, model.root, uses);
     for (const double pixel : {0.05, 0.1, 0.2}) {
-        const hierarchy::Flat shown =
-            hierarchy::flatten(opened, pixel,
-                               [](const Representation& r) {
-                                   return std::get<std::shared_ptr<const Mesh>>(r.payload);
-                               },
-                               {});
-        const ray::Scene scene(shown.mesh);
+        const hierarchy::FlattenedGroup shown =
+            hierarchy::flatten_group(opened, pixel,
+                                     [](const Representation& r) {
+                                         return std::get<std::shared_ptr<const Mesh>>(r.payload);
+                                     },
+                                     {});
+        const ray::MeshScene scene(shown.mesh);
         int white = 0;
         for (int i = 0; i < 100; ++i) {
             const int row = i / 10;
             const glm::dvec3 from(0.09 * (i % 10) - 0.4, 0.45 * row - 2.0, 1);
-            const ray::Hit hit = scene.first_hit(from, {0, 0, -1});
+            const ray::RayHit hit = scene.first_hit(from, {0, 0, -1});
             if (hit.hit && shown.materials[shown.mesh.slot(hit.triangle)].name == "white")
                 ++white;
         }
         EXPECT_GE(white, 95) << "at " << pixel << " m";
     }
-    EXPECT_LE(choose::choose(model, from_above(0.2)).largest_error_px, 1);
+    EXPECT_LE(choose::choose_cut(model, from_above(0.2)).largest_error_px, 1);
 }
 
 TEST_F(Layers, FlatThingIsAsWrongAsItIsOffWhereNothingLiesOnIt) {
@@ -101,7 +101,7 @@ TEST_F(Layers, FlatThingIsAsWrongAsItIsOffWhereNothingLiesOnIt) {
         if (on_it != nullptr)
             placements.push_back({models::add_leaf(model, "other", *on_it),
                                   models::moved(at.x, at.y, at.z), "other"});
-        model.objects[0].role = Role::Ordinary;  // a ground would be no box in any case
+        model.objects[0].role = ObjectRole::Ordinary;  // a ground would be no box in any case
         model.root = models::add_group(model, "scene", std::move(placements));
         build_in(model, text("scene ", at.x, " ", at.z));
         return model.objects[0].representations.back().summary.error;
@@ -131,8 +131,9 @@ TEST_F(Layers, WhatComesToLieOnAFlatThingBuildsItAgain) {
         model.root = root;
         summarize_assemblies(model, bottom_up(model));
         Problems problems;
-        const uint64_t stale = hierarchy::estimate(model, store, {}).built;
-        const hierarchy::Report report = hierarchy::build_hierarchy(model, store, {}, problems, {});
+        const uint64_t stale = hierarchy::estimate_build(model, store, {}).built;
+        const hierarchy::BuildReport report =
+            hierarchy::build_hierarchy(model, store, {}, problems, {});
         EXPECT_EQ(stale, report.built);
         return report.built;
     };
@@ -155,8 +156,8 @@ TEST_F(Layers, BulbInAGlassGlobeIsSeenFromOutside) {
     const auto off_without_bulb = [&](double transmission) {
         glass.transmission = transmission;
         const std::vector<Material> materials{glass, models::colored("bulb", {0.8, 0.1, 0.1})};
-        const auto skin = std::make_shared<const ray::Skin>(materials, texels);
-        measure::Looks looks;
+        const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
+        measure::LookPalette looks;
         const std::vector<uint16_t> of_lamp = looks.of(lamp, materials);
         Mesh globe = lamp;
         globe.triangles.resize(of_globe);

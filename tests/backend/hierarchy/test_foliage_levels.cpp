@@ -115,7 +115,7 @@ TEST_F(Foliage, TreeOfManyLeavesIsPrunedNearByAndAFewSolidsFarAway) {
     bool pruned = false;
     bool composed = false;
     for (const Representation& level : tree.representations) {
-        const Summary& summary = level.summary;
+        const RepresentationSummary& summary = level.summary;
         pruned = pruned || (summary.kind == Kind::Mesh && summary.error < radius / 4 &&
                             summary.cost.triangles < 1350);
         composed = composed || (summary.kind == Kind::Composite && summary.error < radius);
@@ -205,7 +205,7 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
     };
     const std::vector<uint64_t> uses(model.objects.size(), 1);
     hierarchy::OpenedGroup opened(model, model.root, uses);
-    const hierarchy::Flat flat = hierarchy::flatten(opened, 0, source, {});
+    const hierarchy::FlattenedGroup flat = hierarchy::flatten_group(opened, 0, source, {});
     ASSERT_EQ(flat.materials.size(), 2u);
     EXPECT_EQ(flat.mesh.slots, (std::vector<uint16_t>{0, 0, 1, 1}));
     EXPECT_TRUE(textured(flat.materials[0]));
@@ -216,11 +216,11 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
 }
 
 TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) {
-    using hierarchy::Candidate;
-    Candidate mesh;
+    using hierarchy::StandInCandidate;
+    StandInCandidate mesh;
     mesh.mesh = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
     mesh.error = 0.1;
-    Candidate clear;
+    StandInCandidate clear;
     clear.kind = Kind::Composite;
     Composite solids;
     solids.solids.resize(8);
@@ -239,8 +239,8 @@ TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) 
     EXPECT_NEAR(hierarchy::tracing_of(clear), once / 4, 1e-9 * once);
     clear.error /= 2;
     for (const uint64_t uses : {1, 100}) {
-        std::vector<Candidate> both{mesh, clear};
-        hierarchy::keep_useful(both, 100000000, uses);
+        std::vector<StandInCandidate> both{mesh, clear};
+        hierarchy::keep_pareto_front(both, 100000000, uses);
         EXPECT_EQ(both.size(), uses == 1 ? 2u : 1u);
         EXPECT_EQ(both[0].kind, Kind::Mesh);
     }

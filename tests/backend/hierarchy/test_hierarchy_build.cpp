@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-hierarchy::Report build_in(Model& model, const fs::path& folder) {
+hierarchy::BuildReport build_in(Model& model, const fs::path& folder) {
     Problems problems;
-    const hierarchy::Report report = hierarchy::build_hierarchy(
-        model, segment::Store(folder), hierarchy::Settings{}, problems, {});
+    const hierarchy::BuildReport report = hierarchy::build_hierarchy(
+        model, segment::Store(folder), hierarchy::BuildSettings{}, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
 }
@@ -38,7 +38,7 @@ Model room() {
         models::add_leaf(model, "top", shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75}), wood);
     const ObjectIndex vase = models::add_leaf(model, "vase", shapes::sphere(0.1, 4), red);
     const ObjectIndex wall = models::add_leaf(model, "wall", shapes::box({-3, 2, 0}, {3, 2.2, 3}),
-                                              wood, Role::Environment);
+                                              wood, ObjectRole::Environment);
     const ObjectIndex table = models::add_group(
         model, "table", {{top, Affine{}, "top"}, {vase, models::moved(0, 0, 0.85), "vase"}});
     model.root = models::add_group(model, "room",
@@ -63,7 +63,7 @@ Model row_of_terrains(int count) {
 /// Builds in an empty folder and stops as soon as a store is there; false when it was done before.
 bool stopped_when_something_is_kept(Model model, const fs::path& folder) {
     const segment::Store store(folder);
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     settings.keep_every_s = 0;
     volatile int32_t cancel = 0;
     std::atomic<bool> over{false};
@@ -122,7 +122,7 @@ class Hierarchy : public WithRays {};
 TEST_F(Hierarchy, EmptyModelBuildsAnEmptyStore) {
     Model model;
     model.root = models::add_group(model, "empty", {});
-    const hierarchy::Report report = build_in(model, scratch("empty"));
+    const hierarchy::BuildReport report = build_in(model, scratch("empty"));
     EXPECT_EQ(model.objects[0].representations.size(), 1u);
     EXPECT_EQ(report.representations, 1u);
 }
@@ -154,7 +154,7 @@ TEST_F(Hierarchy, SmoothClosedMeshKeepsItsFineLevels) {
 
 TEST_F(Hierarchy, RoomHasListsInOrderAndAStandInEverywhere) {
     Model model = room();
-    const hierarchy::Report report = build_in(model, scratch("room"));
+    const hierarchy::BuildReport report = build_in(model, scratch("room"));
     EXPECT_EQ(report.objects, 5u);
     EXPECT_EQ(report.built, 5u);
     expect_valid(model);
@@ -165,8 +165,8 @@ TEST_F(Hierarchy, AnEmptySceneIsNoObjectToBuild) {
     const ObjectIndex inside = models::add_group(model, "inside", {});
     model.root = models::add_group(model, "scene", {{inside, Affine{}, "inside"}});
     const fs::path folder = scratch("empty");
-    for (const hierarchy::Report& report :
-         {hierarchy::estimate(model, segment::Store(folder), {}), build_in(model, folder)}) {
+    for (const hierarchy::BuildReport& report :
+         {hierarchy::estimate_build(model, segment::Store(folder), {}), build_in(model, folder)}) {
         EXPECT_EQ(report.objects, 0u);
         EXPECT_EQ(report.built, 0u);
     }
@@ -188,9 +188,10 @@ TEST_F(Hierarchy, EnvironmentIsNeverAPrimitiveNorIsAGroupWithOne) {
 TEST_F(Hierarchy, NothingStandsInForWhatDeformsNorForItsGroups) {
     Model model = room();
     model.objects[index_of(model, "vase")].deforms = true;
-    model.objects[index_of(model, "top")].role = Role::Ordinary;  // else it is the vase's ground
+    model.objects[index_of(model, "top")].role =
+        ObjectRole::Ordinary;  // else it is the vase's ground
     const fs::path folder = scratch("deforms");
-    const hierarchy::Report report = build_in(model, folder);
+    const hierarchy::BuildReport report = build_in(model, folder);
     const std::vector<uint8_t> deforming = with_deforming(model);
     for (const char* still : {"top", "wall"})
         EXPECT_EQ(deforming[index_of(model, still)], 0) << still;
@@ -221,7 +222,7 @@ TEST_F(Hierarchy, SecondBuildBuildsNothingAndGivesTheSameLists) {
     const fs::path folder = scratch("again");
     build_in(model, folder);
     Model again = room();
-    const hierarchy::Report report = build_in(again, folder);
+    const hierarchy::BuildReport report = build_in(again, folder);
     EXPECT_EQ(report.built, 0u);
     ASSERT_EQ(model.objects.size(), again.objects.size());
     for (size_t i = 0; i < model.objects.size(); ++i) {
@@ -275,8 +276,8 @@ TEST_F(Hierarchy, RenamedObjectsAreFoundByTheirSourceAndCostNothing) {
     for (Material& material : renamed.materials)
         material.name = "new " + material.name;
     const segment::Store store(folder);
-    EXPECT_EQ(hierarchy::estimate(renamed, store, {}).built, 0u);
-    const hierarchy::Report report = build_in(renamed, folder);
+    EXPECT_EQ(hierarchy::estimate_build(renamed, store, {}).built, 0u);
+    const hierarchy::BuildReport report = build_in(renamed, folder);
     EXPECT_EQ(report.built, 0u);
     const Model stored = store.read();
     ASSERT_EQ(stored.objects.size(), before.objects.size());
@@ -303,7 +304,7 @@ TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
         std::make_shared<const Mesh>(shapes::sphere(0.12, 4));
     summarize(changed.objects[1].representations[0], changed);
     const segment::Store store(folder);
-    EXPECT_EQ(hierarchy::estimate(changed, store, {}).built, 3u);  // vase, table, room
+    EXPECT_EQ(hierarchy::estimate_build(changed, store, {}).built, 3u);  // vase, table, room
     EXPECT_EQ(build_in(changed, folder).built, 3u);
     expect_valid(changed);
 }
@@ -311,12 +312,12 @@ TEST_F(Hierarchy, OneChangedObjectRebuildsItAndItsGroupsOnly) {
 TEST_F(Hierarchy, ScopeBuildsWhatItReachesAndTheRestStaysStale) {
     Model model = room();
     const fs::path folder = scratch("scope");
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     settings.scope = {3};  // the table
     Problems problems;
     const segment::Store store(folder);
-    EXPECT_EQ(hierarchy::estimate(model, store, settings).built, 3u);
-    const hierarchy::Report report =
+    EXPECT_EQ(hierarchy::estimate_build(model, store, settings).built, 3u);
+    const hierarchy::BuildReport report =
         hierarchy::build_hierarchy(model, store, settings, problems, {});
     EXPECT_EQ(report.built, 3u);  // table, top, vase
     EXPECT_EQ(model.objects[2].representations.size(), 1u);
@@ -393,7 +394,7 @@ TEST_F(Hierarchy, HowOftenItIsKeptChangesNoResult) {
     const fs::path by_once = scratch("once");
     const fs::path by_often = scratch("often");
     build_in(once, by_once);
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     settings.keep_every_s = 0;
     Problems problems;
     hierarchy::build_hierarchy(often, segment::Store(by_often), settings, problems, {});
@@ -470,17 +471,17 @@ TEST_F(Hierarchy, CutOfTheBuiltModelKeepsItsPromise) {
     view.camera.direction = {0, 1, 0};
     view.camera.right = {1, 0, 0};
     view.camera.up = {0, 0, 0.5625};
-    const choose::Cut fine = choose::choose(model, view);
+    const choose::Cut fine = choose::choose_cut(model, view);
     view.pixel_error = 0;
-    const choose::Cut full = choose::choose(model, view);
+    const choose::Cut full = choose::choose_cut(model, view);
     EXPECT_LE(fine.largest_error_px, 1);
     EXPECT_LT(fine.triangles * 4, full.triangles);
 }
 
 TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
-    std::vector<hierarchy::Candidate> candidates;
+    std::vector<hierarchy::StandInCandidate> candidates;
     const auto add = [&](uint32_t side, double error) {
-        hierarchy::Candidate candidate;
+        hierarchy::StandInCandidate candidate;
         candidate.mesh = std::make_shared<const Mesh>(shapes::terrain(side));
         candidate.error = error;
         candidates.push_back(candidate);
@@ -490,7 +491,7 @@ TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
     add(30, 0.25);  // worse than the cheaper one of 20
     add(40, 0.1);
     add(90, 0.01);  // no cheaper than the finest
-    hierarchy::keep_useful(candidates, uint64_t{2} * 90 * 90 * 245);
+    hierarchy::keep_pareto_front(candidates, uint64_t{2} * 90 * 90 * 245);
     ASSERT_EQ(candidates.size(), 3u);
     EXPECT_EQ(candidates[0].error, 0.1);
     EXPECT_EQ(candidates[1].error, 0.2);

@@ -23,7 +23,7 @@ Image gray(int width, int height, float value, float alpha = 1) {
 
 Image noise(int width, int height, uint64_t seed) {
     Image image = gray(width, height, 0);
-    Random random(seed);
+    PcgRandom random(seed);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
         if (i % 4 != 3)
             image.pixels[i] = static_cast<float>(random.uniform());
@@ -32,14 +32,14 @@ Image noise(int width, int height, uint64_t seed) {
 }
 
 TEST(Compare, NoPixelsCoveredIsNoDifference) {
-    const Difference d = compare(gray(3, 3, 0.5f, 0), gray(3, 3, 0.9f, 0));
+    const ImageDifference d = compare(gray(3, 3, 0.5f, 0), gray(3, 3, 0.9f, 0));
     EXPECT_EQ(d.pixels, 0u);
     EXPECT_EQ(d.mean, 0);
     EXPECT_EQ(d.ssim, 1);
 }
 
 TEST(Compare, OnePixelPictures) {
-    const Difference d = compare(gray(1, 1, 0.25f), gray(1, 1, 0.75f));
+    const ImageDifference d = compare(gray(1, 1, 0.25f), gray(1, 1, 0.75f));
     EXPECT_EQ(d.pixels, 1u);
     EXPECT_DOUBLE_EQ(d.mean, 0.5);
     EXPECT_DOUBLE_EQ(d.p999, 0.5);
@@ -48,7 +48,7 @@ TEST(Compare, OnePixelPictures) {
 
 TEST(Compare, IdenticalPicturesDifferByNothing) {
     const Image picture = noise(40, 30, 1);
-    const Difference d = compare(picture, picture);
+    const ImageDifference d = compare(picture, picture);
     EXPECT_EQ(d.pixels, 1200u);
     EXPECT_EQ(d.mean, 0);
     EXPECT_EQ(d.max, 0);
@@ -56,7 +56,7 @@ TEST(Compare, IdenticalPicturesDifferByNothing) {
 }
 
 TEST(Compare, ConstantPicturesHaveTheClosedFormOfSsim) {
-    const Difference d = compare(gray(30, 20, 0.25f), gray(30, 20, 0.5f));
+    const ImageDifference d = compare(gray(30, 20, 0.25f), gray(30, 20, 0.5f));
     const double c1 = 0.0001;
     EXPECT_NEAR(d.ssim, (2 * 0.25 * 0.5 + c1) / (0.0625 + 0.25 + c1), 1e-9);
     EXPECT_NEAR(d.mean, 0.25, 1e-12);
@@ -96,7 +96,7 @@ TEST(Compare, ScaledContrastHasTheClosedFormOfSsim) {
         expected += 0.5 * (2 * ma * mb + 1e-4) * (2 * a * b * spread + 9e-4) /
                     ((ma * ma + mb * mb + 1e-4) * ((a * a + b * b) * spread + 9e-4));
     }
-    const Difference d = compare(stripes(0.25f), stripes(0.125f), &middle);
+    const ImageDifference d = compare(stripes(0.25f), stripes(0.125f), &middle);
     EXPECT_EQ(d.pixels, 400u);
     EXPECT_NEAR(d.ssim, expected, 1e-9);
     EXPECT_LT(d.ssim, 0.9);
@@ -107,7 +107,7 @@ TEST(Compare, MeanTakesAllChannelsAndMaxTheWorst) {
     Image b = a;
     for (size_t i = 0; i < b.size(); ++i)
         b.pixels[4 * i + 1] = 0.8f;  // green only
-    const Difference d = compare(a, b);
+    const ImageDifference d = compare(a, b);
     EXPECT_NEAR(d.mean, 0.1, 1e-7);
     EXPECT_NEAR(d.p999, 0.3, 1e-7);
     EXPECT_NEAR(d.max, 0.3, 1e-7);
@@ -120,7 +120,7 @@ TEST(Compare, HalfBlackHasHalfTheMean) {
         for (size_t c = 0; c < 3; ++c)
             b.pixels[4 * i + c] = 0;
     }
-    const Difference d = compare(a, b);
+    const ImageDifference d = compare(a, b);
     EXPECT_DOUBLE_EQ(d.mean, 0.5);
     EXPECT_DOUBLE_EQ(d.max, 1);
     EXPECT_LT(d.ssim, 0.6);
@@ -159,7 +159,7 @@ TEST(Compare, WithoutMaskEitherAlphaCoversAndSilhouettesCount) {
     Image b = a;
     a.pixels[3] = 1;      // only in a
     b.pixels[4 + 3] = 1;  // only in b
-    const Difference d = compare(a, b);
+    const ImageDifference d = compare(a, b);
     EXPECT_EQ(d.pixels, 2u);
     EXPECT_DOUBLE_EQ(d.mean, 1);  // white against nothing, although both colors are white
 }
@@ -167,20 +167,20 @@ TEST(Compare, WithoutMaskEitherAlphaCoversAndSilhouettesCount) {
 TEST(Compare, LinearPicturesAreEncodedFirst) {
     Image linear = gray(4, 4, 0.21404114f);
     linear.linear = true;
-    const Difference d = compare(linear, gray(4, 4, 0.5f));
+    const ImageDifference d = compare(linear, gray(4, 4, 0.5f));
     EXPECT_LT(d.max, 1e-6);
 }
 
 TEST(Compare, IsSymmetricAndTheSameOnOneThread) {
     const Image a = noise(64, 48, 2);
     const Image b = noise(64, 48, 3);
-    const Difference many = compare(a, b);
-    const Difference swapped = compare(b, a);
+    const ImageDifference many = compare(a, b);
+    const ImageDifference swapped = compare(b, a);
     EXPECT_DOUBLE_EQ(many.mean, swapped.mean);
     EXPECT_NEAR(many.ssim, swapped.ssim, 1e-15);
     EXPECT_LT(many.ssim, 0.2);
     const ThreadLimit one(1);
-    const Difference single = compare(a, b);
+    const ImageDifference single = compare(a, b);
     EXPECT_EQ(single.mean, many.mean);
     EXPECT_EQ(single.ssim, many.ssim);
 }

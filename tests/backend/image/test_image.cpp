@@ -253,9 +253,10 @@ TEST(Image, APartOfAnExrIsThatOfTheWhole) {
     const std::filesystem::path path = scratch("parts.exr");
     write_file(path, bytes);
     const Image whole = read(path);
-    for (const Part& part : {Part{0, 0, 12, 311}, Part{3, 255, 5, 9}, Part{0, 0, 2, 1},
-                             Part{11, 310, 1, 1}, Part{1, 1, 3, 2}}) {
-        const Image found = read_part(path, part);
+    for (const ImageRegion& part :
+         {ImageRegion{0, 0, 12, 311}, ImageRegion{3, 255, 5, 9}, ImageRegion{0, 0, 2, 1},
+          ImageRegion{11, 310, 1, 1}, ImageRegion{1, 1, 3, 2}}) {
+        const Image found = read_region(path, part);
         ASSERT_EQ(found.width, part.width);
         ASSERT_EQ(found.height, part.height);
         for (int y = 0; y < part.height; ++y) {
@@ -266,9 +267,10 @@ TEST(Image, APartOfAnExrIsThatOfTheWhole) {
         }
     }
     constexpr int kMost = std::numeric_limits<int>::max();
-    for (const Part& part : {Part{-1, 0, 1, 1}, Part{0, 0, 13, 1}, Part{0, 311, 1, 1},
-                             Part{0, 0, 0, 1}, Part{kMost, 0, kMost, 1}})
-        EXPECT_THROW(read_part(path, part), Error);
+    for (const ImageRegion& part :
+         {ImageRegion{-1, 0, 1, 1}, ImageRegion{0, 0, 13, 1}, ImageRegion{0, 311, 1, 1},
+          ImageRegion{0, 0, 0, 1}, ImageRegion{kMost, 0, kMost, 1}})
+        EXPECT_THROW(read_region(path, part), Error);
     std::filesystem::remove(path);
 }
 
@@ -288,8 +290,8 @@ TEST(Image, ABorderOfAPosterIsReadThoughThePosterIsTooLarge) {
         file.writePixels(32);  // the others are missing, which a part above them does not meet
     }
     EXPECT_NE(complaint(read_file(path)).find("too large"), std::string::npos);
-    expect_pixel(read_part(path, {9998, 20, 2, 1}), 1, 0, {9999, 9999, 9999, 1});
-    EXPECT_THROW(read_part(path, {0, 20, 1, 80}), Error);
+    expect_pixel(read_region(path, {9998, 20, 2, 1}), 1, 0, {9999, 9999, 9999, 1});
+    EXPECT_THROW(read_region(path, {0, 20, 1, 80}), Error);
     std::filesystem::remove(path);
 }
 

@@ -25,52 +25,52 @@ std::string picture() {
 }  // namespace
 
 TEST(PngText, NoLinesChangeNothing) {
-    EXPECT_EQ(image::with_text(picture(), {}, "it"), picture());
-    EXPECT_TRUE(image::text_of(picture(), "it").empty());
+    EXPECT_EQ(image::with_png_text(picture(), {}, "it"), picture());
+    EXPECT_TRUE(image::png_text(picture(), "it").empty());
 }
 
 TEST(PngText, LinesComeBackAndThePixelsStay) {
     const TextLines lines{{"Lodestone", "0.1.0"}, {"Empty", ""}};
-    const std::string with = image::with_text(picture(), lines, "it");
-    EXPECT_EQ(image::text_of(with, "it"), lines);
+    const std::string with = image::with_png_text(picture(), lines, "it");
+    EXPECT_EQ(image::png_text(with, "it"), lines);
     EXPECT_EQ(image::read(with, "it").pixels, image::read(picture(), "it").pixels);
 }
 
 TEST(PngText, ALineOfTheSameKeywordIsReplaced) {
-    const std::string once = image::with_text(picture(), {{"A", "1"}, {"B", "2"}}, "it");
-    const std::string twice = image::with_text(once, {{"A", "3"}}, "it");
-    EXPECT_EQ(image::text_of(twice, "it"), (TextLines{{"A", "3"}, {"B", "2"}}));
+    const std::string once = image::with_png_text(picture(), {{"A", "1"}, {"B", "2"}}, "it");
+    const std::string twice = image::with_png_text(once, {{"A", "3"}}, "it");
+    EXPECT_EQ(image::png_text(twice, "it"), (TextLines{{"A", "3"}, {"B", "2"}}));
 }
 
 TEST(PngText, OnlyPrintableAsciiIsWritten) {
     const std::string with =
-        image::with_text(picture(), {{"K\n", std::string("a\0b\xc3\xa9", 5)}}, "it");
-    EXPECT_EQ(image::text_of(with, "it"), (TextLines{{"K?", "a?b??"}}));
+        image::with_png_text(picture(), {{"K\n", std::string("a\0b\xc3\xa9", 5)}}, "it");
+    EXPECT_EQ(image::png_text(with, "it"), (TextLines{{"K?", "a?b??"}}));
 }
 
 TEST(PngText, ALineOfTenKilobytesComesBack) {
     const std::string lengthy(10'000, '%');
-    const std::string with = image::with_text(picture(), {{"Note", lengthy}}, "it");
-    EXPECT_EQ(image::text_of(with, "it"), (TextLines{{"Note", lengthy}}));
+    const std::string with = image::with_png_text(picture(), {{"Note", lengthy}}, "it");
+    EXPECT_EQ(image::png_text(with, "it"), (TextLines{{"Note", lengthy}}));
 }
 
 TEST(PngText, BadKeywordsAndFilesAreRefused) {
-    EXPECT_THROW(image::with_text(picture(), {{"", "x"}}, "it"), Error);
-    EXPECT_THROW(image::with_text(picture(), {{std::string(80, 'k'), "x"}}, "it"), Error);
+    EXPECT_THROW(image::with_png_text(picture(), {{"", "x"}}, "it"), Error);
+    EXPECT_THROW(image::with_png_text(picture(), {{std::string(80, 'k'), "x"}}, "it"), Error);
     for (const std::string& bytes :
          {std::string(), std::string("\xff\xd8\xff"), picture().substr(0, 8),
           picture().substr(0, picture().size() - 1)})
-        EXPECT_THROW(image::with_text(bytes, {{"A", "1"}}, "it"), Error);
+        EXPECT_THROW(image::with_png_text(bytes, {{"A", "1"}}, "it"), Error);
 }
 
 TEST(PngText, BrokenFilesNeverCrash) {
-    const std::string whole = image::with_text(picture(), {{"A", "1"}}, "it");
+    const std::string whole = image::with_png_text(picture(), {{"A", "1"}}, "it");
     for (size_t at = 0; at < whole.size(); ++at) {
         std::string broken = whole;
         broken[at] = static_cast<char>(broken[at] ^ 0x80);
         try {
-            image::text_of(broken, "it");
-            image::with_text(broken, {{"B", "2"}}, "it");
+            image::png_text(broken, "it");
+            image::with_png_text(broken, {{"B", "2"}}, "it");
         } catch (const Error& error) {
             EXPECT_EQ(error.status, Status::BadFile);
         }

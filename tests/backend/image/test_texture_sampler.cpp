@@ -20,7 +20,7 @@ PicturePtr four_texels(ColorSpace space = ColorSpace::Srgb) {
 Texture closest(PicturePtr picture) {
     Texture texture;
     texture.picture = std::move(picture);
-    texture.interpolation = Interpolation::Closest;
+    texture.interpolation = TextureInterpolation::Closest;
     return texture;
 }
 
@@ -29,67 +29,67 @@ void expect_color(const glm::dvec3& found, const glm::dvec3& wanted) {
         EXPECT_NEAR(found[i], wanted[i], 1e-6) << i;
 }
 
-TEST(Sampler, WithoutAPictureGivesTheOtherValue) {
-    const image::Sampler sampler(Texture{}, {0.1, 0.2, 0.3});
+TEST(TextureSampler, WithoutAPictureGivesTheOtherValue) {
+    const image::TextureSampler sampler(Texture{}, {0.1, 0.2, 0.3});
     expect_color(sampler.color({0.5, 0.5}), {0.1, 0.2, 0.3});
     EXPECT_EQ(sampler.number({7, -3}), 0.1);
 }
 
-TEST(Sampler, VZeroIsTheLowestRow) {
-    const image::Sampler sampler(closest(four_texels()), {});
+TEST(TextureSampler, VZeroIsTheLowestRow) {
+    const image::TextureSampler sampler(closest(four_texels()), {});
     expect_color(sampler.color({0.25, 0.75}), {1, 0, 0});
     expect_color(sampler.color({0.75, 0.75}), {0, 1, 0});
     expect_color(sampler.color({0.25, 0.25}), {0, 0, 1});
 }
 
-TEST(Sampler, BetweenTexelsIsTheirMeanInLinearLight) {
+TEST(TextureSampler, BetweenTexelsIsTheirMeanInLinearLight) {
     Texture texture;
     texture.picture = four_texels();
-    texture.extension = Extension::Extend;
-    const image::Sampler sampler(texture, {});
+    texture.extension = TextureExtension::Extend;
+    const image::TextureSampler sampler(texture, {});
     expect_color(sampler.color({0.5, 0.75}), {0.5, 0.5, 0});
     expect_color(sampler.color({0.5, 1.0}), {0.5, 0.5, 0});
 }
 
-TEST(Sampler, OutsideGoesByTheExtension) {
+TEST(TextureSampler, OutsideGoesByTheExtension) {
     Texture texture = closest(four_texels());
     const glm::dvec2 right(1.25, 0.75);
-    expect_color(image::Sampler(texture, {}).color(right), {1, 0, 0});
-    texture.extension = Extension::Extend;
-    expect_color(image::Sampler(texture, {}).color(right), {0, 1, 0});
-    texture.extension = Extension::Mirror;
-    expect_color(image::Sampler(texture, {}).color(right), {0, 1, 0});
-    expect_color(image::Sampler(texture, {}).color({-0.25, 0.75}), {1, 0, 0});
-    texture.extension = Extension::Clip;
-    expect_color(image::Sampler(texture, {}).color(right), {0, 0, 0});
+    expect_color(image::TextureSampler(texture, {}).color(right), {1, 0, 0});
+    texture.extension = TextureExtension::Extend;
+    expect_color(image::TextureSampler(texture, {}).color(right), {0, 1, 0});
+    texture.extension = TextureExtension::Mirror;
+    expect_color(image::TextureSampler(texture, {}).color(right), {0, 1, 0});
+    expect_color(image::TextureSampler(texture, {}).color({-0.25, 0.75}), {1, 0, 0});
+    texture.extension = TextureExtension::Clip;
+    expect_color(image::TextureSampler(texture, {}).color(right), {0, 0, 0});
 }
 
-TEST(Sampler, MappingScaleAndOffsetAreApplied) {
+TEST(TextureSampler, MappingScaleAndOffsetAreApplied) {
     Texture texture = closest(four_texels());
     texture.to_picture = {0, 1, 0, 1, 0, 0};  // u and v exchanged
     texture.scale = {0.5, 0.5, 0.5};
     texture.offset = {0.1, 0.2, 0.3};
-    expect_color(image::Sampler(texture, {}).color({0.75, 0.25}), {0.6, 0.2, 0.3});
+    expect_color(image::TextureSampler(texture, {}).color({0.75, 0.25}), {0.6, 0.2, 0.3});
 }
 
-TEST(Sampler, NumbersTakeTheirChannel) {
+TEST(TextureSampler, NumbersTakeTheirChannel) {
     Texture texture = closest(four_texels(ColorSpace::Linear));
-    texture.channel = Channel::Alpha;
-    EXPECT_NEAR(image::Sampler(texture, {}).number({0.75, 0.25}), 0.4, 1e-6);
-    EXPECT_EQ(image::Sampler(texture, {}).number({0.25, 0.25}), 1);
-    texture.channel = Channel::Green;
-    EXPECT_EQ(image::Sampler(texture, {}).number({0.75, 0.75}), 1);
-    texture.channel = Channel::Color;
-    EXPECT_NEAR(image::Sampler(texture, {}).number({0.75, 0.75}), 0.7152, 1e-6);
+    texture.channel = TextureChannel::Alpha;
+    EXPECT_NEAR(image::TextureSampler(texture, {}).number({0.75, 0.25}), 0.4, 1e-6);
+    EXPECT_EQ(image::TextureSampler(texture, {}).number({0.25, 0.25}), 1);
+    texture.channel = TextureChannel::Green;
+    EXPECT_EQ(image::TextureSampler(texture, {}).number({0.75, 0.75}), 1);
+    texture.channel = TextureChannel::Color;
+    EXPECT_NEAR(image::TextureSampler(texture, {}).number({0.75, 0.75}), 0.7152, 1e-6);
 }
 
-TEST(Sampler, TheMeanTexelIsWeightedByAlpha) {
+TEST(TextureSampler, TheMeanTexelIsWeightedByAlpha) {
     const PicturePtr picture = four_texels();
     EXPECT_NEAR(picture->mean.x, 1.4 / 3.4, 1e-6);
     EXPECT_NEAR(picture->mean.w, 0.85, 1e-6);
 }
 
-TEST(Sampler, LargePicturesKeepTheirMean) {
+TEST(TextureSampler, LargePicturesKeepTheirMean) {
     image::Image image;
     image.width = 3000;
     image.height = 2;
@@ -98,13 +98,13 @@ TEST(Sampler, LargePicturesKeepTheirMean) {
     const PicturePtr picture =
         image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "long");
     EXPECT_NEAR(picture->mean.x, 0.5, 1e-6);
-    const image::Sampler sampler(closest(picture), {});
+    const image::TextureSampler sampler(closest(picture), {});
     expect_color(sampler.color({0.2, 0.5}), {1, 0, 0});
     expect_color(sampler.color({0.8, 0.5}), {0, 0, 0});
 }
 
-TEST(Sampler, CoordinatesThatAreNoNumbersAreHarmless) {
-    const image::Sampler sampler(closest(four_texels()), {});
+TEST(TextureSampler, CoordinatesThatAreNoNumbersAreHarmless) {
+    const image::TextureSampler sampler(closest(four_texels()), {});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double far : {nan, 1e300, -1e300, 1e9}) {
         EXPECT_GE(sampler.number({far, 0.5}), 0);
@@ -112,7 +112,7 @@ TEST(Sampler, CoordinatesThatAreNoNumbersAreHarmless) {
     }
 }
 
-TEST(Texels, ThinThingsThatAreCutKeepTheirShare) {
+TEST(DecodedTexels, ThinThingsThatAreCutKeepTheirShare) {
     // Needles one texel wide, every fourth column: a quarter is there, though no block's mean is.
     image::Image image;
     image.width = image.height = 64;
@@ -120,16 +120,16 @@ TEST(Texels, ThinThingsThatAreCutKeepTheirShare) {
         image.pixels.insert(image.pixels.end(), {1, 1, 1, i % 4 == 0 ? 1.0f : 0.0f});
     Texture texture =
         closest(image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "needles"));
-    texture.channel = Channel::Alpha;
+    texture.channel = TextureChannel::Alpha;
     EXPECT_NEAR(image::texels_of(*texture.picture, 16)->least.w, 0.25, 1e-6);
-    const image::TexelsPtr cut = image::texels_at_least(texture, 0.5, 16);
+    const image::TexelsPtr cut = image::texels_with_cutoff(texture, 0.5, 16);
     EXPECT_EQ(cut->width, 16);
     EXPECT_TRUE(cut->reduced);
-    EXPECT_NEAR(image::Sampler(texture, {}, cut).number({0.4, 0.6}), 0.25, 1e-6);
+    EXPECT_NEAR(image::TextureSampler(texture, {}, cut).number({0.4, 0.6}), 0.25, 1e-6);
     EXPECT_FALSE(image::texels_of(*texture.picture, 64)->reduced);
 }
 
-TEST(Texels, CacheSharesWhatIsTheSameAndForgetsTheLeastUsed) {
+TEST(DecodedTexels, CacheSharesWhatIsTheSameAndForgetsTheLeastUsed) {
     const auto one_of = [](float gray) {
         image::Image image;
         image.width = image.height = 8;
@@ -158,7 +158,7 @@ TEST(Texels, CacheSharesWhatIsTheSameAndForgetsTheLeastUsed) {
     EXPECT_EQ(cache.of(Texture{}), nullptr);
 }
 
-TEST(Texels, BytesThatAreNotResidentGiveNone) {
+TEST(DecodedTexels, BytesThatAreNotResidentGiveNone) {
     auto absent = std::make_shared<Picture>(*four_texels());
     absent->bytes.clear();
     image::TexelCache cache;

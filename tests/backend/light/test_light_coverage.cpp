@@ -42,17 +42,18 @@ TEST_F(LightCoverage, NothingIsSpokenForByAPointFarFromIt) {
     const Affine place{{200, 0, 0, 0, 2, 0, 0, 0, .2}, {100, 0, -.1}};
     builder.place(box, place, "floor");
     const Model& model = builder.finish();
-    const std::vector<Lit> drawn = {{&model.objects[box].representations[0], place}};
+    const std::vector<DrawnThing> drawn = {{&model.objects[box].representations[0], place}};
     const LitScene scene(model, povray::renderer_surfaces(model), drawn, {});
     const View view = along_a_floor();
     LitGrid grid = scene.points(view, 1200, 0, {});
     const size_t even = grid.points.size();
     ASSERT_GT(even, 50u);
     const std::vector<uint8_t> divisible = {1};
-    const std::vector<Sighting> sightings = cover(scene, view, divisible, grid, {});
+    const std::vector<PointSighting> sightings =
+        add_missing_lit_points(scene, view, divisible, grid, {});
     ASSERT_GT(sightings.size(), 1000u);
     size_t far = 0;
-    for (const Sighting& seen : sightings) {
+    for (const PointSighting& seen : sightings) {
         light::LitPoint look;
         look.position = seen.position;
         const double away = glm::length(grid.points[seen.point].position - seen.position);

@@ -28,7 +28,7 @@ std::vector<Light> lamps(size_t count, double apart) {
 }
 
 std::vector<LitPoint> floor_at(double x, size_t count = 64, uint32_t region = 0) {
-    Random random(9);
+    PcgRandom random(9);
     std::vector<LitPoint> points(count);
     for (LitPoint& point : points) {
         point.position = {x + random.uniform(), random.uniform(), 0};
@@ -100,11 +100,11 @@ TEST(LightCut, DifferencesAreWithinTheNumber) {
             glm::dvec3 exact(0.0);
             glm::dvec3 drawn(0.0);
             for (const Light& light : lights)
-                exact += point.albedo * arriving(light, point.position, point.normal);
+                exact += point.albedo * arriving_radiance(light, point.position, point.normal);
             for (const uint32_t node : nodes)
-                drawn +=
-                    point.albedo * arriving(tree.nodes[node].light, point.position, point.normal);
-            const double steps = std::abs(drawn.x - exact.x) / step_at(exact.x);
+                drawn += point.albedo *
+                         arriving_radiance(tree.nodes[node].light, point.position, point.normal);
+            const double steps = std::abs(drawn.x - exact.x) / display_step(exact.x);
             EXPECT_LE(steps, 3.01 * error);
             square += steps * steps;
         }

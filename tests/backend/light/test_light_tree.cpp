@@ -27,7 +27,7 @@ Light point(const glm::dvec3& position, double power = 1, const glm::dvec3& colo
 }
 
 std::vector<Light> scattered(size_t count) {
-    Random random(3);
+    PcgRandom random(3);
     std::vector<Light> lights;
     for (size_t i = 0; i < count; ++i)
         lights.push_back(
@@ -97,9 +97,10 @@ TEST(LightTree, SeenFromAfarAJoinedLightIsItsLamps) {
         const glm::dvec3 from{0.5, 0.5, -200};
         glm::dvec3 sum(0.0);
         for (const Light& light : lights)
-            sum += arriving(light, from, {0, 0, 1});
+            sum += arriving_radiance(light, from, {0, 0, 1});
         EXPECT_GT(sum.x, 0);
-        expect_near(arriving(tree.nodes.back().light, from, {0, 0, 1}) / sum.x, {1, 1, 1}, 1e-3);
+        expect_near(arriving_radiance(tree.nodes.back().light, from, {0, 0, 1}) / sum.x, {1, 1, 1},
+                    1e-3);
     }
 }
 
@@ -109,7 +110,7 @@ TEST(LightTree, AreasTogetherAreAsLargeAsTheirSecondMoments) {
     Light right = left;
     left.position = {-0.5, 0, 0};
     right.position = {0.5, 0, 0};
-    const Light both = joined(left, right);  // two squares side by side
+    const Light both = joined_light(left, right);  // two squares side by side
     EXPECT_NEAR(glm::length(both.edge_u), 2, 1e-12);
     EXPECT_NEAR(glm::length(both.edge_v), 1, 1e-12);
     expect_near(both.position, {0, 0, 0}, 1e-12);
@@ -207,18 +208,18 @@ TEST(LightTree, TenThousandLampsAreJoinedAlsoWhereAllAreInOnePlace) {
 TEST(LightArrival, KnownAnswers) {
     const double pi = std::numbers::pi;
     const Light lamp = point({0, 0, 2}, 4 * pi * pi);
-    EXPECT_NEAR(arriving(lamp, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
-    EXPECT_EQ(arriving(lamp, {0, 0, 0}, {0, 0, -1}).x, 0);
+    EXPECT_NEAR(arriving_radiance(lamp, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
+    EXPECT_EQ(arriving_radiance(lamp, {0, 0, 0}, {0, 0, -1}).x, 0);
     Light spot = lamp;
     spot.kind = LightKind::Spot;
     spot.spot_size = pi / 2;
-    EXPECT_NEAR(arriving(spot, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
-    EXPECT_EQ(arriving(spot, {2.1, 0, 0}, {0, 0, 1}).x, 0);
+    EXPECT_NEAR(arriving_radiance(spot, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
+    EXPECT_EQ(arriving_radiance(spot, {2.1, 0, 0}, {0, 0, 1}).x, 0);
     Light area;
     area.kind = LightKind::Area;
     area.position = {0, 0, 100};
     area.power = 4 * pi * 1e4;
-    EXPECT_NEAR(arriving(area, {0, 0, 0}, {0, 0, 1}).x, 1, 1e-3);
-    EXPECT_NEAR(step_at(0), 1 / (255 * 12.92), 1e-12);
-    EXPECT_NEAR(step_at(5), 2.4 / (255 * 1.055), 1e-12);
+    EXPECT_NEAR(arriving_radiance(area, {0, 0, 0}, {0, 0, 1}).x, 1, 1e-3);
+    EXPECT_NEAR(display_step(0), 1 / (255 * 12.92), 1e-12);
+    EXPECT_NEAR(display_step(5), 2.4 / (255 * 1.055), 1e-12);
 }

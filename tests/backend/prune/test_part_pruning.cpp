@@ -30,20 +30,20 @@ std::vector<uint32_t> random_order(const Crowd& crowd, uint64_t seed = 1) {
 }  // namespace
 
 TEST(Crowd, NothingAndFewPartsAreNone) {
-    EXPECT_TRUE(crowd_of(Mesh{}).empty());
-    EXPECT_TRUE(crowd_of(foliage::tree(20)).empty());
-    EXPECT_TRUE(crowd_of(shapes::terrain(30)).empty()) << "one part";
+    EXPECT_TRUE(find_crowd(Mesh{}).empty());
+    EXPECT_TRUE(find_crowd(foliage::tree(20)).empty());
+    EXPECT_TRUE(find_crowd(shapes::terrain(30)).empty()) << "one part";
 }
 
 TEST(Crowd, LeavesAreOneAndTheTrunkIsTheRest) {
     const Mesh tree = foliage::tree(300);
-    const Crowd crowd = crowd_of(tree);
+    const Crowd crowd = find_crowd(tree);
     ASSERT_EQ(crowd.parts.size(), 300u);
     EXPECT_EQ(crowd.slots, std::vector<uint16_t>{1});
     EXPECT_EQ(crowd.triangles, 600u);
     for (size_t i = 0; i < kTrunk; ++i)
         EXPECT_EQ(crowd.part_of[i], kNoPart);
-    for (const Crowd::Part& part : crowd.parts)
+    for (const Crowd::CrowdPart& part : crowd.parts)
         EXPECT_NEAR(part.area, 0.06, 1e-6);
     EXPECT_FALSE(crowd.sizes_differ());
 }
@@ -55,7 +55,7 @@ TEST(Crowd, LeavesThatTouchAtACornerArePartsOfTheirOwn) {
         place.offset = {static_cast<double>(i), static_cast<double>(i), 0};
         append(mesh, shapes::quad(1, 1), place);
     }
-    EXPECT_EQ(crowd_of(mesh).parts.size(), 40u);
+    EXPECT_EQ(find_crowd(mesh).parts.size(), 40u);
 }
 
 TEST(Crowd, GivenPartsAreTaken) {
@@ -63,21 +63,21 @@ TEST(Crowd, GivenPartsAreTaken) {
     std::vector<uint32_t> given(tree.triangles.size(), 7000);
     for (size_t i = 0; i < 640; ++i)
         given[kTrunk + i] = static_cast<uint32_t>(i / 16);
-    EXPECT_EQ(crowd_of(tree, given).parts.size(), 40u) << "eight leaves each";
+    EXPECT_EQ(find_crowd(tree, given).parts.size(), 40u) << "eight leaves each";
 }
 
 TEST(Crowd, OrdersAreNestedFixedAndOfEverybody) {
     const Mesh tree = foliage::tree(300);
-    const Crowd crowd = crowd_of(tree);
+    const Crowd crowd = find_crowd(tree);
     const std::vector<uint32_t> order = random_order(crowd);
     EXPECT_EQ(std::set<uint32_t>(order.begin(), order.end()).size(), 300u);
-    EXPECT_EQ(order, random_order(crowd_of(tree)));
+    EXPECT_EQ(order, random_order(find_crowd(tree)));
     EXPECT_NE(order, random_order(crowd, 2));
     // Kept triangles of a coarser level are those of a finer one, before they grow.
     const std::vector<double> same{1.0};
     const auto corners = [&](size_t keep) {
         std::set<std::tuple<float, float, float>> out;
-        for (const glm::vec3& p : pruned(tree, crowd, order, keep, same).mesh.positions)
+        for (const glm::vec3& p : prune_crowd(tree, crowd, order, keep, same).mesh.positions)
             out.emplace(p.x, p.y, p.z);
         return out;
     };
@@ -89,7 +89,7 @@ TEST(Crowd, OrdersAreNestedFixedAndOfEverybody) {
 
 TEST(Crowd, EveryBeginningOfTheOrderIsSpreadOverSpace) {
     const Mesh tree = foliage::tree(1024);
-    const Crowd crowd = crowd_of(tree);
+    const Crowd crowd = find_crowd(tree);
     const std::vector<uint32_t> order = random_order(crowd);
     for (const size_t keep : {64u, 128u, 256u}) {
         size_t left = 0;
@@ -119,7 +119,7 @@ TEST(Crowd, LargestComeFirstWhereTheyDiffer) {
         place.offset = {5.0 * (i % 8), 5.0 * row, 0};
         append(mesh, shapes::quad(1, 1), place);
     }
-    const Crowd crowd = crowd_of(mesh);
+    const Crowd crowd = find_crowd(mesh);
     ASSERT_EQ(crowd.parts.size(), 64u);
     EXPECT_TRUE(crowd.sizes_differ());
     const std::vector<uint32_t> order = prune_order(crowd, PruneOrder::Largest, 1);
@@ -128,10 +128,10 @@ TEST(Crowd, LargestComeFirstWhereTheyDiffer) {
 
 TEST(Crowd, SurvivorsGrowAboutTheirMiddleAndKeepWhatTheyShow) {
     const Mesh tree = foliage::tree(300);
-    const Crowd crowd = crowd_of(tree);
+    const Crowd crowd = find_crowd(tree);
     const std::vector<uint32_t> order = random_order(crowd);
     const std::vector<double> growth{4.0};
-    const Pruned level = pruned(tree, crowd, order, 75, growth);
+    const PrunedMesh level = prune_crowd(tree, crowd, order, 75, growth);
     EXPECT_EQ(level.mesh.triangles.size(), 150u);
     EXPECT_NEAR(surface_area(level.mesh), 300 * 0.06, 1e-3);
     EXPECT_NEAR(level.variance, 4, 1e-5) << "a quarter of the parts, four times as large";
@@ -145,10 +145,10 @@ TEST(Crowd, PicketsGrowInWidthOnly) {
     Mesh fence;
     for (int i = 0; i < 50; ++i)
         append(fence, shapes::box({0.1 * i, 0, 0}, {0.1 * i + 0.05, 0.02, 1.2}), {});
-    const Crowd crowd = crowd_of(fence);
+    const Crowd crowd = find_crowd(fence);
     ASSERT_EQ(crowd.parts.size(), 50u);
     const std::vector<double> growth{2.0};
-    const Pruned level = pruned(fence, crowd, random_order(crowd), 25, growth);
+    const PrunedMesh level = prune_crowd(fence, crowd, random_order(crowd), 25, growth);
     const Bound bound = bound_of(level.mesh.positions);
     EXPECT_NEAR(bound.box.low.z, 0, 1e-5);
     EXPECT_NEAR(bound.box.high.z, 1.2, 1e-5);
@@ -157,7 +157,7 @@ TEST(Crowd, PicketsGrowInWidthOnly) {
 
 TEST(Crowd, ColorsAreDrawnTogetherSoThatPixelsVaryAsBefore) {
     Mesh mesh;
-    Random random(3);
+    PcgRandom random(3);
     for (int i = 0; i < 400; ++i) {
         Mesh leaf = shapes::quad(0.2f, 0.2f);
         const auto shade = static_cast<float>(random.uniform());
@@ -166,9 +166,9 @@ TEST(Crowd, ColorsAreDrawnTogetherSoThatPixelsVaryAsBefore) {
         place.offset = {random.uniform() * 10, random.uniform() * 10, random.uniform() * 10};
         append(mesh, leaf, place);
     }
-    const Crowd crowd = crowd_of(mesh);
+    const Crowd crowd = find_crowd(mesh);
     const std::vector<uint32_t> order = random_order(crowd);
-    const Pruned level = pruned(mesh, crowd, order, 100, std::vector<double>{4.0});
+    const PrunedMesh level = prune_crowd(mesh, crowd, order, 100, std::vector<double>{4.0});
     const auto variance = [](const Mesh& m) {
         double mean = 0;
         double square = 0;
@@ -192,9 +192,9 @@ TEST(Crowd, EveryKindKeepsOneAndBrokenTrianglesAreNobodys) {
     mesh.uvs.emplace_back(0);
     mesh.triangles.emplace_back(0u, 1u, static_cast<uint32_t>(mesh.positions.size() - 1));
     mesh.slots.push_back(1);
-    const Crowd crowd = crowd_of(mesh);
+    const Crowd crowd = find_crowd(mesh);
     ASSERT_EQ(crowd.slots.size(), 2u);
     const std::vector<double> growth{1.0, 1.0};
-    const Pruned level = pruned(mesh, crowd, random_order(crowd), 1, growth);
+    const PrunedMesh level = prune_crowd(mesh, crowd, random_order(crowd), 1, growth);
     EXPECT_EQ(std::set<uint16_t>(level.mesh.slots.begin(), level.mesh.slots.end()).size(), 2u);
 }

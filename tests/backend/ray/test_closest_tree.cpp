@@ -12,13 +12,13 @@ using namespace lodestone;
 
 namespace {
 
-glm::dvec3 point_in(Random& random, double size) {
+glm::dvec3 point_in(PcgRandom& random, double size) {
     return size * (2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0);
 }
 
 /// Triangles of all sizes, needles, points and the same ones twice.
 Mesh soup(int count, uint64_t seed) {
-    Random random(seed);
+    PcgRandom random(seed);
     Mesh mesh;
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 a = point_in(random, 1);
@@ -42,7 +42,7 @@ Mesh soup(int count, uint64_t seed) {
 }
 
 /// The nearest point by looking at all triangles, of whatever mesh the scene was made from.
-ray::Closest by_all(const Mesh& mesh, const glm::dvec3& point) {
+ray::ClosestPoint by_all(const Mesh& mesh, const glm::dvec3& point) {
     ray::ClosestSearch search{mesh.positions, mesh.triangles, point};
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
         search.visit(i);
@@ -51,11 +51,11 @@ ray::Closest by_all(const Mesh& mesh, const glm::dvec3& point) {
 }
 
 void expect_same(const Mesh& mesh, const std::vector<glm::dvec3>& points) {
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
     const double size = bound_of(mesh.positions).radius;
     for (const glm::dvec3& point : points) {
-        const ray::Closest found = scene.closest_point(point);
-        const ray::Closest right = by_all(mesh, point);
+        const ray::ClosestPoint found = scene.closest_point(point);
+        const ray::ClosestPoint right = by_all(mesh, point);
         // The scene looks from its own frame, which rounds positions to 2^-24 of its size.
         ASSERT_NEAR(found.distance, right.distance, 2e-7 * (size + right.distance));
         ASSERT_EQ(scene.closest_point(point, kInfinity, 3).triangle, found.triangle);
@@ -79,7 +79,7 @@ void expect_same(const Mesh& mesh, const std::vector<glm::dvec3>& points) {
 TEST(ClosestTree, FindsTheSameAsLookingAtEveryTriangle) {
     for (const uint64_t seed : {1u, 2u, 3u}) {
         const Mesh mesh = soup(600, seed);
-        Random random(seed + 10);
+        PcgRandom random(seed + 10);
         std::vector<glm::dvec3> points;
         points.reserve(500);
         for (const double size : {1.0, 3.0, 1e3, 1e9})
@@ -92,7 +92,7 @@ TEST(ClosestTree, FindsTheSameAsLookingAtEveryTriangle) {
 }
 
 TEST(ClosestTree, OfWhatWasModelledStraightAndStandsAskewHasTheSameAnswers) {
-    Random random(5);
+    PcgRandom random(5);
     const glm::dvec3 x = glm::normalize(glm::dvec3(3, 1, 2));
     const glm::dvec3 y = glm::normalize(glm::cross(x, glm::dvec3(0, 1, 0)));
     const glm::dmat3 askew(x, y, glm::cross(x, y));
@@ -113,7 +113,7 @@ TEST(ClosestTree, OfWhatWasModelledStraightAndStandsAskewHasTheSameAnswers) {
 }
 
 TEST(ClosestTree, OfFewTrianglesHasTheSameAnswers) {
-    Random random(5);
+    PcgRandom random(5);
     for (const int count : {1, 2, 4, 5, 9, 17}) {
         std::vector<glm::dvec3> points;
         points.reserve(50);
@@ -127,7 +127,7 @@ TEST(ClosestTree, AmongEquallyNearTrianglesTheLowestWins) {
     Mesh mesh = shapes::quad(1, 1);
     for (int i = 0; i < 40; ++i)
         append(mesh, shapes::quad(1, 1), Affine{});
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
     EXPECT_EQ(scene.closest_point({0.75, 0.25, 1}).triangle, 0u);
     EXPECT_EQ(scene.closest_point({0.75, 0.25, 1}, kInfinity, 64).triangle, 0u);
     EXPECT_EQ(scene.closest_point({0.25, 0.75, -2}).triangle, 1u);
@@ -164,7 +164,7 @@ TEST(ClosestTree, BuildingLevelsOfThousandsOfTrianglesInOnePlaceTookMinutes) {
         EXPECT_GE(ray::ClosestTree(mesh.positions, mesh.triangles, true).leaves(), 700u);
         expect_same(mesh, {{0.3, 0.1, 0.2}, {0, 0, 0}, {2, 2, 2}, {0.9, 0.2, 0.1}, {0.2, 0.1, 0}});
     }
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
     EXPECT_EQ(scene.closest_point({0.3, 0.1, 0.2}, kInfinity, 2000).triangle,
               scene.closest_point({0.3, 0.1, 0.2}).triangle);
 }
@@ -173,8 +173,8 @@ TEST(ClosestTree, OneCornerAtTheEdgeOfWhatFloatsHoldCrashedIt) {
     // Beside it all else is one place, but for differences whose inverse is infinite.
     Mesh mesh = shapes::sphere(1);
     mesh.positions[57].y = -1.7014118e38f;
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
-    const ray::Closest found = scene.closest_point({0, -1.7014118e38, 0});
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
+    const ray::ClosestPoint found = scene.closest_point({0, -1.7014118e38, 0});
     EXPECT_LT(found.distance, 1e31);  // rounding, in the scene's own frame
     const Triangle& triangle = mesh.triangles[found.triangle];
     EXPECT_TRUE(triangle.x == 57 || triangle.y == 57 || triangle.z == 57);
@@ -182,12 +182,12 @@ TEST(ClosestTree, OneCornerAtTheEdgeOfWhatFloatsHoldCrashedIt) {
 
 TEST(ClosestTree, WhatIsNearEnoughEndsTheSearchAndNothingElseDoes) {
     const Mesh mesh = soup(600, 4);
-    const ray::Scene scene(mesh, nullptr, ray::Uses::ClosestPoints);
-    Random random(14);
+    const ray::MeshScene scene(mesh, nullptr, ray::SceneUse::ClosestPoints);
+    PcgRandom random(14);
     for (int i = 0; i < 200; ++i) {
         const glm::dvec3 point = point_in(random, 2);
         const double right = scene.closest_point(point).distance;
-        const ray::Closest some = scene.closest_point(point, kInfinity, 3, 2 * right);
+        const ray::ClosestPoint some = scene.closest_point(point, kInfinity, 3, 2 * right);
         EXPECT_GE(some.distance, right);
         EXPECT_LE(some.distance, 2 * right * (1 + 1e-9));
         EXPECT_EQ(scene.closest_point(point, kInfinity, 3, 0.999 * right).distance, right);
@@ -195,26 +195,27 @@ TEST(ClosestTree, WhatIsNearEnoughEndsTheSearchAndNothingElseDoes) {
 }
 
 TEST(ClosestTree, ScenesForClosestPointsRefuseRaysByName) {
-    const ray::Scene scene(shapes::cube(), nullptr, ray::Uses::ClosestPoints);
+    const ray::MeshScene scene(shapes::cube(), nullptr, ray::SceneUse::ClosestPoints);
     EXPECT_NEAR(scene.closest_point({0, 0, 2}).distance, 1.5, 1e-6);
     EXPECT_THROW(scene.first_hit({0, 0, 2}, {0, 0, -1}), Error);
     EXPECT_THROW(scene.occluded({0, 0, 2}, {0, 0, -1}), Error);
-    EXPECT_EQ(ray::Scene(Mesh{}, nullptr, ray::Uses::ClosestPoints).closest_point({}).distance,
-              kInfinity);
+    EXPECT_EQ(
+        ray::MeshScene(Mesh{}, nullptr, ray::SceneUse::ClosestPoints).closest_point({}).distance,
+        kInfinity);
 }
 
 TEST(Ray, CrossedTrianglesAreListed) {
     Mesh mesh;
     for (int i = 0; i < 5; ++i)
         append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, i}});
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     std::array<uint32_t, 8> list{};
-    ASSERT_EQ(scene.crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 3, list), 3u);
+    ASSERT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 3, list), 3u);
     std::sort(list.begin(), list.begin() + 3);
     EXPECT_EQ(list[0], 0u);
     EXPECT_EQ(list[1], 2u);
     EXPECT_EQ(list[2], 4u);
-    EXPECT_EQ(scene.crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, std::span(list).first(2)), 2u);
-    EXPECT_EQ(scene.crossed({0.75, 0.25, -0.5}, {0, 0, -1}, 9, list), 0u);
-    EXPECT_EQ(scene.crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, {}), 0u);
+    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, std::span(list).first(2)), 2u);
+    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, -1}, 9, list), 0u);
+    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, {}), 0u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards ray::Scene: that Embree is found, answers right at every scale, and never kills us.
+// Guards ray::MeshScene: that Embree is found, answers right at every scale, and never kills us.
 #include "base/parallel.h"
 #include "base/random.h"
 #include "ray/mesh_scene.h"
@@ -25,7 +25,7 @@ Mesh moved(const Mesh& mesh, double scale, const glm::dvec3& offset) {
     return out;
 }
 
-glm::dvec3 random_point(Random& random) {
+glm::dvec3 random_point(PcgRandom& random) {
     const double x = random.uniform();
     const double y = random.uniform();
     const double z = random.uniform();
@@ -41,7 +41,7 @@ TEST(Ray, EmbreeIsFoundAndPassesItsSelfTest) {
 }
 
 TEST(Ray, EmptyMeshIsNeverHitAndHasNoClosestPoint) {
-    const ray::Scene scene{Mesh{}};
+    const ray::MeshScene scene{Mesh{}};
     EXPECT_EQ(scene.triangles(), 0u);
     EXPECT_FALSE(scene.first_hit({0, 0, 1}, {0, 0, -1}).hit);
     EXPECT_FALSE(scene.occluded({0, 0, 1}, {0, 0, -1}));
@@ -52,9 +52,9 @@ TEST(Ray, EmptyMeshIsNeverHitAndHasNoClosestPoint) {
 TEST(Ray, OneTriangleIsHitFromBothSidesWithItsWeights) {
     Mesh mesh = shapes::quad(2, 2);
     mesh.triangles.resize(1);
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     for (const double side : {1.0, -1.0}) {
-        const ray::Hit hit = scene.first_hit({1, 0.5, 3 * side}, {0, 0, -2 * side});
+        const ray::RayHit hit = scene.first_hit({1, 0.5, 3 * side}, {0, 0, -2 * side});
         ASSERT_TRUE(hit.hit);
         EXPECT_EQ(hit.triangle, 0u);
         EXPECT_NEAR(hit.t, 1.5, 1e-6);
@@ -65,7 +65,7 @@ TEST(Ray, OneTriangleIsHitFromBothSidesWithItsWeights) {
 }
 
 TEST(Ray, FarEndOfARayIsInUnitsOfItsDirection) {
-    const ray::Scene scene(shapes::quad(2, 2));
+    const ray::MeshScene scene(shapes::quad(2, 2));
     EXPECT_TRUE(scene.first_hit({1, 0.5, 3}, {0, 0, -2}, 1.51).hit);
     EXPECT_FALSE(scene.first_hit({1, 0.5, 3}, {0, 0, -2}, 1.49).hit);
     EXPECT_TRUE(scene.occluded({1, 0.5, 3}, {0, 0, -2}, 1.51));
@@ -75,7 +75,7 @@ TEST(Ray, FarEndOfARayIsInUnitsOfItsDirection) {
 }
 
 TEST(Ray, ClosestPointsOfACubeAreKnownOverFaceEdgeAndCorner) {
-    const ray::Scene scene(shapes::cube());
+    const ray::MeshScene scene(shapes::cube());
     EXPECT_NEAR(scene.closest_point({0.1, 0.2, 2}).distance, 1.5, 1e-12);
     EXPECT_NEAR(scene.closest_point({1.5, 0.2, 1.5}).distance, std::sqrt(2.0), 1e-12);
     EXPECT_NEAR(scene.closest_point({1.5, 1.5, 1.5}).distance, std::sqrt(3.0), 1e-12);
@@ -87,11 +87,11 @@ TEST(Ray, ClosestPointsOfACubeAreKnownOverFaceEdgeAndCorner) {
 }
 
 TEST(Ray, ClosestPointAgreesWithTheDistanceToASphere) {
-    const ray::Scene scene(shapes::sphere(1, 5));
-    Random random(7);
+    const ray::MeshScene scene(shapes::sphere(1, 5));
+    PcgRandom random(7);
     for (int i = 0; i < 1000; ++i) {
         const glm::dvec3 point = random_point(random);
-        const ray::Closest closest = scene.closest_point(point);
+        const ray::ClosestPoint closest = scene.closest_point(point);
         EXPECT_NEAR(closest.distance, std::abs(glm::length(point) - 1), 1e-3);
         EXPECT_NEAR(glm::length(closest.point - point), closest.distance, 1e-12);
     }
@@ -107,17 +107,17 @@ TEST(Ray, FarAndTinyAndHugeMeshesAreHitLikeTheOneAtTheOrigin) {
          {Place{1, glm::dvec3(0x1p20)}, Place{0x1p-20, glm::dvec3(0)}, Place{0x1p20, glm::dvec3(0)},
           Place{0x1p-100, glm::dvec3(0)}, Place{0x1p100, glm::dvec3(0)}}) {
         const Mesh mesh = moved(shapes::cube(), place.scale, place.offset);
-        const ray::Scene scene(mesh);
-        const ray::Scene reference(shapes::cube());
-        Random random(3);
+        const ray::MeshScene scene(mesh);
+        const ray::MeshScene reference(shapes::cube());
+        PcgRandom random(3);
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
             const glm::dvec3 origin = random_point(random);
             const glm::dvec3 direction = random_point(random);
-            const ray::Hit a = reference.first_hit(origin, direction);
-            const ray::Hit b = scene.first_hit(place.scale * origin + place.offset, direction);
-            const ray::Closest c = reference.closest_point(origin);
-            const ray::Closest d = scene.closest_point(place.scale * origin + place.offset);
+            const ray::RayHit a = reference.first_hit(origin, direction);
+            const ray::RayHit b = scene.first_hit(place.scale * origin + place.offset, direction);
+            const ray::ClosestPoint c = reference.closest_point(origin);
+            const ray::ClosestPoint d = scene.closest_point(place.scale * origin + place.offset);
             ASSERT_EQ(a.hit, b.hit);
             ASSERT_NEAR(d.distance / place.scale, c.distance, 1e-8);
             if (!a.hit)
@@ -131,9 +131,9 @@ TEST(Ray, FarAndTinyAndHugeMeshesAreHitLikeTheOneAtTheOrigin) {
 }
 
 TEST(Ray, OriginsArbitrarilyFarAwayStillHitTheRightSpot) {
-    const ray::Scene scene(shapes::cube());
+    const ray::MeshScene scene(shapes::cube());
     for (const double far : {1e3, 1e6, 1e9}) {
-        const ray::Hit hit = scene.first_hit({0.125, 0.25, far}, {0, 0, -1});
+        const ray::RayHit hit = scene.first_hit({0.125, 0.25, far}, {0, 0, -1});
         ASSERT_TRUE(hit.hit) << far;
         EXPECT_NEAR(glm::length(hit.point - glm::dvec3(0.125, 0.25, 0.5)), 0, 1e-6) << far;
         EXPECT_NEAR(hit.t, far - 0.5, 1e-6 * far) << far;
@@ -145,8 +145,8 @@ TEST(Ray, OfCoincidentTrianglesTheLowestIsHitAndClosest) {
     Mesh mesh;
     for (int copy = 0; copy < 40; ++copy)
         append(mesh, shapes::quad(1, 1), Affine{});
-    const ray::Scene scene(mesh);
-    Random random(5);
+    const ray::MeshScene scene(mesh);
+    PcgRandom random(5);
     for (int i = 0; i < 200; ++i) {
         const double x = random.uniform();
         const double y = random.uniform();
@@ -157,12 +157,12 @@ TEST(Ray, OfCoincidentTrianglesTheLowestIsHitAndClosest) {
 }
 
 TEST(Ray, AnswersAreTheSameBitsFromOneAndManyThreads) {
-    const ray::Scene scene(shapes::terrain(64));
+    const ray::MeshScene scene(shapes::terrain(64));
     const auto all = [&](int threads) {
         const ThreadLimit limit(threads);
         std::vector<double> out(8192);
         parallel_for(4096, [&](size_t i) {
-            Random random(i, 9);
+            PcgRandom random(i, 9);
             const glm::dvec3 origin = random_point(random);
             const glm::dvec3 target = 0.25 * (random_point(random) + 2.0);
             out[2 * i] = scene.first_hit(origin, target - origin).t;
@@ -175,7 +175,7 @@ TEST(Ray, AnswersAreTheSameBitsFromOneAndManyThreads) {
 
 // Triangles that blocked rays lately are tried first: they may say nothing that Embree does not.
 TEST(Ray, WhatBlockedRaysLatelyChangesNoAnswer) {
-    Random random(5);
+    PcgRandom random(5);
     Mesh slivers;
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 a = random_point(random);
@@ -189,8 +189,8 @@ TEST(Ray, WhatBlockedRaysLatelyChangesNoAnswer) {
     Mesh nested = shapes::box(glm::dvec3(-2), glm::dvec3(4));
     append(nested, shapes::sphere(1.5, 3), {});
     for (const Mesh& mesh : {slivers, nested, moved(slivers, 1e-4, glm::dvec3(1000))}) {
-        const ray::Scene scene(mesh);
-        ray::Blockers blockers;
+        const ray::MeshScene scene(mesh);
+        ray::RecentBlockers blockers;
         size_t blocked = 0;
         for (int i = 0; i < 100000; ++i) {
             // From a surface, as rays go that ask whether it can be seen; some along an edge.
@@ -210,7 +210,7 @@ TEST(Ray, WhatBlockedRaysLatelyChangesNoAnswer) {
 }
 
 TEST(Ray, WhatBlocksIsAheadAndWellWithinItsEdges) {
-    ray::Blockers blockers;
+    ray::RecentBlockers blockers;
     const glm::vec3 up(0, 0, 1);
     EXPECT_FALSE(blockers.block({0, 0, -0.5}, up));
     for (const bool turned : {false, true}) {
@@ -234,7 +234,7 @@ TEST(Ray, WhatBlocksIsAheadAndWellWithinItsEdges) {
 
 TEST(Ray, CastingLeavesTheCallersFloatingPointModeAlone) {
 #if defined(__SSE2__)
-    const ray::Scene scene(shapes::cube());
+    const ray::MeshScene scene(shapes::cube());
     const unsigned before = _mm_getcsr() & 0xffc0u;
     (void)scene.first_hit({0, 0, 2}, {0, 0, -1});
     (void)scene.closest_point({0, 0, 2});
@@ -243,7 +243,7 @@ TEST(Ray, CastingLeavesTheCallersFloatingPointModeAlone) {
 }
 
 TEST(Ray, DirectionsThatAreNoneHitNothing) {
-    const ray::Scene scene(shapes::cube());
+    const ray::MeshScene scene(shapes::cube());
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(scene.first_hit({0, 0, 2}, {0, 0, 0}).hit);
     EXPECT_FALSE(scene.first_hit({0, 0, 2}, {0, 0, nan}).hit);
@@ -269,7 +269,7 @@ TEST(Ray, DegenerateAndNonFiniteTrianglesDoNoHarm) {
     mesh.triangles.emplace_back(0, 1, first + 1);
     mesh.triangles.emplace_back(first + 2, first + 2, first + 2);
     mesh.triangles.emplace_back(0, 1, 0);
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     EXPECT_NEAR(scene.first_hit({0.1, 0.2, 2}, {0, 0, -1}).t, 1.5, 1e-6);
     EXPECT_NEAR(scene.closest_point({0.1, 0.2, 2}).distance, 1.5, 1e-9);
     EXPECT_NEAR(scene.closest_point({0.1, 0.2, 1e16}).distance, 1e16, 1e3);
@@ -279,7 +279,7 @@ TEST(Ray, MeshOfOnlyPointsHasClosestPointsAndNoHits) {
     Mesh mesh;
     mesh.positions = {{1, 2, 3}, {1, 2, 4}};
     mesh.triangles = {{0, 0, 0}, {0, 1, 1}};
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     EXPECT_FALSE(scene.first_hit({1, 2, 9}, {0, 0, -1}).hit);
     EXPECT_NEAR(scene.closest_point({1, 2, 0}).distance, 3, 1e-9);
     EXPECT_NEAR(scene.closest_point({2, 2, 3.5}).distance, 1, 1e-9);
@@ -289,7 +289,7 @@ TEST(Ray, IndexOutOfRangeIsRefusedByName) {
     Mesh mesh = shapes::quad(1, 1);
     mesh.positions.pop_back();
     try {
-        const ray::Scene scene(mesh);
+        const ray::MeshScene scene(mesh);
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.status, Status::InvalidArgument);
@@ -301,7 +301,7 @@ TEST(Ray, FirstUseInsideAParallelLoopDoesNotWaitForItself) {
     testing::FLAGS_gtest_death_test_style = "threadsafe";  // a new process, where nobody has cast
     const auto build = [] {
         parallel_for(64, [](size_t) {
-            if (!ray::Scene(shapes::cube()).occluded({0.1, 0.2, 2}, {0, 0, -1}))
+            if (!ray::MeshScene(shapes::cube()).occluded({0.1, 0.2, 2}, {0, 0, -1}))
                 std::_Exit(1);
         });
         std::_Exit(0);
@@ -310,7 +310,7 @@ TEST(Ray, FirstUseInsideAParallelLoopDoesNotWaitForItself) {
 }
 
 TEST(Ray, MovedScenesKeepWorkingAndManyCanBeBuiltAtOnce) {
-    std::vector<ray::Scene> scenes;
+    std::vector<ray::MeshScene> scenes;
     scenes.reserve(20);
     for (int i = 0; i < 20; ++i)
         scenes.emplace_back(moved(shapes::cube(), 1, glm::dvec3(i, 0, 0)));
@@ -318,7 +318,7 @@ TEST(Ray, MovedScenesKeepWorkingAndManyCanBeBuiltAtOnce) {
         EXPECT_TRUE(scenes[static_cast<size_t>(i)].occluded({i + 0.1, 0.2, 2}, {0, 0, -1}));
     std::vector<uint8_t> hits(64, 0);
     parallel_for(hits.size(), [&](size_t i) {
-        const ray::Scene scene(shapes::terrain(8 + static_cast<uint32_t>(i % 8)));
+        const ray::MeshScene scene(shapes::terrain(8 + static_cast<uint32_t>(i % 8)));
         hits[i] = scene.occluded({0.51, 0.52, 1}, {0, 0, -1});
     });
     EXPECT_EQ(std::count(hits.begin(), hits.end(), 1), 64);
@@ -328,12 +328,12 @@ namespace {
 
 ray::SkinPtr skin_of(const std::vector<Material>& materials) {
     image::TexelCache texels;
-    return std::make_shared<const ray::Skin>(materials, texels);
+    return std::make_shared<const ray::MeshSkin>(materials, texels);
 }
 
 /// Of `count` rays straight down on the unit square, those that hit; occluded() must agree.
-int hits_from_above(const ray::Scene& scene, int count) {
-    Random random(3);
+int hits_from_above(const ray::MeshScene& scene, int count) {
+    PcgRandom random(3);
     int hits = 0;
     for (int i = 0; i < count; ++i) {
         const double x = random.uniform();
@@ -350,7 +350,7 @@ int hits_from_above(const ray::Scene& scene, int count) {
 TEST(RayAlpha, CardIsHitWhereItsLeafIs) {
     for (const AlphaMode mode : {AlphaMode::Clip, AlphaMode::Blend}) {
         const ray::SkinPtr skin = skin_of({foliage::leaf(foliage::left_half(), mode)});
-        const ray::Scene scene(foliage::card(1, 1), skin);
+        const ray::MeshScene scene(foliage::card(1, 1), skin);
         EXPECT_TRUE(scene.see_through());
         EXPECT_TRUE(scene.first_hit({0.3, 0.6, 1}, {0, 0, -1}).hit);
         EXPECT_TRUE(scene.occluded({0.3, 0.6, 1}, {0, 0, -1}));
@@ -363,7 +363,7 @@ TEST(RayAlpha, CardIsHitWhereItsLeafIs) {
 TEST(RayAlpha, RayThroughAHoleHitsWhatIsBehind) {
     Mesh mesh = foliage::card(1, 1);
     append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, -2}}, 1);
-    const ray::Scene scene(mesh, skin_of({foliage::leaf(foliage::left_half()), Material{}}));
+    const ray::MeshScene scene(mesh, skin_of({foliage::leaf(foliage::left_half()), Material{}}));
     EXPECT_NEAR(scene.first_hit({0.25, 0.5, 1}, {0, 0, -1}).t, 1, 1e-6);
     EXPECT_NEAR(scene.first_hit({0.75, 0.5, 1}, {0, 0, -1}).t, 3, 1e-6);
     EXPECT_TRUE(scene.occluded({0.75, 0.5, 1}, {0, 0, -1}));
@@ -373,14 +373,14 @@ TEST(RayAlpha, BlendedSurfacesStopTheirShareOfRaysAndAlwaysTheSame) {
     Material glass;
     glass.alpha_mode = AlphaMode::Blend;
     glass.alpha = 0.3;
-    const ray::Scene scene(shapes::quad(1, 1), skin_of({glass}));
+    const ray::MeshScene scene(shapes::quad(1, 1), skin_of({glass}));
     const int hits = hits_from_above(scene, 10000);
     EXPECT_NEAR(hits, 3000, 150);
     EXPECT_EQ(hits_from_above(scene, 10000), hits);
     glass.alpha_mode = AlphaMode::Clip;
-    EXPECT_EQ(hits_from_above(ray::Scene(shapes::quad(1, 1), skin_of({glass})), 100), 0);
+    EXPECT_EQ(hits_from_above(ray::MeshScene(shapes::quad(1, 1), skin_of({glass})), 100), 0);
     glass.alpha_cutoff = 0.2;
-    EXPECT_EQ(hits_from_above(ray::Scene(shapes::quad(1, 1), skin_of({glass})), 100), 100);
+    EXPECT_EQ(hits_from_above(ray::MeshScene(shapes::quad(1, 1), skin_of({glass})), 100), 100);
 }
 
 TEST(RayAlpha, VertexColorsAndMixturesCount) {
@@ -389,7 +389,7 @@ TEST(RayAlpha, VertexColorsAndMixturesCount) {
     painted.alpha_mode = AlphaMode::Blend;
     Mesh mesh = shapes::quad(1, 1);
     mesh.colors.assign(4, glm::vec4(1, 1, 1, 0.25f));
-    EXPECT_NEAR(hits_from_above(ray::Scene(mesh, skin_of({painted})), 10000), 2500, 150);
+    EXPECT_NEAR(hits_from_above(ray::MeshScene(mesh, skin_of({painted})), 10000), 2500, 150);
     // Half of an opaque material and half of nothing.
     Material mixed;
     auto nothing = std::make_shared<Material>();
@@ -397,7 +397,7 @@ TEST(RayAlpha, VertexColorsAndMixturesCount) {
     nothing->alpha = 0;
     mixed.other = nothing;
     mixed.mix = 0.5;
-    EXPECT_NEAR(hits_from_above(ray::Scene(mesh, skin_of({mixed})), 10000), 5000, 200);
+    EXPECT_NEAR(hits_from_above(ray::MeshScene(mesh, skin_of({mixed})), 10000), 5000, 200);
 }
 
 TEST(RayAlpha, OpaqueMaterialsOfAllKindsPayNothing) {
@@ -410,23 +410,23 @@ TEST(RayAlpha, OpaqueMaterialsOfAllKindsPayNothing) {
     Material painted = foliage::leaf(full, AlphaMode::Blend);
     painted.vertex_colors = true;
     for (const Material& material : {Material{}, opaque, foliage::leaf(full), painted})
-        EXPECT_FALSE(ray::Scene(mesh, skin_of({material})).see_through());
+        EXPECT_FALSE(ray::MeshScene(mesh, skin_of({material})).see_through());
     // A see-through material that no triangle uses.
     mesh.slots = {0, 0};
-    EXPECT_FALSE(
-        ray::Scene(mesh, skin_of({Material{}, foliage::leaf(foliage::left_half())})).see_through());
+    EXPECT_FALSE(ray::MeshScene(mesh, skin_of({Material{}, foliage::leaf(foliage::left_half())}))
+                     .see_through());
 }
 
 TEST(RayAlpha, WithoutCoordinatesTheMeanAlphaCounts) {
     const ray::SkinPtr skin = skin_of({foliage::leaf(foliage::left_half(), AlphaMode::Blend)});
-    EXPECT_NEAR(hits_from_above(ray::Scene(shapes::quad(1, 1), skin), 10000), 5000, 200);
+    EXPECT_NEAR(hits_from_above(ray::MeshScene(shapes::quad(1, 1), skin), 10000), 5000, 200);
 }
 
 TEST(RayAlpha, NearestPointIsTheEdgeOfTheLeaf) {
-    const ray::Scene scene(foliage::card(1, 1), skin_of({foliage::leaf(foliage::left_half())}));
+    const ray::MeshScene scene(foliage::card(1, 1), skin_of({foliage::leaf(foliage::left_half())}));
     EXPECT_NEAR(scene.closest_point({0.3, 0.6, 0.4}).distance, 0.4, 1e-6);
     for (const double x : {0.55, 0.7, 0.95}) {
-        const ray::Closest closest = scene.closest_point({x, 0.5, 0});
+        const ray::ClosestPoint closest = scene.closest_point({x, 0.5, 0});
         EXPECT_GE(closest.distance, x - 0.5 - 1e-6) << x;
         EXPECT_LE(closest.distance, x - 0.5 + 0.05) << x;
         EXPECT_LE(closest.point.x, 0.5 + 1e-3);
@@ -435,8 +435,9 @@ TEST(RayAlpha, NearestPointIsTheEdgeOfTheLeaf) {
     Material nothing;
     nothing.alpha_mode = AlphaMode::Blend;
     nothing.alpha = 0;
-    EXPECT_EQ(ray::Scene(shapes::quad(1, 1), skin_of({nothing})).closest_point({0, 0, 1}).distance,
-              kInfinity);
+    EXPECT_EQ(
+        ray::MeshScene(shapes::quad(1, 1), skin_of({nothing})).closest_point({0, 0, 1}).distance,
+        kInfinity);
 }
 
 TEST(RayAlpha, HostileMaterialsAreHarmless) {
@@ -452,7 +453,7 @@ TEST(RayAlpha, HostileMaterialsAreHarmless) {
     odd.alpha_texture.to_picture[0] = nan;
     odd.mix = nan;
     odd.other = std::make_shared<Material>(odd);
-    const ray::Scene scene(mesh, skin_of({odd}));
+    const ray::MeshScene scene(mesh, skin_of({odd}));
     EXPECT_NO_THROW(hits_from_above(scene, 100));
     EXPECT_TRUE(scene.first_hit({0.3, 0.6, 1}, {0, 0, -1}).hit) << "slot 7 is opaque";
     EXPECT_NO_THROW((void)scene.closest_point({0.7, 0.2, 1}));

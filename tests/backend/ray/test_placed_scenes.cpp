@@ -11,12 +11,12 @@ using ray::PlacedScenes;
 class PlacedScenesTest : public WithRays {
 protected:
     struct Cube {
-        std::shared_ptr<const ray::Scene> scene;
+        std::shared_ptr<const ray::MeshScene> scene;
         Bound bound;
     };
     static Cube cube() {
         const Mesh mesh = shapes::cube();
-        return {std::make_shared<const ray::Scene>(mesh), bound_of(mesh.positions)};
+        return {std::make_shared<const ray::MeshScene>(mesh), bound_of(mesh.positions)};
     }
     static Affine at(double x, double y, double z, double size = 1) {
         return {glm::dmat3(size), {x, y, z}};
@@ -36,7 +36,7 @@ TEST_F(PlacedScenesTest, TheNearestOfARowIsHit) {
     for (uint32_t i = 0; i < 9; ++i)
         scenes.add(one.scene, one.bound, at(2.0 * i, 0, 0), i);
     scenes.finish();
-    const PlacedScenes::Hit right = scenes.first_hit({-5, 0.1, 0.1}, {2, 0, 0});
+    const PlacedScenes::PlacedHit right = scenes.first_hit({-5, 0.1, 0.1}, {2, 0, 0});
     ASSERT_TRUE(right.hit);
     EXPECT_EQ(right.name, 0u);
     EXPECT_NEAR(right.t, 2.25, 1e-6);
@@ -48,7 +48,7 @@ TEST_F(PlacedScenesTest, TheNearestOfARowIsHit) {
 }
 
 TEST_F(PlacedScenesTest, AnswersAreThoseOfEachPlacement) {
-    Random random(4);
+    PcgRandom random(4);
     const Cube one = cube();
     PlacedScenes scenes;
     std::vector<Affine> places;
@@ -71,7 +71,7 @@ TEST_F(PlacedScenesTest, AnswersAreThoseOfEachPlacement) {
             nearest =
                 std::min(nearest, one.scene->first_hit(back * (from - place.offset), back * way).t);
         }
-        const PlacedScenes::Hit found = scenes.first_hit(from, way);
+        const PlacedScenes::PlacedHit found = scenes.first_hit(from, way);
         EXPECT_EQ(found.hit, std::isfinite(nearest));
         if (found.hit) {
             EXPECT_NEAR(found.t, nearest, 1e-9);

@@ -21,7 +21,7 @@ Model rich_model() {
     Model model = models::row_of_balls(4);
     model.objects[0].name = "Ball \"1\"\n}\u540d";
     model.objects[0].uid = "ball";
-    model.objects[0].role = Role::Environment;
+    model.objects[0].role = ObjectRole::Environment;
     Attributes attributes;
     attributes.visible_area = 1.0 / 3.0;
     attributes.centroid = {0.1, 0.2, 0.3};
@@ -75,10 +75,10 @@ Model rich_model() {
     model.world.environment_strength = {1.0 / 3, 1, 2};
     Material brick = models::colored("brick", {0.5, 0.25, 0.125});
     brick.base_color_texture.picture = models::checker();
-    brick.base_color_texture.extension = Extension::Mirror;
+    brick.base_color_texture.extension = TextureExtension::Mirror;
     brick.base_color_texture.to_picture = {2, 0, 1.0 / 3, 0, 3, -0.25};
     brick.alpha_texture.picture = models::checker();
-    brick.alpha_texture.channel = Channel::Alpha;
+    brick.alpha_texture.channel = TextureChannel::Alpha;
     brick.alpha_mode = AlphaMode::Clip;
     brick.ior = 1.33;
     brick.other = std::make_shared<Material>(model.materials[0]);

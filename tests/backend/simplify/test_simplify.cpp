@@ -410,7 +410,7 @@ TEST(Simplify, TwoSidedCardsAreSimplifiedOnBothSides) {
 }
 
 TEST(Simplify, RandomSoupNeverLosesEverything) {
-    Random random(7);
+    PcgRandom random(7);
     Mesh mesh;
     for (int i = 0; i < 200; ++i)
         mesh.positions.emplace_back(random.uniform(), random.uniform(), random.uniform());

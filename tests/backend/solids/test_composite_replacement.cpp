@@ -13,15 +13,16 @@
 #include <set>
 
 using namespace lodestone;
-using solids::Clustered;
+using solids::ClusteredComposite;
 
 namespace {
 
-std::vector<Clustered> composites(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed) {
+std::vector<ClusteredComposite> composites(const Mesh& mesh, const ray::SkinPtr& skin,
+                                           uint64_t seed) {
     measure::VisibleOptions options;
     options.rays = 16384;
     const Attributes wanted =
-        measure::measure_visible(mesh, ray::Scene(mesh, skin), skin, options).attributes;
+        measure::measure_visible(mesh, ray::MeshScene(mesh, skin), skin, options).attributes;
     return solids::composites(mesh, skin, wanted, {seed});
 }
 
@@ -43,7 +44,7 @@ double visible_area(const Mesh& mesh, uint64_t seed) {
 
 /// Quads of .3 x .2 every way in a ball of radius 2.
 Mesh leaves_in_a_ball(int count) {
-    Random random(5);
+    PcgRandom random(5);
     const auto unit = [&] {
         glm::dvec3 v(1);
         do
@@ -92,7 +93,8 @@ TEST_F(Composites, CubeByEightSolidsThatStandIsMatched) {
         const Attributes wanted = attributes_of(cube, 1);
         solids::CompositeOptions options;
         options.least = options.most = 8;
-        const std::vector<Clustered> levels = solids::composites(cube, nullptr, wanted, options);
+        const std::vector<ClusteredComposite> levels =
+            solids::composites(cube, nullptr, wanted, options);
         ASSERT_EQ(levels.size(), 1u);
         const measure::SurfaceInertia seen =
             solids::VisibleSolids(262144, 7).of(levels[0].composite, 1, {});
@@ -107,7 +109,7 @@ TEST_F(Composites, CubeByEightSolidsThatStandIsMatched) {
 
 TEST_F(Composites, FourBallsComeBackAsFourBalls) {
     const std::vector<glm::dvec3> centers{{0, 0, 0}, {9, 0, 0}, {0, 8, 0}, {9, 8, 1}};
-    const std::vector<Clustered> levels = composites(balls(centers, 1), nullptr, 1);
+    const std::vector<ClusteredComposite> levels = composites(balls(centers, 1), nullptr, 1);
     ASSERT_FALSE(levels.empty());
     ASSERT_EQ(levels[0].composite.solids.size(), 4u);
     for (const Solid& solid : levels[0].composite.solids) {
@@ -128,9 +130,9 @@ TEST_F(Composites, EveryLevelShowsAsMuchAsTheOriginalAndSharesClusters) {
             append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
     }
     const double wanted = visible_area(table, 5);
-    const std::vector<Clustered> levels = composites(table, nullptr, 1);
+    const std::vector<ClusteredComposite> levels = composites(table, nullptr, 1);
     ASSERT_EQ(levels.size(), 4u);
-    for (const Clustered& level : levels) {
+    for (const ClusteredComposite& level : levels) {
         EXPECT_NEAR(visible_area(tessellate(level.composite, 3), 6) / wanted, 1, 0.03)
             << level.composite.solids.size();
         double area = 0;
@@ -144,7 +146,7 @@ TEST_F(Composites, LevelsShareWhatIsNotSplit) {
     Mesh mesh = shapes::sphere(3, 3);
     for (const double x : {30.0, 40.0, 50.0})
         append(mesh, shapes::sphere(0.6, 3), {glm::dmat3(1.0), {x, 0, 0}});
-    const std::vector<Clustered> levels = composites(mesh, nullptr, 1);
+    const std::vector<ClusteredComposite> levels = composites(mesh, nullptr, 1);
     ASSERT_EQ(levels.size(), 4u);
     for (size_t i = 1; i < levels.size(); ++i) {
         const std::set<uint32_t> coarser(levels[i - 1].clusters.begin(),
@@ -162,11 +164,11 @@ TEST_F(Composites, LevelsThatAreNotAskedForLeaveTheOthersAsTheyAre) {
     const Mesh mesh = leaves_in_a_ball(500);
     const Attributes wanted = attributes_of(mesh, 1);
     solids::CompositeOptions options{1};
-    const std::vector<Clustered> all = solids::composites(mesh, nullptr, wanted, options);
+    const std::vector<ClusteredComposite> all = solids::composites(mesh, nullptr, wanted, options);
     ASSERT_EQ(all.size(), 4u);
     options.least = 8;
     options.most = 16;
-    const std::vector<Clustered> some = solids::composites(mesh, nullptr, wanted, options);
+    const std::vector<ClusteredComposite> some = solids::composites(mesh, nullptr, wanted, options);
     ASSERT_EQ(some.size(), 2u);
     for (size_t i = 0; i < some.size(); ++i) {
         EXPECT_EQ(some[i].clusters, all[i + 1].clusters);
@@ -188,8 +190,8 @@ TEST_F(Composites, ColorsKeepApartWhatPlacesWouldJoin) {
     append(both, other, {glm::dmat3(1.0), {2.1, 0, 0}});
     image::TexelCache texels;
     const std::vector<Material> materials{red, blue};
-    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
-    for (const Clustered& level : composites(both, skin, 1)) {
+    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
+    for (const ClusteredComposite& level : composites(both, skin, 1)) {
         for (const Attributes& attributes : level.attributes) {
             const double mixed = std::min(attributes.color.x, attributes.color.z);
             EXPECT_LT(mixed, 0.2) << level.composite.solids.size();
@@ -217,7 +219,8 @@ TEST_F(Composites, TheWholeIsMatchedInAreaCentroidAndTensor) {
                             Case{cube, {.seed = 1, .most = 4}, 0.005, 0.004}}) {
         const Attributes wanted = attributes_of(now.mesh, 3);
         const double trace = wanted.moments[0][0] + wanted.moments[1][1] + wanted.moments[2][2];
-        for (const Clustered& level : solids::composites(now.mesh, nullptr, wanted, now.options)) {
+        for (const ClusteredComposite& level :
+             solids::composites(now.mesh, nullptr, wanted, now.options)) {
             SCOPED_TRACE(level.composite.solids.size());
             const Attributes got = attributes_of(tessellate(level.composite, 4), 4);
             EXPECT_NEAR(got.visible_area / wanted.visible_area, 1, now.area);
@@ -246,8 +249,8 @@ TEST_F(Composites, AreaAndCentroidAreThoseThatAllRaysSee) {
     wanted.visible_area = 1.05 * before.area;
     wanted.centroid = before.center + glm::dvec3(0.1, -0.05, 0.08);
     wanted.moments = 1.1 * before.moments;
-    solids::match_whole(composite, wanted, -10, visible, true, 12, {});
-    solids::settle_whole(composite, wanted, -10, visible, {});
+    solids::match_composite(composite, wanted, -10, visible, true, 12, {});
+    solids::settle_composite(composite, wanted, -10, visible, {});
     const measure::SurfaceInertia now = visible.of(composite, 1, {});
     EXPECT_NEAR(now.area / wanted.visible_area, 1, 1e-5);
     EXPECT_LT(glm::length(now.center - wanted.centroid), 1e-5);
@@ -255,7 +258,8 @@ TEST_F(Composites, AreaAndCentroidAreThoseThatAllRaysSee) {
 
 TEST_F(Composites, OfACubeNoSolidSinksWhenTheWholeIsMoved) {
     const Mesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
-    for (const Clustered& level : solids::composites(cube, nullptr, attributes_of(cube, 3), {1}))
+    for (const ClusteredComposite& level :
+         solids::composites(cube, nullptr, attributes_of(cube, 3), {1}))
         EXPECT_GE(bound_of(level.composite).box.low.z, -1e-6) << level.composite.solids.size();
 }
 
@@ -263,11 +267,11 @@ TEST_F(Composites, NoSolidReachesBelowTheGround) {
     Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
     for (const double x : {-0.9, 0.9})
         append(table, shapes::box({x - 0.03, -0.43, 0}, {x + 0.03, 0.43, 0.7}), {});
-    for (const Clustered& level : composites(table, nullptr, 1))
+    for (const ClusteredComposite& level : composites(table, nullptr, 1))
         EXPECT_GE(bound_of(level.composite).box.low.z, -1e-6);
     const Mesh leaves = leaves_in_a_ball(300);
     const double low = bound_of(leaves.positions).box.low.z;
-    for (const Clustered& level :
+    for (const ClusteredComposite& level :
          solids::clear_composites(leaves, nullptr, {}, attributes_of(leaves, 1), {}))
         EXPECT_GE(bound_of(level.composite).box.low.z, low - 1e-6);
 }
@@ -275,9 +279,10 @@ TEST_F(Composites, NoSolidReachesBelowTheGround) {
 TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
     const Mesh leaves = leaves_in_a_ball(300);
     const Attributes wanted = attributes_of(leaves, 1);
-    const std::vector<Clustered> levels = solids::clear_composites(leaves, nullptr, {}, wanted, {});
+    const std::vector<ClusteredComposite> levels =
+        solids::clear_composites(leaves, nullptr, {}, wanted, {});
     ASSERT_FALSE(levels.empty());
-    for (const Clustered& level : levels) {
+    for (const ClusteredComposite& level : levels) {
         ASSERT_EQ(level.opacities.size(), level.composite.solids.size());
         std::vector<Material> materials;
         size_t clear = 0;
@@ -300,7 +305,7 @@ TEST_F(Composites, WhatHasAirBetweenItsLeavesIsClearAndShowsAsMuch) {
 TEST_F(Composites, ATrunkOfFewLongTrianglesDrawsNoLeavesDown) {
     Mesh tree = shapes::box({-0.1, -0.1, -6}, {0.1, 0.1, -1});
     append(tree, leaves_in_a_ball(300), {});
-    for (const Clustered& level :
+    for (const ClusteredComposite& level :
          solids::clear_composites(tree, nullptr, {}, attributes_of(tree, 1), {})) {
         for (const Solid& solid : level.composite.solids) {
             const Bound bound =

@@ -37,7 +37,7 @@ TEST(Standing, FloatingAndSunkenOnesStandWithTheSameTopAndArea) {
         for (const double middle : {0.6, 1.0, 1.7}) {
             const Primitive before{{3, -2, middle}, glm::dmat3(1.0), {1.5, 0.7, 1}};
             const Primitive after = standing_on(before, box, 0);
-            const Reach reach = reach_of(after, box);
+            const HeightRange reach = reach_of(after, box);
             EXPECT_NEAR(reach.low, 0, 1e-12);
             EXPECT_NEAR(reach.high, middle + 1, 1e-6);
             EXPECT_NEAR(area_of(after, box) / area_of(before, box), 1, 1e-6);
@@ -46,7 +46,7 @@ TEST(Standing, FloatingAndSunkenOnesStandWithTheSameTopAndArea) {
 }
 
 TEST(Standing, TiltedOnesTouchTheFloorToo) {
-    Random random(4);
+    PcgRandom random(4);
     for (int i = 0; i < 200; ++i) {
         const bool box = i % 2 == 0;
         const Primitive before{

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using solids::Missing;
+using solids::MatchResidual;
 using solids::VisibleSolids;
 
 namespace {
@@ -39,12 +39,12 @@ double missed(Composite& composite, const Attributes& wanted, double floor, int 
     double off = 0;
     for (int i = 0; i <= steps; ++i) {
         const measure::SurfaceInertia now = visible.of(composite, 1, {}, &each);
-        const Missing missing = solids::missing_of(now, wanted, size);
+        const MatchResidual missing = solids::match_residual(now, wanted, size);
         off = std::abs(missing.area) + glm::length(missing.centroid);
         for (int axis = 0; axis < 3; ++axis)
             off += glm::length(missing.variances[axis]);
         if (i < steps)
-            solids::make_up(composite, now, each, missing, size, floor);
+            solids::gauss_newton_step(composite, now, each, missing, size, floor);
     }
     return off;
 }
@@ -62,7 +62,7 @@ Composite four() {
 
 TEST(LeastChange, OfNothingNothingIsMade) {
     Composite none;
-    solids::make_up(none, {}, {}, {}, true, 0);
+    solids::gauss_newton_step(none, {}, {}, {}, true, 0);
     EXPECT_TRUE(none.solids.empty());
 }
 

@@ -25,7 +25,8 @@ glm::dmat3 turn(double angle, glm::dvec3 axis) {
     return glm::dmat3(c) + s * cross + (1 - c) * glm::outerProduct(axis, axis);
 }
 
-Attributes attributes_of(const Shell& shell, const glm::dmat3& axes, const glm::dvec3& center) {
+Attributes attributes_of(const ShellMoments& shell, const glm::dmat3& axes,
+                         const glm::dvec3& center) {
     Attributes out;
     out.visible_area = out.surface_area = shell.area;
     out.centroid = center;
@@ -81,7 +82,7 @@ Mesh spheres(int count, double radius, double apart) {
 }
 
 /// Area, centroid and shape of the tensor are those asked for.
-void expect_matched(const Primitive& p, const Shell& shell, const Attributes& wanted,
+void expect_matched(const Primitive& p, const ShellMoments& shell, const Attributes& wanted,
                     double tolerance) {
     EXPECT_NEAR(shell.area, wanted.visible_area, 1e-9 * wanted.visible_area);
     EXPECT_LT(glm::length(p.center - wanted.centroid), 1e-12);
@@ -134,7 +135,7 @@ void expect_finely_remeasured(const Attributes& got, const Attributes& wanted) {
 
 /// Balls anywhere in a brick, with much air between them.
 Mesh scattered_balls(int count) {
-    Random random(7);
+    PcgRandom random(7);
     Mesh mesh;
     for (int i = 0; i < count; ++i) {
         Affine place;
@@ -196,11 +197,11 @@ TEST(Replace, NothingToSeeHasNoReplacement) {
 }
 
 TEST(Replace, ShellsHaveTheirClosedForms) {
-    const Shell cube = box_shell(glm::dvec3(0.5));
+    const ShellMoments cube = box_shell(glm::dvec3(0.5));
     EXPECT_NEAR(cube.area, 6, 1e-12);
     EXPECT_NEAR(cube.area * 2 * cube.variances.x, 5.0 / 3, 1e-12);  // T_xx of the unit cube
     const double pi = 3.14159265358979323846;
-    const Shell sphere = ellipsoid_shell(glm::dvec3(2));
+    const ShellMoments sphere = ellipsoid_shell(glm::dvec3(2));
     EXPECT_NEAR(sphere.area, 16 * pi, 1e-11);
     EXPECT_NEAR(sphere.variances.y, 4.0 / 3, 1e-12);
     for (const double ratio : {0.9, 0.3, 1e-2, 1e-4}) {
@@ -222,14 +223,14 @@ TEST(Replace, BoxComesBackAsItself) {
 }
 
 TEST(Replace, TurnedAndMovedBoxesComeBackAsThemselves) {
-    Random random(3);
+    PcgRandom random(3);
     for (int i = 0; i < 300; ++i) {
         Primitive p;
         p.axes = turn(6 * random.uniform(), {random.uniform(), random.uniform() - 0.5, 0.3});
         p.center = {100 * random.uniform(), -7, 3};
         p.half_size = {std::exp(4 * random.uniform()), std::exp(4 * random.uniform()),
                        std::exp(4 * random.uniform())};
-        const Shell shell = box_shell(p.half_size);
+        const ShellMoments shell = box_shell(p.half_size);
         const auto box = fit_box(attributes_of(shell, p.axes, p.center), bound_of_box(p));
         ASSERT_TRUE(box);
         const glm::dvec3 want = sorted(p.half_size);
@@ -252,13 +253,13 @@ TEST(Replace, CubeAnyTurnKeepsItsSides) {
 }
 
 TEST(Replace, EllipsoidsComeBackAsThemselves) {
-    Random random(5);
+    PcgRandom random(5);
     for (int i = 0; i < 60; ++i) {
         Primitive p;
         p.axes = turn(6 * random.uniform(), {random.uniform(), random.uniform() - 0.5, 0.3});
         p.half_size = {std::exp(4 * random.uniform()), std::exp(4 * random.uniform()),
                        std::exp(4 * random.uniform())};
-        const Shell shell = ellipsoid_shell(p.half_size);
+        const ShellMoments shell = ellipsoid_shell(p.half_size);
         const auto out =
             fit_ellipsoid(attributes_of(shell, p.axes, p.center), bound_of_ellipsoid(p));
         ASSERT_TRUE(out);
@@ -359,7 +360,7 @@ TEST(Replace, RowsAndPairsOfThingsAreRefused) {
 
 TEST(Replace, SparseGroupsAreRefused) {
     Mesh flock;
-    Random random(11);
+    PcgRandom random(11);
     for (int i = 0; i < 40; ++i) {
         Affine shift;
         shift.offset = {10 * random.uniform(), 10 * random.uniform(), 10 * random.uniform()};
@@ -371,7 +372,7 @@ TEST(Replace, SparseGroupsAreRefused) {
 
 TEST(Replace, SparseGroupsAreClearShellsOfTheirExtentAndOpaqueAsThereIsToSee) {
     Mesh flock;
-    Random random(11);
+    PcgRandom random(11);
     for (int i = 0; i < 40; ++i) {
         Affine shift;
         shift.offset = {10 * random.uniform(), 10 * random.uniform(), 10 * random.uniform()};
@@ -382,8 +383,8 @@ TEST(Replace, SparseGroupsAreClearShellsOfTheirExtentAndOpaqueAsThereIsToSee) {
         const auto clear = as_box ? fit_clear_box(wanted, bound_of(flock.positions))
                                   : fit_clear_ellipsoid(wanted, bound_of(flock.positions));
         ASSERT_TRUE(clear);
-        const Shell shell = as_box ? box_shell(clear->primitive.half_size)
-                                   : ellipsoid_shell(clear->primitive.half_size);
+        const ShellMoments shell = as_box ? box_shell(clear->primitive.half_size)
+                                          : ellipsoid_shell(clear->primitive.half_size);
         EXPECT_NEAR(clear->opacity * shell.area, wanted.visible_area, 1e-9 * wanted.visible_area);
         const double alpha = surface_alpha(clear->opacity);
         EXPECT_NEAR((1 - alpha) * (1 - alpha), 1 - clear->opacity, 1e-12);
@@ -411,8 +412,8 @@ TEST(Replace, ClearShellSettlesByItsOpacity) {
     Attributes sure = rough;
     sure.visible_area = 1.02;
     sure.centroid = {0.1, 0, 0};
-    const solids::Clear clear{{{1, 2, 3}, glm::dmat3(1.0), {1, 2, 3}}, 0.5};
-    const solids::Clear now = solids::settled(clear, rough, sure);
+    const solids::ClearSolid clear{{{1, 2, 3}, glm::dmat3(1.0), {1, 2, 3}}, 0.5};
+    const solids::ClearSolid now = solids::settled(clear, rough, sure);
     EXPECT_NEAR(now.opacity, 0.51, 1e-12);
     EXPECT_NEAR(glm::length(now.primitive.center - glm::dvec3(1.1, 2, 3)), 0, 1e-12);
     EXPECT_EQ(now.primitive.half_size, clear.primitive.half_size);
@@ -447,7 +448,7 @@ TEST(Replace, ExtremeAndBrokenAttributesNeverGiveNaN) {
     for (const double x : {1e-30, 1e-12, 1e-6, 1.0})
         for (const double y : {1e-30, 1e-12, 1e-3, 1.0})
             for (const double scale : {1e-20, 1.0, 1e20}) {
-                Shell shell;
+                ShellMoments shell;
                 shell.variances = scale * glm::dvec3(1, x, y);
                 shell.area = scale;
                 const Attributes attributes =

@@ -10,8 +10,8 @@
 using namespace lodestone;
 using models::add_level;
 using models::view_from;
-using view::Batch;
 using view::BatchMesh;
+using view::ViewerBatch;
 
 namespace {
 
@@ -24,17 +24,17 @@ Model balls(int count) {
     return model;
 }
 
-std::set<Hash> keys_of(const std::vector<Batch>& batches) {
+std::set<Hash> keys_of(const std::vector<ViewerBatch>& batches) {
     std::set<Hash> keys;
-    for (const Batch& batch : batches)
+    for (const ViewerBatch& batch : batches)
         keys.insert(batch.key);
     return keys;
 }
 
 uint64_t triangles_of(const Model& model, const choose::Cut& cut,
-                      const std::vector<Batch>& batches) {
+                      const std::vector<ViewerBatch>& batches) {
     uint64_t triangles = 0;
-    for (const Batch& batch : batches) {
+    for (const ViewerBatch& batch : batches) {
         const BatchMesh mesh = view::mesh_of(model, cut, batch);
         EXPECT_EQ(mesh.triangles.size(), batch.triangles);
         EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
@@ -52,7 +52,7 @@ TEST(Batches, EmptyCutHasNone) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    EXPECT_TRUE(view::batches_of(model, choose::choose(model, View{})).empty());
+    EXPECT_TRUE(view::batches_of(model, choose::choose_cut(model, View{})).empty());
 }
 
 TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
@@ -67,8 +67,8 @@ TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
     place.linear[2] = {0, 0, -2};  // mirrored, so that normals point the other way
     model.root = models::add_group(model, "g", {{leaf, place, "t"}});
     summarize_assemblies(model, bottom_up(model));
-    const choose::Cut cut = choose::choose(model, view_from(10));
-    const std::vector<Batch> batches = view::batches_of(model, cut);
+    const choose::Cut cut = choose::choose_cut(model, view_from(10));
+    const std::vector<ViewerBatch> batches = view::batches_of(model, cut);
     ASSERT_EQ(batches.size(), 1u);
     const BatchMesh made = view::mesh_of(model, cut, batches[0]);
     ASSERT_EQ(made.positions.size(), 3u);
@@ -80,8 +80,8 @@ TEST(Batches, OneTriangleIsWhereItIsPlacedInItsColor) {
 
 TEST(Batches, EachTriangleIsInExactlyOne) {
     const Model model = balls(512);
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = view::batches_of(model, cut);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    const std::vector<ViewerBatch> batches = view::batches_of(model, cut);
     EXPECT_GT(batches.size(), 1u);
     EXPECT_LT(batches.size(), 16u);  // not one for each ball or pair
     EXPECT_EQ(triangles_of(model, cut, batches), uint64_t{512} * 1280);
@@ -93,10 +93,10 @@ TEST(Batches, MeshLargerThanABatchIsCutUp) {
     const ObjectIndex leaf = models::add_leaf(model, "big", shapes::sphere(1, 7));  // 327,680
     model.root = models::add_group(model, "g", {{leaf, Affine{}, "big"}});
     summarize_assemblies(model, bottom_up(model));
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = view::batches_of(model, cut);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    const std::vector<ViewerBatch> batches = view::batches_of(model, cut);
     ASSERT_EQ(batches.size(), 2u);
-    for (const Batch& batch : batches)
+    for (const ViewerBatch& batch : batches)
         EXPECT_LE(batch.triangles, view::kMostInBatch);
     EXPECT_EQ(triangles_of(model, cut, batches), 327'680u);
 }
@@ -104,11 +104,11 @@ TEST(Batches, MeshLargerThanABatchIsCutUp) {
 TEST(Batches, TheSameCutAgainHasTheSameKeysAndAStepChangesFew) {
     const Model model = balls(512);
     View view = view_from(3, 1);
-    const std::set<Hash> before = keys_of(view::batches_of(model, choose::choose(model, view)));
-    EXPECT_EQ(keys_of(view::batches_of(model, choose::choose(model, view))), before);
+    const std::set<Hash> before = keys_of(view::batches_of(model, choose::choose_cut(model, view)));
+    EXPECT_EQ(keys_of(view::batches_of(model, choose::choose_cut(model, view))), before);
     view.camera.position.x += 4;
     size_t kept = 0;
-    const std::set<Hash> after = keys_of(view::batches_of(model, choose::choose(model, view)));
+    const std::set<Hash> after = keys_of(view::batches_of(model, choose::choose_cut(model, view)));
     for (const Hash key : after)
         kept += before.count(key);
     EXPECT_GT(2 * kept, after.size());
@@ -117,10 +117,10 @@ TEST(Batches, TheSameCutAgainHasTheSameKeysAndAStepChangesFew) {
 
 TEST(Batches, ColorsOfTheirOwnReplaceMaterialsAndChangeKeys) {
     const Model model = balls(4);
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     const std::vector<glm::dvec3> colors(cut.chosen.size(), {0, 0, 1});
-    const std::vector<Batch> plain = view::batches_of(model, cut);
-    const std::vector<Batch> painted = view::batches_of(model, cut, colors);
+    const std::vector<ViewerBatch> plain = view::batches_of(model, cut);
+    const std::vector<ViewerBatch> painted = view::batches_of(model, cut, colors);
     ASSERT_EQ(plain.size(), painted.size());
     EXPECT_NE(plain[0].key, painted[0].key);
     const BatchMesh mesh = view::mesh_of(model, cut, painted[0], colors);
@@ -143,7 +143,7 @@ TEST(Batches, SlotsGlassAndGlowAreTold) {
     model.objects[leaf].representations[0].materials.push_back(1);
     model.root = models::add_group(model, "g", {{leaf, Affine{}, "l"}});
     summarize_assemblies(model, bottom_up(model));
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     const BatchMesh made = view::mesh_of(model, cut, view::batches_of(model, cut).front());
     const uint32_t first = made.triangles[0].x;
     const uint32_t second = made.triangles[1].x;
@@ -161,14 +161,14 @@ TEST(Batches, WhatCamerasDoNotSeeIsInNone) {
     pair->placements[0].hidden = kCameraRays;
     model.objects[1].representations[0].payload = std::shared_ptr<const Assembly>(pair);
     summarize_assemblies(model, bottom_up(model));
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     EXPECT_EQ(triangles_of(model, cut, view::batches_of(model, cut)), uint64_t{2} * 1280);
 }
 
 TEST(Batches, MeshThatIsNotInMemoryIsNamedAsAnError) {
     Model model = balls(4);
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    const std::vector<Batch> batches = view::batches_of(model, cut);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    const std::vector<ViewerBatch> batches = view::batches_of(model, cut);
     model.objects[0].representations[0].payload = std::monostate();
     EXPECT_THROW(view::mesh_of(model, cut, batches[0]), Error);
 }

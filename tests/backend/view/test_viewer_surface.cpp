@@ -21,11 +21,11 @@ Model balls() {
     return model;
 }
 
-view::Surface all_of(const Model& model, const choose::Cut& cut, uint64_t most) {
+view::ViewerSurface all_of(const Model& model, const choose::Cut& cut, uint64_t most) {
     return view::surface_of(model, cut, view::surface_levels(model, cut, most));
 }
 
-Box3 box_of(const view::Surface& surface) {
+Box3 box_of(const view::ViewerSurface& surface) {
     Box3 box;
     for (const glm::vec3& corner : surface.corners)
         box.add(glm::dvec3(corner));
@@ -34,19 +34,19 @@ Box3 box_of(const view::Surface& surface) {
 
 }  // namespace
 
-TEST(Surface, EmptyCutHasNone) {
+TEST(ViewerSurface, EmptyCutHasNone) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    const view::Surface surface = all_of(model, choose::choose(model, View{}), 1000);
+    const view::ViewerSurface surface = all_of(model, choose::choose_cut(model, View{}), 1000);
     EXPECT_TRUE(surface.corners.empty());
     EXPECT_TRUE(surface.owners.empty());
 }
 
-TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
+TEST(ViewerSurface, EnoughTrianglesShowTheChosenLevels) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    const view::Surface surface = all_of(model, cut, uint64_t{8} * 1280);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    const view::ViewerSurface surface = all_of(model, cut, uint64_t{8} * 1280);
     EXPECT_EQ(surface.owners.size(), uint64_t{8} * 1280);
     EXPECT_EQ(surface.corners.size(), 3 * surface.owners.size());
     EXPECT_EQ(surface.owners.front(), 0u);
@@ -56,40 +56,40 @@ TEST(Surface, EnoughTrianglesShowTheChosenLevels) {
     EXPECT_NEAR(box_of(surface).high.x, 22, 1e-5);
 }
 
-TEST(Surface, FewerTrianglesShowCoarserLevelsAndThenBoxes) {
+TEST(ViewerSurface, FewerTrianglesShowCoarserLevelsAndThenBoxes) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     EXPECT_EQ(all_of(model, cut, uint64_t{8} * 1280 - 1).owners.size(), uint64_t{8} * 80);
     EXPECT_EQ(all_of(model, cut, uint64_t{8} * 79).owners.size(), uint64_t{8} * 20);
-    const view::Surface boxes = all_of(model, cut, 1);
+    const view::ViewerSurface boxes = all_of(model, cut, 1);
     EXPECT_EQ(boxes.owners.size(), uint64_t{8} * 12);
     EXPECT_NEAR(box_of(boxes).high.x, 22, 1e-5);
 }
 
-TEST(Surface, WhatCamerasDoNotSeeIsLeftOut) {
+TEST(ViewerSurface, WhatCamerasDoNotSeeIsLeftOut) {
     Model model = balls();
     Assembly row = model.objects[model.root].representations[0].assembly();
     row.placements[0].hidden = kCameraRays;
     model.objects[model.root].representations[0].payload =
         std::make_shared<const Assembly>(std::move(row));
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
     EXPECT_EQ(cut.chosen.size(), 8u);
-    const view::Surface surface = all_of(model, cut, uint64_t{8} * 80);
+    const view::ViewerSurface surface = all_of(model, cut, uint64_t{8} * 80);
     EXPECT_EQ(surface.owners.size(), uint64_t{6} * 80);
     EXPECT_EQ(surface.owners.front(), 2u);
 }
 
-TEST(Surface, OneThreadAndManyGiveTheSame) {
+TEST(ViewerSurface, OneThreadAndManyGiveTheSame) {
     const Model model = balls();
-    const choose::Cut cut = choose::choose(model, view_from(1, 0));
-    const view::Surface many = all_of(model, cut, 4000);
+    const choose::Cut cut = choose::choose_cut(model, view_from(1, 0));
+    const view::ViewerSurface many = all_of(model, cut, 4000);
     const ThreadLimit limit(1);
-    const view::Surface one = all_of(model, cut, 4000);
+    const view::ViewerSurface one = all_of(model, cut, 4000);
     EXPECT_EQ(one.corners, many.corners);
     EXPECT_EQ(one.owners, many.owners);
 }
 
-TEST(Surface, ShadesTellSidesApartAndAreTheSameOnBoth) {
+TEST(ViewerSurface, ShadesTellSidesApartAndAreTheSameOnBoth) {
     const glm::vec3 floor[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const glm::vec3 turned[] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     const glm::vec3 wall[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};

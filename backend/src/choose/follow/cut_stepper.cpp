@@ -21,17 +21,17 @@ constexpr uint32_t kMostPlain = 31;
 constexpr size_t kFetched = 8;
 
 /// Nothing that bends quality depends on the eye.
-bool rigid(const Modifiers& modifiers) {
+bool rigid(const QualityModifiers& modifiers) {
     // Whoever adds one has to think of it here.
     const auto& [criterion, lenses, screen_lenses, depth, focus, when_moving, closing, when_dark,
                  off_screen, ray_classes] = modifiers;  // classes do not change the camera's cut
-    return criterion == Criterion::Resolution && screen_lenses.empty() && depth == 1 &&
+    return criterion == DetailCriterion::Resolution && screen_lenses.empty() && depth == 1 &&
            !when_moving && !when_dark && off_screen == OffScreen::Full;
 }
 
 }  // namespace
 
-void Stepper::step(const View& view, Cut& cut, const Job& job) {
+void CutStepper::step(const View& view, Cut& cut, const Job& job) {
     refuse_nonsense(view);
     if (table_->kinds() != view.kinds)
         fail(Status::Internal, "the table was made for other kinds");
@@ -48,7 +48,7 @@ void Stepper::step(const View& view, Cut& cut, const Job& job) {
 
 /// Whether the view differs from the last alone in where the eye is, what way it looks, and in
 /// lenses that hide nothing.
-bool Stepper::steps(const View& view) const {
+bool CutStepper::steps(const View& view) const {
     const auto& [camera, width, height, pixel_error, kinds, border, modifiers] = view;
     const View& last = walk_->view;
     if (!rigid(modifiers) || !rigid(last.modifiers) || width != last.width ||
@@ -57,18 +57,18 @@ bool Stepper::steps(const View& view) const {
         return false;
     const double frame = pixel_at_1m(view);
     const auto usual = [](double value) { return value > 1e-100 && value < 1e100; };
-    return usual(frame) && Walk::same_pixels(frame, walk_->frame) &&
+    return usual(frame) && EyeWalk::same_pixels(frame, walk_->frame) &&
            (pixel_error == 0 || usual(pixel_error)) && camera.near_clip >= 0 &&
            camera.near_clip < 1e100;
 }
 
-void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
+void CutStepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     known_ = false;
     field_.reset();
     const bool plain = plain_ > 0;
     plain_ -= plain ? 1 : 0;
     if (plain || !rigid(view.modifiers) || view.camera.orthographic) {
-        cut = choose(*table_, view, job);
+        cut = choose_cut(*table_, view, job);
         looked_at_ = cut.nodes.size();
         return;
     }
@@ -77,7 +77,7 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     const uint32_t root = table_->find(table_->model().root);
     fresh_.clear();
     fresh_.reserve(table_->expected());
-    Chooser(*table_, nullptr, walk_->view, *field_, job).run(root, fresh_);
+    CutChooser(*table_, nullptr, walk_->view, *field_, job).run(root, fresh_);
     fresh_.slack.resize(0);
     fresh_.ranges.clear();
     look_at_fresh(0);
@@ -91,7 +91,7 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
             made.chosen.push_back(static_cast<uint32_t>(i));
         count(made.nodes[i], fresh_.seen[i], true, made);
     }
-    made.kinds = named(tally_.kinds());
+    made.kinds = counts_by_kind(tally_.kinds());
     kept_.seen.swap(fresh_.seen);
     kept_.ranges.swap(fresh_.ranges);
     kept_.free.clear();
@@ -106,11 +106,11 @@ void Stepper::choose_anew(const View& view, Cut& cut, const Job& job) {
 }
 
 /// False: nothing was done, and it should be chosen anew.
-bool Stepper::move(const View& view, Cut& cut, const Job& job) {
+bool CutStepper::move(const View& view, Cut& cut, const Job& job) {
     job.check();
     const ImageFrame refused(view.camera, view.width, view.height);
     known_ = false;  // until all is done
-    if (!walk_->to(view))
+    if (!walk_->advance_to(view))
         return false;
     kept_.slack.find_expired(walk_->travel, expired_);
     if (expired_.size() > std::max(kSome, cut.nodes.size() - cut.nodes.size() / kLeastKept))
@@ -134,7 +134,7 @@ bool Stepper::move(const View& view, Cut& cut, const Job& job) {
 }
 
 /// Of what is expired only what is now too near or too far stays so.
-void Stepper::keep_what_holds(const Cut& cut) {
+void CutStepper::keep_what_holds(const Cut& cut) {
     const size_t count = expired_.size();
     size_t left = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -155,7 +155,7 @@ void Stepper::keep_what_holds(const Cut& cut) {
 }
 
 /// Adds what changed lenses reach to what is expired. False: it may be that something appears.
-bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cut) {
+bool CutStepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cut) {
     const auto changed = changed_lenses(walk_->view.modifiers.lenses, lenses);
     if (changed.empty())
         return true;
@@ -164,7 +164,7 @@ bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cu
         return false;
     walk_->view.modifiers.lenses = lenses;
     field_ = std::make_unique<FactorField>(table_->model(), walk_->view);
-    look_through(*table_, walk_->view, changed, *field_, cut, kept_.seen, reached_);
+    refresh_lens_factors(*table_, walk_->view, changed, *field_, cut, kept_.seen, reached_);
     const auto middle = expired_.insert(expired_.end(), reached_.begin(), reached_.end());
     std::inplace_merge(expired_.begin(), middle, expired_.end());
     expired_.erase(std::unique(expired_.begin(), expired_.end()), expired_.end());
@@ -172,60 +172,61 @@ bool Stepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cu
 }
 
 /// Of what was visited from `begin` on.
-void Stepper::look_at_fresh(size_t begin) {
+void CutStepper::look_at_fresh(size_t begin) {
     fresh_.slack.resize(fresh_.nodes.size());
     fresh_.ranges.reserve(fresh_.nodes.size());
     for (size_t i = begin; i < fresh_.nodes.size(); ++i) {
-        const Node& node = fresh_.nodes[i];
-        const Seen& seen = fresh_.seen[i];
+        const CutNode& node = fresh_.nodes[i];
+        const SeenNode& seen = fresh_.seen[i];
         fresh_.ranges.emplace_back(*walk_, node, fresh_.transforms[i], seen);
         fresh_.slack.set(i, *walk_, fresh_.ranges[i], node, seen);
     }
 }
 
 /// Lenses need all groups around a node, in order.
-FactorField::Path Stepper::path_below(const Cut& cut, uint32_t node) {
-    FactorField::Path path = field_->root();
+FactorField::FactorPath CutStepper::path_below(const Cut& cut, uint32_t node) {
+    FactorField::FactorPath path = field_->root();
     if (!field_->bends())
         return path;
     std::vector<uint32_t> way;
     for (uint32_t at = node; at != kNoParent; at = cut.nodes[at].parent)
         way.push_back(at);
     for (size_t i = way.size(); i-- > 0;) {
-        const Node& here = cut.nodes[way[i]];
-        const Seen& seen = kept_.seen[here.transform];
+        const CutNode& here = cut.nodes[way[i]];
+        const SeenNode& seen = kept_.seen[here.transform];
         const TableRow& row = table_->row(seen.row);
-        Sight sight;
-        Factors factors;
-        see(walk_->view, *field_, {here, cut.world(here)}, row.group, table_->bound(seen.row),
-            table_->object(seen.row).demand, seen.stretch, path, sight, factors);
+        OccurrenceSight sight;
+        DetailFactors factors;
+        find_sight(walk_->view, *field_, {here, cut.world(here)}, row.group,
+                   table_->bound(seen.row), table_->object(seen.row).demand, seen.stretch, path,
+                   sight, factors);
     }
     return path;
 }
 
-void Stepper::find_edits(const Cut& cut, const Job& job) {
+void CutStepper::find_edits(const Cut& cut, const Job& job) {
     edits_.clear();
     fresh_.clear();
     fresh_.slack.resize(0);
     fresh_.ranges.clear();
-    Chooser chooser(*table_, nullptr, walk_->view, *field_, job);
+    CutChooser chooser(*table_, nullptr, walk_->view, *field_, job);
     uint32_t next = 0;  // behind what was closed
     for (const uint32_t index : expired_) {
         if (index < next)
             continue;
-        const Node& node = cut.nodes[index];
-        const Placed placed{node, cut.world(node)};
-        Seen& seen = kept_.seen[node.transform];
-        const Sight sight = walk_->sight_of(placed.world, seen);
-        const Decision made = decide(*table_, walk_->view, seen.row, node, sight);
-        const Seen now(*table_, seen.row, sight, made);
+        const CutNode& node = cut.nodes[index];
+        const PlacedNode placed{node, cut.world(node)};
+        SeenNode& seen = kept_.seen[node.transform];
+        const OccurrenceSight sight = walk_->sight_of(placed.world, seen);
+        const LevelDecision made = decide_level(*table_, walk_->view, seen.row, node, sight);
+        const SeenNode now(*table_, seen.row, sight, made);
         if (made.opened == node.opened && (made.opened || made.level->lod == node.lod)) {
             seen = now;
-            kept_.ranges[node.transform] = Range(*walk_, node, placed.world, seen);
+            kept_.ranges[node.transform] = DrawnRange(*walk_, node, placed.world, seen);
             kept_.slack.set(index, *walk_, kept_.ranges[node.transform], node, seen);
             continue;
         }
-        Edit edit;
+        NodeEdit edit;
         edit.at = index;
         edit.begin = static_cast<uint32_t>(fresh_.nodes.size());
         if (node.opened) {
@@ -240,7 +241,7 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
         if (made.opened) {
             chooser.open(placed, now, path_below(cut, index), fresh_);
         } else {
-            Node drawn = node;
+            CutNode drawn = node;
             drawn.opened = false;
             drawn.lod = made.level->lod;
             drawn.kind = made.level->kind;
@@ -254,15 +255,15 @@ void Stepper::find_edits(const Cut& cut, const Job& job) {
     }
 }
 
-void Stepper::count(const Node& node, const Seen& seen, bool more, Cut& cut) {
+void CutStepper::count(const CutNode& node, const SeenNode& seen, bool more, Cut& cut) {
     if (!node.opened)
         tally_.count(table_->level(seen.level), more, cut);
 }
 
-void Stepper::commit(Cut& cut) {
+void CutStepper::commit(Cut& cut) {
     splicer_.reserve(edits_, fresh_, cut, kept_);  // what may fail comes first
     const auto kinds = tally_.kinds();
-    for (const Edit& edit : edits_) {
+    for (const NodeEdit& edit : edits_) {
         for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)
             count(cut.nodes[i], kept_.seen[cut.nodes[i].transform], false, cut);
         for (uint32_t i = edit.begin; i < edit.end; ++i)
@@ -270,7 +271,7 @@ void Stepper::commit(Cut& cut) {
     }
     splicer_.replace(edits_, fresh_, cut, kept_);
     if (kinds != tally_.kinds())
-        cut.kinds = named(tally_.kinds());
+        cut.kinds = counts_by_kind(tally_.kinds());
 }
 
 }  // namespace lodestone::choose

@@ -34,14 +34,14 @@ float above(double value) {
 
 }  // namespace
 
-Walk::Walk(const Table& of, const View& from)
+EyeWalk::EyeWalk(const ChoiceTable& of, const View& from)
     : table(of),
       view(from),
       frame(pixel_at_1m(from)),
       pixel(frame),
       away(glm::length(from.camera.position)) {}
 
-bool Walk::to(const View& next) {
+bool EyeWalk::advance_to(const View& next) {
     const double moved = glm::length(next.camera.position - view.camera.position);
     travel = std::nextafter(travel + moved * (1 + kRounding), kInfinity);
     if (!(travel < kFarthest))
@@ -53,12 +53,12 @@ bool Walk::to(const View& next) {
     return true;
 }
 
-bool Walk::same_pixels(double a, double b) {
+bool EyeWalk::same_pixels(double a, double b) {
     return std::abs(a - b) <= kTurned * b;
 }
 
-Sight Walk::sight_of(const Affine& world, const Seen& seen) const {
-    Sight sight;
+OccurrenceSight EyeWalk::sight_of(const Affine& world, const SeenNode& seen) const {
+    OccurrenceSight sight;
     sight.z = distance_of(table.bound(seen.row), world, seen.stretch, view.camera.position);
     sight.pixel = pixel * std::max(sight.z, view.camera.near_clip);
     sight.stretch = seen.stretch;
@@ -66,20 +66,21 @@ Sight Walk::sight_of(const Affine& world, const Seen& seen) const {
     return sight;
 }
 
-void Slack::resize(size_t count) {
+void EyeSlack::resize(size_t count) {
     expires_.resize(count);
     sizes_.resize(count);
     places_.resize(count);
 }
 
-void Slack::grow(size_t most) {
+void EyeSlack::grow(size_t most) {
     for (std::vector<float>* one : {&expires_, &sizes_, &places_}) {
         if (one->capacity() < most)
             one->reserve(most + most / 4);
     }
 }
 
-Range::Range(const Walk& walk, const Node& node, const Affine& world, const Seen& seen) {
+DrawnRange::DrawnRange(const EyeWalk& walk, const CutNode& node, const Affine& world,
+                       const SeenNode& seen) {
     const Bound bound = transformed(walk.table.bound(seen.row), world, seen.stretch);
     const glm::dvec3 sides = 0.5 * bound.box.size();
     const double size = sides.x + sides.y + sides.z + bound.radius;
@@ -132,20 +133,20 @@ Range::Range(const Walk& walk, const Node& node, const Affine& world, const Seen
     margin = above(off);
 }
 
-double Range::distance(const glm::dvec3& eye) const {
+double DrawnRange::distance(const glm::dvec3& eye) const {
     const glm::dvec3 arm = eye - center;
     const glm::dvec3 outside = glm::max(glm::abs(arm) - glm::dvec3(half), glm::dvec3(0.0));
     return std::max({0.0, glm::length(arm) - radius, glm::length(outside)});
 }
 
-void Slack::set(size_t index, const Walk& walk, const Range& range, const Node& node,
-                const Seen& seen) {
+void EyeSlack::set(size_t index, const EyeWalk& walk, const DrawnRange& range, const CutNode& node,
+                   const SeenNode& seen) {
     const double error = node.opened ? 0 : walk.table.level(seen.level).error;
     sizes_[index] = node.opened ? -1 : above(error * seen.stretch / walk.frame);
     renew(index, walk, range);
 }
 
-bool Slack::renew(size_t index, const Walk& walk, const Range& range) {
+bool EyeSlack::renew(size_t index, const EyeWalk& walk, const DrawnRange& range) {
     const double z = range.distance(walk.view.camera.position);
     const double off = range.margin + kOfPlaces * (walk.away + z) + kOfTravel * walk.travel;
     const double slack = std::min(z - range.low, range.high - z) - off;
@@ -154,18 +155,18 @@ bool Slack::renew(size_t index, const Walk& walk, const Range& range) {
     return expires_[index] > above(walk.travel);
 }
 
-void Slack::copy(const Slack& from, size_t index, size_t to) {
+void EyeSlack::copy(const EyeSlack& from, size_t index, size_t to) {
     expires_[to] = from.expires_[index];
     sizes_[to] = from.sizes_[index];
     places_[to] = from.places_[index];
 }
 
-void Slack::move(size_t begin, size_t end, size_t to) {
+void EyeSlack::move(size_t begin, size_t end, size_t to) {
     for (std::vector<float>* one : {&expires_, &sizes_, &places_})
         std::memmove(one->data() + to, one->data() + begin, (end - begin) * sizeof(float));
 }
 
-void Slack::find_expired(double travel, std::vector<uint32_t>& expired) const {
+void EyeSlack::find_expired(double travel, std::vector<uint32_t>& expired) const {
     expired.clear();
     const size_t count = size();
     const float* expires = expires_.data();
@@ -184,16 +185,16 @@ void Slack::find_expired(double travel, std::vector<uint32_t>& expired) const {
     }
 }
 
-void Slack::find_largest(const Walk& walk, const std::vector<Seen>& seen,
-                         const std::vector<Range>& ranges, Cut& cut, uint32_t guess) {
+void EyeSlack::find_largest(const EyeWalk& walk, const std::vector<SeenNode>& seen,
+                            const std::vector<DrawnRange>& ranges, Cut& cut, uint32_t guess) {
     cut.largest_error_px = 0;
     cut.largest_error_node = kNoParent;
     const auto consider = [&](size_t index) {
-        const Node& node = cut.nodes[index];
+        const CutNode& node = cut.nodes[index];
         if (node.opened)
             return;
-        const Seen& known = seen[node.transform];
-        const Sight sight = walk.sight_of(cut.world(node), known);
+        const SeenNode& known = seen[node.transform];
+        const OccurrenceSight sight = walk.sight_of(cut.world(node), known);
         renew(index, walk, ranges[node.transform]);
         const TableLevel& level = walk.table.level(known.level);
         const double error = error_on_screen(sight, level.error);

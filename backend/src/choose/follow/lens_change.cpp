@@ -14,10 +14,10 @@ bool same(const DetailLens& a, const DetailLens& b) {
 }
 
 /// A group that is within reach, and what is known along the path to what it places.
-struct Reached {
+struct ReachedGroup {
     uint32_t node = 0;
-    LensField::Path changed;
-    FactorField::Path path;
+    LensField::LensPath changed;
+    FactorField::FactorPath path;
 };
 
 }  // namespace
@@ -36,9 +36,10 @@ std::vector<DetailLens> changed_lenses(const std::vector<DetailLens>& before,
     return changed;
 }
 
-void look_through(const Table& table, const View& view, const std::vector<DetailLens>& changed,
-                  FactorField& field, const Cut& cut, std::vector<Seen>& seen,
-                  std::vector<uint32_t>& reached) {
+void refresh_lens_factors(const ChoiceTable& table, const View& view,
+                          const std::vector<DetailLens>& changed, FactorField& field,
+                          const Cut& cut, std::vector<SeenNode>& seen,
+                          std::vector<uint32_t>& reached) {
     reached.clear();
     std::vector<DetailLens> anything = changed;  // whatever is within reach, listed or not
     for (DetailLens& lens : anything) {
@@ -46,32 +47,32 @@ void look_through(const Table& table, const View& view, const std::vector<Detail
         lens.objects.clear();
     }
     LensField reach(table.model(), anything);
-    Reached root;
+    ReachedGroup root;
     root.node = kNoParent;
     root.changed = reach.root();
     root.path = field.root();
-    std::vector<Reached> groups{root};
+    std::vector<ReachedGroup> groups{root};
     for (uint32_t i = 0; i < cut.nodes.size(); ++i) {
-        const Node& node = cut.nodes[i];
+        const CutNode& node = cut.nodes[i];
         while (groups.size() > 1 && groups.back().node > node.parent)
             groups.pop_back();
         if (groups.back().node != node.parent)
             continue;
-        Seen& known = seen[node.transform];
+        SeenNode& known = seen[node.transform];
         const Affine& world = cut.world(node);
         const TableRow& row = table.row(known.row);
         const Bound local = table.bound(known.row);
-        Reached here = groups.back();
+        ReachedGroup here = groups.back();
         here.node = i;
         here.changed =
             reach.at(node.object, true, transformed(local, world, known.stretch), here.changed)
                 .below;
         if (here.changed.begin == here.changed.end)
             continue;
-        Sight sight;
-        Factors factors;
-        see(view, field, {node, world}, row.group, local, table.object(known.row).demand,
-            known.stretch, here.path, sight, factors);
+        OccurrenceSight sight;
+        DetailFactors factors;
+        find_sight(view, field, {node, world}, row.group, local, table.object(known.row).demand,
+                   known.stretch, here.path, sight, factors);
         known.total = sight.total;
         reached.push_back(i);
         if (node.opened)

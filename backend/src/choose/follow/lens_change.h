@@ -12,10 +12,11 @@ std::vector<DetailLens> changed_lenses(const std::vector<DetailLens>& before,
                                        const std::vector<DetailLens>& now);
 
 /// Nodes that one of the changed lenses reaches, rising (`seen`: by Node::transform); `field` tells
-/// what all lenses of the view now do there, and so their Seen::total becomes. None of the changed
+/// what all lenses of the view now do there, and so their SeenNode::total becomes. None of the changed
 /// ones may hide anything. cost: O(nodes) for their parents, and a look at each within reach
-void look_through(const Table& table, const View& view, const std::vector<DetailLens>& changed,
-                  FactorField& field, const Cut& cut, std::vector<Seen>& seen,
-                  std::vector<uint32_t>& reached);
+void refresh_lens_factors(const ChoiceTable& table, const View& view,
+                          const std::vector<DetailLens>& changed, FactorField& field,
+                          const Cut& cut, std::vector<SeenNode>& seen,
+                          std::vector<uint32_t>& reached);
 
 }  // namespace lodestone::choose

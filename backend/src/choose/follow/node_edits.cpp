@@ -9,8 +9,8 @@ namespace lodestone::choose {
 namespace {
 
 /// Each node gives way to one: nothing moves.
-bool in_place(const std::vector<Edit>& edits) {
-    return std::all_of(edits.begin(), edits.end(), [](const Edit& edit) {
+bool in_place(const std::vector<NodeEdit>& edits) {
+    return std::all_of(edits.begin(), edits.end(), [](const NodeEdit& edit) {
         return edit.removed == 1 && edit.end - edit.begin == 1;
     });
 }
@@ -23,7 +23,8 @@ void grow(std::vector<Value>& values, size_t most) {
 
 }  // namespace
 
-void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+void NodeSplicer::reserve(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                          KeptNodes& kept) {
     const size_t most = cut.nodes.size() + fresh.nodes.size();
     spare_chosen_.clear();
     grow(kept.free, kept.free.size() + cut.nodes.size());
@@ -40,9 +41,10 @@ void Splicer::reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& c
     runs_.reserve(edits.size() + 1);
 }
 
-void Splicer::replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+void NodeSplicer::replace(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                          KeptNodes& kept) {
     spare_chosen_.clear();
-    for (const Edit& edit : edits) {
+    for (const NodeEdit& edit : edits) {
         for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)
             kept.free.push_back(cut.nodes[i].transform);
     }
@@ -50,15 +52,16 @@ void Splicer::replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& c
         move_all(edits, fresh, cut, kept);
         return;
     }
-    for (const Edit& edit : edits)
+    for (const NodeEdit& edit : edits)
         insert(edit, edit.at, fresh.nodes[edit.begin].parent, fresh, cut, kept);
 }
 
 /// Moves what stays, in its place, and puts the fresh nodes between.
-void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept) {
+void NodeSplicer::move_all(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                           KeptNodes& kept) {
     runs_.assign(1, {});
-    for (const Edit& edit : edits) {
-        Run& before = runs_.back();
+    for (const NodeEdit& edit : edits) {
+        NodeRun& before = runs_.back();
         before.end = edit.at;
         const uint32_t shift = before.shift + (edit.end - edit.begin) - edit.removed;
         runs_.push_back({edit.at + edit.removed, 0, shift});
@@ -74,15 +77,15 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
             return index;
         const auto after =
             std::upper_bound(runs_.begin(), runs_.end(), index,
-                             [](uint32_t value, const Run& run) { return value < run.begin; });
+                             [](uint32_t value, const NodeRun& run) { return value < run.begin; });
         return index + (after - 1)->shift;
     };
-    const auto move = [&](const Run& run) {
-        static_assert(std::is_trivially_copyable_v<Node>);
+    const auto move = [&](const NodeRun& run) {
+        static_assert(std::is_trivially_copyable_v<CutNode>);
         if (run.shift != 0) {
-            Node* nodes = cut.nodes.data();
+            CutNode* nodes = cut.nodes.data();
             std::memmove(nodes + (run.begin + run.shift), nodes + run.begin,
-                         (run.end - run.begin) * sizeof(Node));
+                         (run.end - run.begin) * sizeof(CutNode));
             kept.slack.move(run.begin, run.end, run.begin + run.shift);
         }
         uint32_t before = kNoParent;  // siblings in a run have a parent before it, or in it
@@ -102,7 +105,7 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
     };
     // What moves down overwrites only what has moved down before it, or is gone; then, from the
     // end, what moves up overwrites only what has moved.
-    const auto down = [](const Run& run) { return static_cast<int32_t>(run.shift) < 0; };
+    const auto down = [](const NodeRun& run) { return static_cast<int32_t>(run.shift) < 0; };
     for (size_t i = 0; i < runs_.size(); ++i) {
         if (down(runs_[i]))
             move(runs_[i]);
@@ -121,7 +124,7 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
         return std::lower_bound(chosen, chosen + std::min(nodes, rest), node);
     };
     for (size_t k = 0; k < runs_.size(); ++k) {
-        const Run& run = runs_[k];
+        const NodeRun& run = runs_[k];
         if (k > 0)
             chosen = chosen_from(run.begin, edits[k - 1].removed);
         const auto end = chosen_from(run.end, run.end - run.begin);
@@ -137,11 +140,11 @@ void Splicer::move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& 
 }
 
 /// Puts the fresh nodes of an edit at a place that is free. `parent`: of the first of them.
-void Splicer::insert(const Edit& edit, uint32_t place, uint32_t parent, const Fresh& fresh,
-                     Cut& cut, Kept& kept) {
+void NodeSplicer::insert(const NodeEdit& edit, uint32_t place, uint32_t parent,
+                         const FreshNodes& fresh, Cut& cut, KeptNodes& kept) {
     for (uint32_t from = edit.begin; from < edit.end; ++from) {
         const uint32_t to = place + (from - edit.begin);
-        Node& node = cut.nodes[to] = fresh.nodes[from];
+        CutNode& node = cut.nodes[to] = fresh.nodes[from];
         node.parent = from == edit.begin ? parent : node.parent - edit.begin + place;
         if (kept.free.empty()) {
             node.transform = static_cast<uint32_t>(cut.transforms.size());

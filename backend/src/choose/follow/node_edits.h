@@ -7,7 +7,7 @@
 namespace lodestone::choose {
 
 /// Instead of the nodes [at, at + removed) of a cut stand [begin, end) of the fresh ones.
-struct Edit {
+struct NodeEdit {
     uint32_t at = 0;
     uint32_t removed = 1;
     uint32_t begin = 0;
@@ -16,40 +16,43 @@ struct Edit {
 
 /// What is kept of a cut besides it. What is as large as a transform stays where it is when nodes
 /// move.
-struct Kept {
-    std::vector<Seen> seen;      // by Node::transform
-    std::vector<Range> ranges;   // by Node::transform
-    std::vector<uint32_t> free;  // transforms of no node
-    Slack slack;                 // by node
+struct KeptNodes {
+    std::vector<SeenNode> seen;      // by Node::transform
+    std::vector<DrawnRange> ranges;  // by Node::transform
+    std::vector<uint32_t> free;      // transforms of no node
+    EyeSlack slack;                  // by node
 };
 
 /// Nodes that were visited, each beside what is kept of it.
-struct Fresh : Visited {
-    std::vector<Range> ranges;
-    Slack slack;
+struct FreshNodes : VisitedNodes {
+    std::vector<DrawnRange> ranges;
+    EyeSlack slack;
 };
 
-class Splicer {
+class NodeSplicer {
 public:
     /// Makes room for what replace() does with these, so that it cannot fail.
-    void reserve(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept);
+    void reserve(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                 KeptNodes& kept);
     /// All edits, rising; the cut's sums are left as they are.
-    void replace(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept);
+    void replace(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                 KeptNodes& kept);
 
 private:
     /// Nodes [begin, end) that stay, and by how many places they move; what moves down wraps
     /// around.
-    struct Run {
+    struct NodeRun {
         uint32_t begin = 0;
         uint32_t end = 0;
         uint32_t shift = 0;
     };
-    void move_all(const std::vector<Edit>& edits, const Fresh& fresh, Cut& cut, Kept& kept);
-    void insert(const Edit& edit, uint32_t place, uint32_t parent, const Fresh& fresh, Cut& cut,
-                Kept& kept);
+    void move_all(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
+                  KeptNodes& kept);
+    void insert(const NodeEdit& edit, uint32_t place, uint32_t parent, const FreshNodes& fresh,
+                Cut& cut, KeptNodes& kept);
 
     // Kept for their memory.
-    std::vector<Run> runs_;
+    std::vector<NodeRun> runs_;
     std::vector<uint32_t> spare_chosen_;
 };
 

@@ -67,7 +67,7 @@ double BoundTree::nearest(const Bound& from, uint32_t but, double most,
         stack.push_back(0);
     double least = most;
     while (!stack.empty()) {
-        const Part& part = parts_[stack.back()];
+        const BoundTreeNode& part = parts_[stack.back()];
         stack.pop_back();
         if (apart(part.box, from.box) >= least)
             continue;

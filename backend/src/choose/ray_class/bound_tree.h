@@ -28,7 +28,7 @@ public:
                    const std::function<bool(const Bound&)>& counts) const;
 
 private:
-    struct Part {
+    struct BoundTreeNode {
         Box3 box;
         uint32_t first = 0;  // of order_; inner: index of its first child, the other follows it
         uint32_t count = 0;  // 0: inner
@@ -37,7 +37,7 @@ private:
 
     std::vector<Bound> bounds_;
     std::vector<uint32_t> order_;
-    std::vector<Part> parts_;
+    std::vector<BoundTreeNode> parts_;
 };
 
 }  // namespace lodestone::choose

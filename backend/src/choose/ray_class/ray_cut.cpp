@@ -36,7 +36,7 @@ bool opaque(const Model& model, const Representation& representation) {
 std::vector<Bound> bounds_of(const Model& model, const Cut& cut) {
     std::vector<Bound> bounds(cut.nodes.size());
     for (size_t i = cut.nodes.size(); i-- > 0;) {
-        const Node& node = cut.nodes[i];
+        const CutNode& node = cut.nodes[i];
         if (!node.opened)
             bounds[i] = transformed(
                 model.objects.at(node.object).representations.at(node.lod).summary.bound,
@@ -49,21 +49,21 @@ std::vector<Bound> bounds_of(const Model& model, const Cut& cut) {
 }
 
 /// By how much each node is refined, whatever coarsens it.
-class Refinement {
+class NodeRefinement {
 public:
-    Refinement(const Model& model, const View& view, const Cut& cut)
+    NodeRefinement(const Model& model, const View& view, const Cut& cut)
         : model_(model), view_(plain(view)), cut_(cut), field_(model, view_) {
         if (field_.bends())
             paths_.resize(cut.nodes.size());
     }
 
     /// Nodes in their order, each once.
-    Factors at(uint32_t index, const Bound& bound) {
-        const Node& node = cut_.nodes[index];
+    DetailFactors at(uint32_t index, const Bound& bound) {
+        const CutNode& node = cut_.nodes[index];
         const Object& object = model_.objects[node.object];
-        Factors factors;
+        DetailFactors factors;
         if (field_.bends()) {
-            FactorField::Path& path = paths_[index];
+            FactorField::FactorPath& path = paths_[index];
             path = node.parent == kNoParent ? field_.root() : paths_[node.parent];
             factors = field_
                           .at(node.object, object.group(), object.bound(), cut_.world(node), bound,
@@ -87,7 +87,7 @@ private:
     View view_;
     const Cut& cut_;
     FactorField field_;
-    std::vector<FactorField::Path> paths_;
+    std::vector<FactorField::FactorPath> paths_;
 };
 
 class RayChooser {
@@ -103,14 +103,14 @@ public:
           need_(model, view, cut, bounds_),
           pyramid_(view),
           lit_(model.world.environment != nullptr ||
-               std::any_of(model.lights.begin(), model.lights.end(), shadows)) {
+               std::any_of(model.lights.begin(), model.lights.end(), casts_shadows)) {
         View shadows = view;
         shadows.modifiers.off_screen = OffScreen::Shadows;
         if (!need_.mirrored() || (view.modifiers.ray_classes & kReflectionRays) != 0)
             off_screen_.emplace(model, shadows_view_ = std::move(shadows));
         triangles_.resize(cut.nodes.size(), 0);
         for (size_t i = cut.nodes.size(); i-- > 0;) {
-            const Node& node = cut.nodes[i];
+            const CutNode& node = cut.nodes[i];
             if (!node.opened)
                 triangles_[i] += level(node, node.lod).summary.cost.triangles;
             if (node.parent != kNoParent)
@@ -122,19 +122,19 @@ public:
         RayCut out;
         out.rays = rays;
         out.states.reserve(cut_.chosen.size());
-        Refinement refinement(model_, view_, cut_);
+        NodeRefinement refinement(model_, view_, cut_);
         replaced_.assign(cut_.nodes.size(), 0);
         for (uint32_t i = 0; i < cut_.nodes.size(); ++i) {
             if ((i & 255u) == 0)
                 job_.check();
-            const Node& node = cut_.nodes[i];
+            const CutNode& node = cut_.nodes[i];
             if (node.parent != kNoParent && replaced_[node.parent] != 0) {
                 replaced_[i] = 1;
                 if (!node.opened)
                     out.states.push_back(RayState::Group);
                 continue;
             }
-            const Factors factors = refinement.at(i, bounds_[i]);
+            const DetailFactors factors = refinement.at(i, bounds_[i]);
             RayState state = RayState::Need;
             if ((node.hidden & rays) != 0)
                 state = RayState::Off;
@@ -153,20 +153,20 @@ public:
     }
 
 private:
-    const Representation& level(const Node& node, uint32_t lod) const {
+    const Representation& level(const CutNode& node, uint32_t lod) const {
         return model_.objects[node.object].representations[lod];
     }
 
-    bool usable(const Node& node, uint32_t lod) const {
+    bool usable(const CutNode& node, uint32_t lod) const {
         const Kind kind = level(node, lod).summary.kind;
         return kind != Kind::Assembly && (view_.kinds & mask_of(kind)) != 0 && lod <= node.coarsest;
     }
 
     /// A coarser level of what the picture shows by its shadows and images only.
-    bool unseen(uint32_t index, Factors factors, RayCut& out) {
+    bool unseen(uint32_t index, DetailFactors factors, RayCut& out) {
         if (!off_screen_ || !pyramid_.outside(bounds_[index]))
             return false;
-        const Node& node = cut_.nodes[index];
+        const CutNode& node = cut_.nodes[index];
         const auto levels =
             static_cast<uint32_t>(model_.objects[node.object].representations.size());
         const uint32_t finest = node.opened ? 0 : node.lod;
@@ -182,7 +182,7 @@ private:
             return false;
         const double enlarge = stretch(cut_.world(node));
         for (uint32_t lod = levels; lod-- > finest + 1;) {
-            const Summary& summary = level(node, lod).summary;
+            const RepresentationSummary& summary = level(node, lod).summary;
             if (!usable(node, lod) || summary.cost.triangles > triangles_[index] ||
                 !good_enough(view_, summary.error, enlarge, z, factors.total()))
                 continue;
@@ -196,8 +196,8 @@ private:
     }
 
     /// A box or ellipsoid inside or around what the picture shows.
-    RayState seen(uint32_t index, RayMask rays, const Factors& factors, RayCut& out) {
-        const Node& node = cut_.nodes[index];
+    RayState seen(uint32_t index, RayMask rays, const DetailFactors& factors, RayCut& out) {
+        const CutNode& node = cut_.nodes[index];
         const Representation& drawn = level(node, node.lod);
         const Object& object = model_.objects[node.object];
         std::vector<uint32_t> solids;
@@ -214,7 +214,9 @@ private:
         const bool mirrored = rays == kReflectionRays;
         if (mirrored && !need_.mirrored())
             return RayState::Need;
-        const auto images = [&](uint32_t lod) { return imaged(model_, level(node, lod)) > 0; };
+        const auto images = [&](uint32_t lod) {
+            return imaged_share(model_, level(node, lod)) > 0;
+        };
         if (mirrored && (images(node.lod) || std::any_of(solids.begin(), solids.end(), images)))
             return RayState::Shape;
         const Bound& bound = bounds_[index];
@@ -223,12 +225,12 @@ private:
         const double pixel = pixel_size(view_, z);
         if (!(clear > kContactPixels * pixel_size(view_, z + 2 * bound.radius)))
             return RayState::Contact;
-        const auto behind = [&](const Sweep& sweep) {
+        const auto behind = [&](const SweptBall& sweep) {
             return nearest(index, [&](const Bound& other) {
                 return touches(sweep, other.center, other.radius);
             });
         };
-        RayNeed::Edge edge;
+        RayNeed::ShadowEdge edge;
         if (mirrored)
             edge.sharp = edge.any = need_.image(bound, shape_of_);
         else
@@ -239,7 +241,7 @@ private:
         const double enlarge = stretch(cut_.world(node));
         RayChoice best{index, 0, 1, kInfinity, 0, false, false};
         for (const uint32_t lod : solids) {
-            const Shape shape = shape_of_(drawn, &level(node, lod));
+            const RayShape shape = shape_of_(drawn, &level(node, lod));
             const auto& fitted = mirrored ? shape.around : shape.inside;
             if (!shape.convexity.convex || !fitted ||
                 shape.convexity.hollow * enlarge * total > kFlatPixels * view_.pixel_error * pixel)
@@ -299,7 +301,7 @@ private:
     const Job& job_;
     std::vector<Bound> bounds_;  // of nodes
     RayNeed need_;
-    Pyramid pyramid_;
+    ViewPyramid pyramid_;
     bool lit_;                                  // something throws shadows
     std::optional<OffScreenField> off_screen_;  // where only shadows count
     std::optional<BoundTree> tree_;
@@ -314,8 +316,8 @@ std::vector<RayCut> choose_rays(const Model& model, const View& view, const Cut&
     std::vector<RayCut> out;
     if (view.modifiers.ray_classes == 0)
         return out;
-    const bool any = view.modifiers.criterion == Criterion::Resolution && view.pixel_error > 0 &&
-                     !cut.chosen.empty();
+    const bool any = view.modifiers.criterion == DetailCriterion::Resolution &&
+                     view.pixel_error > 0 && !cut.chosen.empty();
     std::optional<RayChooser> chooser;
     if (any)
         chooser.emplace(model, view, cut, shape_of, job);
@@ -336,14 +338,15 @@ std::vector<RayCut> choose_rays(const Model& model, const View& view, const Cut&
     return out;
 }
 
-Resident resident(const Model& model, const Cut& cut, const std::vector<RayCut>& rays) {
-    Resident out{cut.triangles, cut.bytes};
+ResidentSize resident_size(const Model& model, const Cut& cut, const std::vector<RayCut>& rays) {
+    ResidentSize out{cut.triangles, cut.bytes};
     if (std::all_of(rays.begin(), rays.end(), [](const RayCut& own) { return own.own.empty(); }))
         return out;
     out = {};
     std::unordered_set<Hash> drawn;
-    const auto add = [&](const Node& node, uint32_t lod) {
-        const Summary& summary = model.objects[node.object].representations[lod].summary;
+    const auto add = [&](const CutNode& node, uint32_t lod) {
+        const RepresentationSummary& summary =
+            model.objects[node.object].representations[lod].summary;
         out.triangles += summary.cost.triangles;
         out.bytes += kBytesPerOccurrence;
         if (drawn.insert(summary.hash).second || summary.kind == Kind::Composite)
@@ -358,7 +361,7 @@ Resident resident(const Model& model, const Cut& cut, const std::vector<RayCut>&
         }
     }
     for (size_t i = 0; i < cut.nodes.size(); ++i) {
-        const Node& node = cut.nodes[i];
+        const CutNode& node = cut.nodes[i];
         if (node.parent != kNoParent)
             alone[i] |= alone[node.parent];
         if (!node.opened && alone[i] == 0)

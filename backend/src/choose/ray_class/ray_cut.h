@@ -55,10 +55,10 @@ std::vector<RayCut> choose_rays(const Model& model, const View& view, const Cut&
                                 const ShapeOf& shape_of, const Job& job = {});
 
 /// What must be in POV-Ray's memory for the camera and all classes.
-struct Resident {
+struct ResidentSize {
     uint64_t triangles = 0;  // placed
     uint64_t bytes = 0;
 };
-Resident resident(const Model& model, const Cut& cut, const std::vector<RayCut>& rays);
+ResidentSize resident_size(const Model& model, const Cut& cut, const std::vector<RayCut>& rays);
 
 }  // namespace lodestone::choose

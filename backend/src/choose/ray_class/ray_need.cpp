@@ -53,8 +53,8 @@ bool reflects_only(const Model& model, const Representation& representation) {
 
 }  // namespace
 
-Shape shape_of(const Representation& mesh, const Representation* solid) {
-    Shape shape;
+RayShape shape_of(const Representation& mesh, const Representation* solid) {
+    RayShape shape;
     if (mesh.summary.kind != Kind::Mesh)
         return shape;
     shape.convexity = measure::convexity_of(mesh.mesh());
@@ -74,12 +74,12 @@ RayNeed::RayNeed(const Model& model, const View& view, const Cut& cut,
       pyramid_(view),
       scene_(bounds.empty() ? Box3{} : bounds[0].box) {
     for (const uint32_t index : cut.chosen) {
-        const Node& node = cut.nodes[index];
+        const CutNode& node = cut.nodes[index];
         const Representation& drawn = model.objects.at(node.object).representations.at(node.lod);
         if ((node.hidden & kCameraRays) != 0 || pyramid_.outside(bounds[index]))
             continue;
         const double away = distance(bounds[index], view.camera.position);
-        const double share = imaged(imaged(model, drawn), view, bounds[index], away);
+        const double share = imaged_share(imaged_share(model, drawn), view, bounds[index], away);
         if (share > kLeastImaged)
             mirrors_.push_back({index, bounds[index], away, std::min(1.0, share), false});
     }
@@ -87,8 +87,8 @@ RayNeed::RayNeed(const Model& model, const View& view, const Cut& cut,
 
 void RayNeed::find_shapes(const ShapeOf& shape_of) {
     shapes_known_ = true;
-    for (Mirror& mirror : mirrors_) {
-        const Node& node = cut_.nodes[mirror.node];
+    for (PictureMirror& mirror : mirrors_) {
+        const CutNode& node = cut_.nodes[mirror.node];
         const Representation& drawn = model_.objects[node.object].representations[node.lod];
         if (!reflects_only(model_, drawn))
             continue;
@@ -98,14 +98,14 @@ void RayNeed::find_shapes(const ShapeOf& shape_of) {
     }
 }
 
-RayNeed::Edge RayNeed::shadow(const Bound& bound,
-                              const std::function<double(const Sweep&)>& clear_of) const {
-    Edge least{kInfinity, kInfinity};
+RayNeed::ShadowEdge RayNeed::shadow(const Bound& bound,
+                                    const std::function<double(const SweptBall&)>& clear_of) const {
+    ShadowEdge least{kInfinity, kInfinity};
     if (model_.world.environment)  // lights from anywhere
         return {};
     const glm::dvec3& eye = view_.camera.position;
     for (const Light& light : model_.lights) {
-        if (!shadows(light))
+        if (!casts_shadows(light))
             continue;
         const ShadowReach reach =
             shadow_reach(light, bound, mirrored() ? nullptr : &pyramid_, scene_, eye);
@@ -140,7 +140,7 @@ double RayNeed::image(const Bound& bound, const ShapeOf& shape_of) {
         find_shapes(shape_of);
     const double z = distance(bound, view_.camera.position);
     double least = kInfinity;
-    for (const Mirror& mirror : mirrors_) {
+    for (const PictureMirror& mirror : mirrors_) {
         const double gap = std::max(0.0, distance(bound, mirror.bound));
         const double way = mirror.flat ? std::max(z, mirror.away + gap) : z;
         least = std::min(least, pixel_size(view_, way) / std::sqrt(mirror.share));

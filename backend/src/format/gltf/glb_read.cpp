@@ -48,10 +48,10 @@ Affine transform_of(const tinygltf::Node& node) {
     return out;
 }
 
-class Reader {
+class GlbReader {
 public:
-    Reader(const tinygltf::Model& from, const std::filesystem::path& folder,
-           const std::string& name, Problems& problems, size_t bytes)
+    GlbReader(const tinygltf::Model& from, const std::filesystem::path& folder,
+              const std::string& name, Problems& problems, size_t bytes)
         : from_(from), name_(name), problems_(problems), pictures_(from, folder, name, bytes) {
         // Meshes may share data, and a hostile file would share it a million times.
         budget_.vertices = budget_.triangles = (uint64_t{1} << 24u) + 4 * uint64_t{bytes};
@@ -254,8 +254,8 @@ private:
     const tinygltf::Model& from_;
     const std::string& name_;
     Problems& problems_;
-    PictureReader pictures_;
-    Budget budget_;
+    GltfPictureReader pictures_;
+    GltfReadBudget budget_;
     Model model_;
     std::vector<ObjectIndex> object_of_mesh_;
     std::vector<Placement> placements_;
@@ -267,7 +267,7 @@ Model read_glb(std::string_view bytes, const std::filesystem::path& folder, cons
                Problems& problems) {
     tinygltf::Model from;
     load_gltf(from, bytes, folder, name);
-    return Reader(from, folder, name, problems, bytes.size()).read();
+    return GlbReader(from, folder, name, problems, bytes.size()).read();
 }
 
 }  // namespace lodestone::format

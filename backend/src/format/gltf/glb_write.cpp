@@ -17,9 +17,9 @@ namespace {
 
 constexpr size_t kMostNodes = size_t{1} << 22u;
 
-class Writer {
+class GlbWriter {
 public:
-    explicit Writer(const Model& from) : from_(from), materials_(out_, true) {}
+    explicit GlbWriter(const Model& from) : from_(from), materials_(out_, true) {}
 
     std::string write() {
         bottom_up(from_);  // refuses cycles
@@ -44,13 +44,13 @@ private:
             out_.scenes[0].nodes.push_back(add_node({from_.root, Affine{}, root.name}));
             return;
         }
-        struct Entry {
+        struct PendingGroup {
             ObjectIndex group;
             int node;  // -1: the scene itself
         };
-        std::vector<Entry> stack{{from_.root, -1}};
+        std::vector<PendingGroup> stack{{from_.root, -1}};
         while (!stack.empty()) {
-            const Entry entry = stack.back();
+            const PendingGroup entry = stack.back();
             stack.pop_back();
             const Assembly& assembly = from_.objects[entry.group].representations[0].assembly();
             for (const Placement& placement : assembly.placements) {
@@ -195,7 +195,7 @@ private:
 }  // namespace
 
 std::string write_glb(const Model& model) {
-    return Writer(model).write();
+    return GlbWriter(model).write();
 }
 
 }  // namespace lodestone::format

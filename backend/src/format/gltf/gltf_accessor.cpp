@@ -39,7 +39,7 @@ float normal(T value, bool normalized) {
 
 }  // namespace
 
-Elements::Elements(const tinygltf::Model& model, int accessor, int components) {
+AccessorElements::AccessorElements(const tinygltf::Model& model, int accessor, int components) {
     if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size())
         fail(Status::BadFile, "accessor ", accessor, " of ", model.accessors.size());
     const tinygltf::Accessor& from = model.accessors[static_cast<size_t>(accessor)];
@@ -68,7 +68,7 @@ Elements::Elements(const tinygltf::Model& model, int accessor, int components) {
     normalized_ = from.normalized;
 }
 
-float Elements::number(size_t element, int component) const {
+float AccessorElements::number(size_t element, int component) const {
     const unsigned char* at = first_ + element * stride_;
     const auto skip = static_cast<size_t>(component);
     switch (type_) {
@@ -87,7 +87,7 @@ float Elements::number(size_t element, int component) const {
     }
 }
 
-uint32_t Elements::index(size_t element) const {
+uint32_t AccessorElements::index(size_t element) const {
     const unsigned char* at = first_ + element * stride_;
     switch (type_) {
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:

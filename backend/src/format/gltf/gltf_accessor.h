@@ -16,11 +16,11 @@ class Value;
 namespace lodestone::format {
 
 /// `count` elements of `components` numbers that surely lie inside their buffer.
-class Elements {
+class AccessorElements {
 public:
     /// Throws Error(BadFile) with a sentence on what is wrong with the accessor; sparse ones and
     /// those without data are refused.
-    Elements(const tinygltf::Model& model, int accessor, int components);
+    AccessorElements(const tinygltf::Model& model, int accessor, int components);
 
     size_t count() const { return count_; }
     /// Integers are normalized where the accessor says so.

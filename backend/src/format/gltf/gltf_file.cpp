@@ -51,7 +51,7 @@ std::string_view glb_json(std::string_view bytes, const std::string& name) {
 
 /// Walks through the JSON text once: depth, buffers without a uri (only one can be the chunk), and
 /// the files that are pictures.
-class Scan : public nlohmann::json_sax<nlohmann::json> {
+class GltfScan : public nlohmann::json_sax<nlohmann::json> {
 public:
     std::string complaint;
     std::set<std::string> buffers;   // files
@@ -119,13 +119,13 @@ private:
 };
 
 /// The one folder that may be read, and how much.
-struct Reach {
+struct ReadableFiles {
     std::string folder;              // canonical, or empty
     std::set<std::string> pictures;  // left alone: a hostile file names one a million times
     uint64_t bytes_left = uint64_t{4} << 30u;
 };
 
-std::optional<std::filesystem::path> allowed(const std::string& path, const Reach& reach) {
+std::optional<std::filesystem::path> allowed(const std::string& path, const ReadableFiles& reach) {
     // tinygltf also looks in the current folder ("./name"): that has no such beginning.
     const std::string beginning = reach.folder + '/';
     if (reach.folder.empty() || !path.starts_with(beginning) ||
@@ -135,7 +135,7 @@ std::optional<std::filesystem::path> allowed(const std::string& path, const Reac
 }
 
 bool file_exists(const std::string& path, void* reach) {
-    return allowed(path, *static_cast<Reach*>(reach)).has_value();
+    return allowed(path, *static_cast<ReadableFiles*>(reach)).has_value();
 }
 
 std::string same_path(const std::string& path, void*) {
@@ -144,7 +144,7 @@ std::string same_path(const std::string& path, void*) {
 
 bool read_whole_file(std::vector<unsigned char>* out, std::string* error, const std::string& path,
                      void* user) {
-    auto& reach = *static_cast<Reach*>(user);
+    auto& reach = *static_cast<ReadableFiles*>(user);
     try {
         const auto file = allowed(path, reach);
         if (!file)
@@ -186,10 +186,10 @@ void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesy
     const std::string_view json = binary ? glb_json(bytes, name) : bytes;
     if (json.size() > std::numeric_limits<uint32_t>::max())
         fail(Status::BadFile, "'", name, "' is larger than 4 GiB");
-    Scan scan;
+    GltfScan scan;
     if (!nlohmann::json::sax_parse(json.begin(), json.end(), &scan))
         fail(Status::BadFile, "'", name, "' is not read: ", scan.complaint);
-    Reach reach;
+    ReadableFiles reach;
     for (std::string file : scan.pictures) {
         if (scan.buffers.contains(file))
             continue;

@@ -25,12 +25,12 @@ namespace lodestone::format {
 /// pbrSpecularGlossiness (its diffuse part). A texture that cannot be used, or only as its mean, is
 /// a problem; every other extension is one that names it.
 Material material_seen(const tinygltf::Model& model, const tinygltf::Material& from,
-                       PictureReader& pictures, const std::string& name, Problems& problems);
+                       GltfPictureReader& pictures, const std::string& name, Problems& problems);
 
 /// All of the file, our extras included; then two for parts without any, the second for those with
 /// vertex colors. vertex_colors is set where a primitive of the material has COLOR_0: glTF always
 /// multiplies by them.
-std::vector<Material> read_materials(const tinygltf::Model& model, PictureReader& pictures,
+std::vector<Material> read_materials(const tinygltf::Model& model, GltfPictureReader& pictures,
                                      const std::string& name, Problems& problems);
 
 /// Adds materials, their textures, samplers and pictures.
@@ -49,18 +49,18 @@ public:
 
 private:
     /// A texture as glTF can say it, and what its values are to be multiplied by.
-    struct Layer {
+    struct TextureLayer {
         Texture texture;
         glm::dvec4 factor{1.0};
     };
 
-    Layer base_layer(const Material& material);
-    Layer roughness_layer(const Material& material);
-    Layer emission_layer(const Material& material);
-    Layer normal_layer(const Material& material);
+    TextureLayer base_layer(const Material& material);
+    TextureLayer roughness_layer(const Material& material);
+    TextureLayer emission_layer(const Material& material);
+    TextureLayer normal_layer(const Material& material);
     /// Drawn into a new picture whose values are to be multiplied by `factor`; else `otherwise`.
-    Layer drawn(const Recipe& recipe, ColorSpace space, const Layer& otherwise,
-                const glm::dvec4& factor, bool bright = false);
+    TextureLayer drawn(const Recipe& recipe, ColorSpace space, const TextureLayer& otherwise,
+                       const glm::dvec4& factor, bool bright = false);
     void add_reflection(const Material& material, tinygltf::Material& out);
     bool sayable(const Texture& texture, ColorSpace space) const;
     template <typename Info>
@@ -70,10 +70,10 @@ private:
     bool embed_;
     std::string name_ = "GLB";
     std::filesystem::path no_folder_;
-    PictureWriter pictures_;
-    PictureReader reader_;
+    GltfPictureWriter pictures_;
+    GltfPictureReader reader_;
     TextureWriter textures_;
-    std::map<Hash, std::optional<Baked>> drawn_;  // by what went into it
+    std::map<Hash, std::optional<BakedTexture>> drawn_;  // by what went into it
 };
 
 }  // namespace lodestone::format

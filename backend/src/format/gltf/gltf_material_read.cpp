@@ -28,7 +28,7 @@ glm::dvec4 color_in(const std::vector<double>& numbers, double usual) {
 }
 
 /// A texture of the file, or only the mean of its picture.
-struct Found {
+struct FoundTexture {
     Texture texture;
     glm::dvec4 mean{1.0};
 };
@@ -36,7 +36,7 @@ struct Found {
 class MaterialReader {
 public:
     MaterialReader(const tinygltf::Model& model, const tinygltf::Material& from,
-                   PictureReader& pictures, const std::string& name, Problems& problems)
+                   GltfPictureReader& pictures, const std::string& name, Problems& problems)
         : model_(model), from_(from), pictures_(pictures), name_(name), problems_(problems) {}
 
     Material read() {
@@ -78,13 +78,13 @@ private:
     }
 
     /// Nothing without a texture, or when it cannot be used (a problem then).
-    std::optional<Found> find(const TextureUse& use, ColorSpace space) {
+    std::optional<FoundTexture> find(const TextureUse& use, ColorSpace space) {
         if (use.texture < 0)
             return std::nullopt;
         try {
             const TextureLayout layout = layout_of(model_, use);
             const PicturePtr picture = pictures_.image(layout.image, space);
-            Found found{layout.texture, picture->mean};
+            FoundTexture found{layout.texture, picture->mean};
             if (layout.coordinates != 0) {
                 complain(Severity::Warning, "texture_averaged",
                          text("the texture '", picture->name,
@@ -138,7 +138,7 @@ private:
             return;
         out_.alpha *= found->mean.w;
         out_.alpha_texture = found->texture;
-        out_.alpha_texture.channel = Channel::Alpha;
+        out_.alpha_texture.channel = TextureChannel::Alpha;
         out_.alpha_texture.scale = glm::dvec3(factor.w);
     }
 
@@ -152,7 +152,8 @@ private:
         const auto found = find(use_of(pbr.metallicRoughnessTexture), ColorSpace::Linear);
         if (!found)
             return;
-        const auto take = [&](Channel channel, double mean, Texture& texture, double& value) {
+        const auto take = [&](TextureChannel channel, double mean, Texture& texture,
+                              double& value) {
             if (value != 0) {
                 texture = found->texture;
                 texture.channel = channel;
@@ -160,8 +161,8 @@ private:
             }
             value *= mean;
         };
-        take(Channel::Green, found->mean.y, out_.roughness_texture, out_.roughness);
-        take(Channel::Blue, found->mean.z, out_.metallic_texture, out_.metallic);
+        take(TextureChannel::Green, found->mean.y, out_.roughness_texture, out_.roughness);
+        take(TextureChannel::Blue, found->mean.z, out_.metallic_texture, out_.metallic);
     }
 
     /// An older extension, still common: its diffuse part on a rough dielectric.
@@ -275,7 +276,7 @@ private:
 
     const tinygltf::Model& model_;
     const tinygltf::Material& from_;
-    PictureReader& pictures_;
+    GltfPictureReader& pictures_;
     const std::string& name_;
     Problems& problems_;
     Material out_;
@@ -284,11 +285,11 @@ private:
 }  // namespace
 
 Material material_seen(const tinygltf::Model& model, const tinygltf::Material& from,
-                       PictureReader& pictures, const std::string& name, Problems& problems) {
+                       GltfPictureReader& pictures, const std::string& name, Problems& problems) {
     return MaterialReader(model, from, pictures, name, problems).read();
 }
 
-std::vector<Material> read_materials(const tinygltf::Model& model, PictureReader& pictures,
+std::vector<Material> read_materials(const tinygltf::Model& model, GltfPictureReader& pictures,
                                      const std::string& name, Problems& problems) {
     std::vector<Material> materials;
     materials.reserve(model.materials.size() + 2);
@@ -296,7 +297,7 @@ std::vector<Material> read_materials(const tinygltf::Model& model, PictureReader
         materials.push_back(material_seen(model, from, pictures, name, problems));
         const Value& ours = member(from.extras, "lodestone");
         if (ours.Has("of"))
-            add_own_words(ours, pictures, materials.back());
+            apply_material_extras(ours, pictures, materials.back());
     }
     std::set<size_t> unlit;
     for (const tinygltf::Mesh& mesh : model.meshes) {

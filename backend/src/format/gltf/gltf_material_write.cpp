@@ -58,23 +58,23 @@ MaterialWriter::MaterialWriter(tinygltf::Model& model, bool embed)
 
 bool MaterialWriter::sayable(const Texture& texture, ColorSpace space) const {
     return texture.picture->space == space && texture.picture->format != PictureFormat::Exr &&
-           texture.extension != Extension::Clip && texture.offset == glm::dvec3(0.0) &&
+           texture.extension != TextureExtension::Clip && texture.offset == glm::dvec3(0.0) &&
            (!embed_ || !texture.picture->bytes.empty()) &&
            transform_of(texture.to_picture).has_value();
 }
 
-MaterialWriter::Layer MaterialWriter::base_layer(const Material& material) {
+MaterialWriter::TextureLayer MaterialWriter::base_layer(const Material& material) {
     const bool opaque = material.alpha_mode == AlphaMode::Opaque;
     const Texture& color = material.base_color_texture;
     const Texture& alpha = opaque ? Texture{} : material.alpha_texture;
-    Layer out;
+    TextureLayer out;
     out.factor = {limited(material.base_color, 0, 1), limited(material.alpha, 0, 1)};
     if (!color && !alpha)
         return out;
-    bool direct = color && color.channel == Channel::Color && within_one(color.scale) &&
+    bool direct = color && color.channel == TextureChannel::Color && within_one(color.scale) &&
                   sayable(color, ColorSpace::Srgb);
     if (direct && alpha)
-        direct = alpha.channel == Channel::Alpha && within_one(alpha.scale) &&
+        direct = alpha.channel == TextureChannel::Alpha && within_one(alpha.scale) &&
                  alpha.offset.x == 0 && same_layout(color, alpha) && same_bytes(color, alpha);
     else if (direct)
         direct = opaque || color.picture->mean.w == 1;
@@ -93,19 +93,20 @@ MaterialWriter::Layer MaterialWriter::base_layer(const Material& material) {
                  {color ? glm::dvec3(1.0) : glm::dvec3(out.factor), covered ? 1 : out.factor.w});
 }
 
-MaterialWriter::Layer MaterialWriter::roughness_layer(const Material& material) {
+MaterialWriter::TextureLayer MaterialWriter::roughness_layer(const Material& material) {
     const Texture& rough = material.roughness_texture;
     const Texture& metal = material.metallic_texture;
-    Layer out;
+    TextureLayer out;
     out.factor = {1, limited(material.roughness, 0, 1), limited(material.metallic, 0, 1), 1};
     if (!rough && !metal)
         return out;
-    const auto direct = [&](const Texture& texture, Channel channel, double constant) {
+    const auto direct = [&](const Texture& texture, TextureChannel channel, double constant) {
         return texture ? texture.channel == channel && within_one(texture.scale) &&
                              sayable(texture, ColorSpace::Linear)
                        : constant == 0;
     };
-    if (direct(rough, Channel::Green, out.factor.y) && direct(metal, Channel::Blue, out.factor.z) &&
+    if (direct(rough, TextureChannel::Green, out.factor.y) &&
+        direct(metal, TextureChannel::Blue, out.factor.z) &&
         (!rough || !metal || (same_layout(rough, metal) && same_bytes(rough, metal)))) {
         out.texture = rough ? rough : metal;
         out.factor = {1, rough ? rough.scale.x : 0, metal ? metal.scale.x : 0, 1};
@@ -121,13 +122,13 @@ MaterialWriter::Layer MaterialWriter::roughness_layer(const Material& material) 
                  {1, rough ? 1 : out.factor.y, recipe[2].texture ? 1 : out.factor.z, 1});
 }
 
-MaterialWriter::Layer MaterialWriter::emission_layer(const Material& material) {
+MaterialWriter::TextureLayer MaterialWriter::emission_layer(const Material& material) {
     const Texture& glow = material.emission_texture;
-    Layer out;
+    TextureLayer out;
     out.factor = {limited(material.emission, 0, kBrightest), 1};
     if (!glow)
         return out;
-    if (glow.channel == Channel::Color && glow.scale == limited(glow.scale, 0, kBrightest) &&
+    if (glow.channel == TextureChannel::Color && glow.scale == limited(glow.scale, 0, kBrightest) &&
         sayable(glow, ColorSpace::Srgb)) {
         out.texture = glow;
         out.factor = {glow.scale, 1};
@@ -136,12 +137,12 @@ MaterialWriter::Layer MaterialWriter::emission_layer(const Material& material) {
     return drawn(color_recipe(glow), ColorSpace::Srgb, out, glm::dvec4(1.0), true);
 }
 
-MaterialWriter::Layer MaterialWriter::normal_layer(const Material& material) {
+MaterialWriter::TextureLayer MaterialWriter::normal_layer(const Material& material) {
     const Texture& normal = material.normal_texture;
-    Layer out;
+    TextureLayer out;
     if (!normal)
         return out;
-    if (normal.channel == Channel::Color && normal.scale == glm::dvec3(1.0) &&
+    if (normal.channel == TextureChannel::Color && normal.scale == glm::dvec3(1.0) &&
         sayable(normal, ColorSpace::Linear)) {
         out.texture = normal;
         return out;
@@ -149,14 +150,14 @@ MaterialWriter::Layer MaterialWriter::normal_layer(const Material& material) {
     return drawn(color_recipe(normal), ColorSpace::Linear, out, glm::dvec4(1.0));
 }
 
-MaterialWriter::Layer MaterialWriter::drawn(const Recipe& recipe, ColorSpace space,
-                                            const Layer& otherwise, const glm::dvec4& factor,
-                                            bool bright) {
+MaterialWriter::TextureLayer MaterialWriter::drawn(const Recipe& recipe, ColorSpace space,
+                                                   const TextureLayer& otherwise,
+                                                   const glm::dvec4& factor, bool bright) {
     if (!embed_)
         return otherwise;
     const auto [known, fresh] = drawn_.try_emplace(hash_of(recipe, space));
     if (fresh) {
-        known->second = bake(recipe, space, bright);
+        known->second = bake_recipe(recipe, space, bright);
         if (known->second && !transform_of(known->second->texture.to_picture))
             known->second.reset();
     }
@@ -171,7 +172,7 @@ void MaterialWriter::lay(const Texture& texture, Info& info) {
     if (!texture)
         return;
     const int image = pictures_.image(*texture.picture);
-    reader_.know(image, texture.picture);
+    reader_.remember_picture(image, texture.picture);
     info.index = textures_.texture(image, texture);
     if (auto transform = textures_.transform(texture))
         info.extensions[kTextureTransform] = std::move(*transform);
@@ -192,13 +193,13 @@ int MaterialWriter::add(const Material& material, bool uvs) {
     if (material.alpha_mode == AlphaMode::Clip)
         out.alphaCutoff = plain(limited(material.alpha_cutoff, 0, kBrightest), 0.5);
     tinygltf::PbrMetallicRoughness& pbr = out.pbrMetallicRoughness;
-    const Layer base = base_layer(shown);
+    const TextureLayer base = base_layer(shown);
     lay(base.texture, pbr.baseColorTexture);
-    const Layer rough = roughness_layer(shown);
+    const TextureLayer rough = roughness_layer(shown);
     lay(rough.texture, pbr.metallicRoughnessTexture);
-    const Layer glow = emission_layer(shown);
+    const TextureLayer glow = emission_layer(shown);
     lay(glow.texture, out.emissiveTexture);
-    const Layer normal = normal_layer(shown);
+    const TextureLayer normal = normal_layer(shown);
     lay(normal.texture, out.normalTexture);
     const glm::dvec3 emission(glow.factor);
     const double strength = strength_of(emission);
@@ -219,7 +220,7 @@ int MaterialWriter::add(const Material& material, bool uvs) {
     if (embed_) {
         Problems unheard;
         const Material seen = material_seen(model_, out, reader_, name_, unheard);
-        out.extras = own_words(material, seen, pictures_);
+        out.extras = extras_of_material(material, seen, pictures_);
     }
     model_.materials.push_back(std::move(out));
     return static_cast<int>(model_.materials.size() - 1);

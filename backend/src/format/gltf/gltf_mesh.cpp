@@ -80,13 +80,13 @@ Attributes add_attributes(tinygltf::Model& model, const Mesh& mesh) {
 }
 
 /// Slots in order of first use, each with its triangles.
-struct Group {
+struct SlotTriangles {
     uint16_t slot = 0;
     std::vector<Triangle> triangles;
 };
 
-std::vector<Group> groups_of(const Mesh& mesh) {
-    std::vector<Group> groups;
+std::vector<SlotTriangles> groups_of(const Mesh& mesh) {
+    std::vector<SlotTriangles> groups;
     std::map<uint16_t, size_t> group_of;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto found = group_of.emplace(mesh.slot(i), groups.size());
@@ -130,7 +130,7 @@ int add_slots(tinygltf::Model& model, const std::vector<uint16_t>& slots) {
     return static_cast<int>(model.accessors.size() - 1);
 }
 
-std::vector<glm::vec3> read_vectors(const Elements& from) {
+std::vector<glm::vec3> read_vectors(const AccessorElements& from) {
     std::vector<glm::vec3> out(from.count());
     for (size_t i = 0; i < out.size(); ++i)
         out[i] = to_z_up({from.number(i, 0), from.number(i, 1), from.number(i, 2)});
@@ -146,19 +146,19 @@ Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes)
     Mesh mesh;
     if (accessor("POSITION") < 0)
         fail(Status::BadFile, "there are no positions");
-    mesh.positions = read_vectors(Elements(model, accessor("POSITION"), 3));
+    mesh.positions = read_vectors(AccessorElements(model, accessor("POSITION"), 3));
     const size_t count = mesh.positions.size();
     const auto check_count = [count](size_t found, const char* what) {
         if (found != count)
             fail(Status::BadFile, found, ' ', what, " for ", count, " positions");
     };
     if (accessor("NORMAL") >= 0) {
-        const Elements normals(model, accessor("NORMAL"), 3);
+        const AccessorElements normals(model, accessor("NORMAL"), 3);
         check_count(normals.count(), "normals");
         mesh.normals = read_vectors(normals);
     }
     if (accessor("TEXCOORD_0") >= 0) {
-        const Elements uvs(model, accessor("TEXCOORD_0"), 2);
+        const AccessorElements uvs(model, accessor("TEXCOORD_0"), 2);
         check_count(uvs.count(), "texture coordinates");
         mesh.uvs.resize(count);
         for (size_t i = 0; i < count; ++i)
@@ -167,7 +167,7 @@ Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes)
     const int color = accessor(kColors) >= 0 ? accessor(kColors) : accessor(kUnusedColors);
     if (color >= 0) {
         const bool alpha = components_of(model, color) == 4;
-        const Elements colors(model, color, alpha ? 4 : 3);
+        const AccessorElements colors(model, color, alpha ? 4 : 3);
         check_count(colors.count(), "colors");
         mesh.colors.resize(count);
         for (size_t i = 0; i < count; ++i)
@@ -175,7 +175,7 @@ Mesh read_attributes(const tinygltf::Model& model, const Attributes& attributes)
                               alpha ? colors.number(i, 3) : 1.0f};
     }
     if (accessor("_LODESTONE_V") >= 0 && !mesh.uvs.empty()) {
-        const Elements true_v(model, accessor("_LODESTONE_V"), 1);
+        const AccessorElements true_v(model, accessor("_LODESTONE_V"), 1);
         check_count(true_v.count(), "values of _LODESTONE_V");
         for (size_t i = 0; i < count; ++i) {
             // Believed only where it is what the flipped value came from.
@@ -196,7 +196,7 @@ std::vector<uint32_t> read_indices(const tinygltf::Model& model, const tinygltf:
             indices[i] = static_cast<uint32_t>(i);
         return indices;
     }
-    const Elements elements(model, from.indices, 1);
+    const AccessorElements elements(model, from.indices, 1);
     indices.resize(elements.count());
     for (size_t i = 0; i < indices.size(); ++i) {
         indices[i] = elements.index(i);
@@ -225,10 +225,11 @@ std::vector<Triangle> triangles_of(const std::vector<uint32_t>& indices, int mod
 }
 
 /// Puts the triangles of the groups back into the order of `slots`.
-bool reorder(const std::vector<Group>& groups, const std::vector<uint16_t>& slots, Mesh& mesh) {
-    std::map<uint16_t, std::pair<const Group*, size_t>> next;
+bool reorder(const std::vector<SlotTriangles>& groups, const std::vector<uint16_t>& slots,
+             Mesh& mesh) {
+    std::map<uint16_t, std::pair<const SlotTriangles*, size_t>> next;
     size_t total = 0;
-    for (const Group& group : groups) {
+    for (const SlotTriangles& group : groups) {
         next[group.slot] = {&group, 0};
         total += group.triangles.size();
     }
@@ -262,7 +263,7 @@ std::optional<ReadMesh> try_own(const tinygltf::Model& model, const tinygltf::Me
     Mesh mesh = read_attributes(model, from.primitives[0].attributes);
     if (from.primitives.size() == 1 && from.primitives[0].mode == TINYGLTF_MODE_POINTS)
         return ReadMesh{std::move(mesh), {from.primitives[0].material}};
-    std::vector<Group> groups;
+    std::vector<SlotTriangles> groups;
     for (size_t i = 0; i < from.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = from.primitives[i];
         if (primitive.mode != TINYGLTF_MODE_TRIANGLES || primitive.indices < 0 ||
@@ -294,11 +295,11 @@ std::optional<ReadMesh> try_own(const tinygltf::Model& model, const tinygltf::Me
     if (mark.Has("order")) {
         if (!mark.Get("order").IsInt())
             return std::nullopt;
-        const Elements elements(model, mark.Get("order").GetNumberAsInt(), 1);
+        const AccessorElements elements(model, mark.Get("order").GetNumberAsInt(), 1);
         for (size_t i = 0; i < elements.count(); ++i)
             order.push_back(static_cast<uint16_t>(elements.index(i)));
     } else {
-        for (const Group& group : groups)
+        for (const SlotTriangles& group : groups)
             order.insert(order.end(), group.triangles.size(), group.slot);
     }
     if (!reorder(groups, order, mesh))
@@ -335,7 +336,7 @@ int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMater
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     tinygltf::Value::Array slots;
     std::vector<uint16_t> sorted;
-    for (const Group& group : groups_of(mesh)) {
+    for (const SlotTriangles& group : groups_of(mesh)) {
         primitive.indices = add_indices(model, group.triangles, mesh.positions.size());
         use(group.slot < materials.size() ? materials[group.slot] : SlotMaterial{});
         slots.emplace_back(static_cast<int>(group.slot));
@@ -364,7 +365,7 @@ std::optional<ReadMesh> own_mesh(const tinygltf::Model& model, const tinygltf::M
 }
 
 ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
-                      const std::string& name, Budget& budget, Problems& problems) {
+                      const std::string& name, GltfReadBudget& budget, Problems& problems) {
     ReadMesh out;
     std::map<int, uint16_t> slot_of;
     std::vector<Mesh> parts;
@@ -386,7 +387,7 @@ ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
             auto part = part_of.find(used);
             if (part == part_of.end()) {
                 if (used.contains("POSITION")) {
-                    const size_t count = Elements(model, used["POSITION"], 3).count();
+                    const size_t count = AccessorElements(model, used["POSITION"], 3).count();
                     if (count > budget.vertices)
                         fail(Status::BadFile, "the file shows the same data too often");
                     budget.vertices -= count;
@@ -397,7 +398,7 @@ ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
             Mesh& mesh = parts[part->second];
             const size_t corners = primitive.indices < 0
                                        ? mesh.positions.size()
-                                       : Elements(model, primitive.indices, 1).count();
+                                       : AccessorElements(model, primitive.indices, 1).count();
             if (corners > budget.triangles)
                 fail(Status::BadFile, "the file shows the same data too often");
             budget.triangles -= corners;

@@ -43,7 +43,7 @@ struct ReadMesh {
 std::optional<ReadMesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from);
 
 /// What can still be read of a file: vertices and triangles.
-struct Budget {
+struct GltfReadBudget {
     uint64_t vertices = 0;
     uint64_t triangles = 0;
 };
@@ -51,6 +51,6 @@ struct Budget {
 /// Any mesh: lists, strips and fans of triangles. Primitives that are broken or no triangles are
 /// left out with a problem of `name`.
 ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
-                      const std::string& name, Budget& budget, Problems& problems);
+                      const std::string& name, GltfReadBudget& budget, Problems& problems);
 
 }  // namespace lodestone::format

@@ -86,13 +86,13 @@ bool sayable(const Texture& texture) {
            finite(numbers_of(texture.scale)) && finite(numbers_of(texture.offset));
 }
 
-Value words_of(const Texture& texture, PictureWriter& pictures) {
+Value words_of(const Texture& texture, GltfPictureWriter& pictures) {
     const Picture& picture = *texture.picture;
     Value::Object out{{"hash", Value(hex16(picture.hash))},
                       {"linear", Value(picture.space == ColorSpace::Linear)},
                       {"channel", Value(static_cast<int>(texture.channel))},
                       {"extension", Value(static_cast<int>(texture.extension))},
-                      {"closest", Value(texture.interpolation == Interpolation::Closest)},
+                      {"closest", Value(texture.interpolation == TextureInterpolation::Closest)},
                       {"to_picture", list_of(texture.to_picture)},
                       {"scale", list_of(numbers_of(texture.scale))},
                       {"offset", list_of(numbers_of(texture.offset))}};
@@ -106,8 +106,8 @@ Value words_of(const Texture& texture, PictureWriter& pictures) {
 }
 
 /// Of everything where the two differ.
-Value::Object difference(const Material& material, const Material& seen, PictureWriter& pictures,
-                         int depth) {
+Value::Object difference(const Material& material, const Material& seen,
+                         GltfPictureWriter& pictures, int depth) {
     Value::Object out;
     for (const NumberWord& word : kNumbers) {
         const double number = material.*word.field;
@@ -178,7 +178,7 @@ std::string string_of(const Value& value) {
     return value.IsString() ? value.Get<std::string>() : std::string();
 }
 
-Texture texture_of(const Value& words, const char* key, PictureReader& pictures) {
+Texture texture_of(const Value& words, const char* key, GltfPictureReader& pictures) {
     Texture out;
     if (words.IsBool())
         return out;
@@ -192,17 +192,17 @@ Texture texture_of(const Value& words, const char* key, PictureReader& pictures)
                                     : pictures.image(index(member(words, "image")), space);
     if (hex16(out.picture->hash) != string_of(member(words, "hash")))
         refuse(key);
-    out.channel = choice(member(words, "channel"), key, Channel::Luma);
-    out.extension = choice(member(words, "extension"), key, Extension::Mirror);
-    out.interpolation =
-        truth(member(words, "closest"), key) ? Interpolation::Closest : Interpolation::Linear;
+    out.channel = choice(member(words, "channel"), key, TextureChannel::Luma);
+    out.extension = choice(member(words, "extension"), key, TextureExtension::Mirror);
+    out.interpolation = truth(member(words, "closest"), key) ? TextureInterpolation::Closest
+                                                             : TextureInterpolation::Linear;
     read_list(member(words, "to_picture"), key, -kAny, std::span<double, 6>(out.to_picture));
     read_list(member(words, "scale"), key, -kAny, std::span<double, 3>(&out.scale.x, 3));
     read_list(member(words, "offset"), key, -kAny, std::span<double, 3>(&out.offset.x, 3));
     return out;
 }
 
-void add(const Value& words, PictureReader& pictures, Material& material, int depth) {
+void add(const Value& words, GltfPictureReader& pictures, Material& material, int depth) {
     for (const NumberWord& word : kNumbers) {
         if (words.Has(word.key))
             material.*word.field = number_in(words.Get(word.key), word.key, word.low, word.high);
@@ -231,7 +231,8 @@ void add(const Value& words, PictureReader& pictures, Material& material, int de
 
 }  // namespace
 
-Value own_words(const Material& material, const Material& seen, PictureWriter& pictures) {
+Value extras_of_material(const Material& material, const Material& seen,
+                         GltfPictureWriter& pictures) {
     Value::Object words = difference(material, seen, pictures, 0);
     if (words.empty())
         return {};
@@ -239,7 +240,7 @@ Value own_words(const Material& material, const Material& seen, PictureWriter& p
     return Value(Value::Object{{"lodestone", Value(std::move(words))}});
 }
 
-bool add_own_words(const Value& words, PictureReader& pictures, Material& seen) {
+bool apply_material_extras(const Value& words, GltfPictureReader& pictures, Material& seen) {
     if (string_of(member(words, "of")) != hex16(hash_of(seen)))
         return false;
     try {

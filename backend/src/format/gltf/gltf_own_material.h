@@ -15,15 +15,17 @@ class Value;
 
 namespace lodestone::format {
 
-class PictureReader;
-class PictureWriter;
+class GltfPictureReader;
+class GltfPictureWriter;
 
 /// What is to be added to `seen` to have `material`; null when nothing is. Pictures that are needed
 /// are added to the file; textures whose picture is not resident, numbers that are not finite and
 /// mixtures of more than 32 are left out.
-tinygltf::Value own_words(const Material& material, const Material& seen, PictureWriter& pictures);
+tinygltf::Value extras_of_material(const Material& material, const Material& seen,
+                                   GltfPictureWriter& pictures);
 
 /// Adds them to what was seen; false, and nothing done, when they make no sense or are of another.
-bool add_own_words(const tinygltf::Value& words, PictureReader& pictures, Material& seen);
+bool apply_material_extras(const tinygltf::Value& words, GltfPictureReader& pictures,
+                           Material& seen);
 
 }  // namespace lodestone::format

@@ -13,14 +13,15 @@
 
 namespace lodestone::format {
 
-PictureReader::PictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
-                             const std::string& name, size_t bytes)
+GltfPictureReader::GltfPictureReader(const tinygltf::Model& model,
+                                     const std::filesystem::path& folder, const std::string& name,
+                                     size_t bytes)
     : model_(model),
       folder_(folder),
       name_(name),
       bytes_left_((uint64_t{1} << 24u) + 4 * uint64_t{bytes}) {}
 
-PicturePtr PictureReader::image(int index, ColorSpace space) {
+PicturePtr GltfPictureReader::image(int index, ColorSpace space) {
     if (index < 0 || static_cast<size_t>(index) >= model_.images.size())
         fail(Status::BadFile, "picture ", index, " of ", model_.images.size());
     const Key key{index, space};
@@ -36,7 +37,7 @@ PicturePtr PictureReader::image(int index, ColorSpace space) {
     }
 }
 
-PicturePtr PictureReader::read(int index, ColorSpace space) {
+PicturePtr GltfPictureReader::read(int index, ColorSpace space) {
     const tinygltf::Image& from = model_.images[static_cast<size_t>(index)];
     std::string label = from.name.empty() ? from.uri : from.name;
     if (label.empty() || label.starts_with("data:"))
@@ -49,7 +50,7 @@ PicturePtr PictureReader::read(int index, ColorSpace space) {
     return made({from.image.begin(), from.image.end()}, space, label);
 }
 
-PicturePtr PictureReader::view(int view, ColorSpace space, const std::string& label) {
+PicturePtr GltfPictureReader::view(int view, ColorSpace space, const std::string& label) {
     const Key key{-1 - view, space};
     if (const auto found = known_.find(key); found != known_.end())
         return found->second;
@@ -58,7 +59,8 @@ PicturePtr PictureReader::view(int view, ColorSpace space, const std::string& la
     return known_[key] = made(std::move(bytes), space, label);
 }
 
-PicturePtr PictureReader::file(const std::string& uri, ColorSpace space, const std::string& label) {
+PicturePtr GltfPictureReader::file(const std::string& uri, ColorSpace space,
+                                   const std::string& label) {
     const auto path = folder_.empty() ? std::nullopt : sibling(folder_, percent_decoded(uri));
     if (!path)
         fail(Status::Io, "'", uri.substr(0, 200), "' is not inside the folder of the model");
@@ -68,22 +70,22 @@ PicturePtr PictureReader::file(const std::string& uri, ColorSpace space, const s
     return found;
 }
 
-void PictureReader::spend(size_t bytes, const std::string& label) {
+void GltfPictureReader::spend(size_t bytes, const std::string& label) {
     if (bytes > bytes_left_)
         fail(Status::BadFile, "'", label, "': the file shows the same data too often");
     bytes_left_ -= bytes;
 }
 
-PicturePtr PictureReader::made(std::string bytes, ColorSpace space, const std::string& label) {
+PicturePtr GltfPictureReader::made(std::string bytes, ColorSpace space, const std::string& label) {
     PicturePtr picture = image::make_picture(std::move(bytes), space, label);
     return by_hash_.emplace(picture->hash, picture).first->second;
 }
 
-void PictureReader::know(int index, const PicturePtr& picture) {
+void GltfPictureReader::remember_picture(int index, const PicturePtr& picture) {
     known_.insert_or_assign({index, picture->space}, picture);
 }
 
-int PictureWriter::image(const Picture& picture) {
+int GltfPictureWriter::image(const Picture& picture) {
     const auto [known, fresh] = images_.try_emplace(picture.hash, 0);
     if (!fresh)
         return known->second;
@@ -105,7 +107,7 @@ int PictureWriter::image(const Picture& picture) {
     return next;
 }
 
-int PictureWriter::view(const Picture& picture) {
+int GltfPictureWriter::view(const Picture& picture) {
     const auto [known, fresh] = views_.try_emplace(picture.hash, 0);
     if (fresh) {
         const auto [content, first] =

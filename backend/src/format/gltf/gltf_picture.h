@@ -17,13 +17,13 @@ class Model;
 namespace lodestone::format {
 
 /// Reads each picture once for each color space, and only those asked for.
-class PictureReader {
+class GltfPictureReader {
 public:
     /// Files are read from below `folder` only (empty: none). `name` and `bytes` are the model
     /// file's; pictures in it may have 4 times that and 16 MiB in all. All arguments must outlive
     /// this.
-    PictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
-                  const std::string& name, size_t bytes);
+    GltfPictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
+                      const std::string& name, size_t bytes);
 
     /// Throws Error(BadFile or Io) with a sentence that names the picture; a broken one is looked
     /// at only once.
@@ -31,7 +31,7 @@ public:
     /// Of a buffer view that no image of the file names.
     PicturePtr view(int view, ColorSpace space, const std::string& label);
     /// Says what image `index` is.
-    void know(int index, const PicturePtr& picture);
+    void remember_picture(int index, const PicturePtr& picture);
 
 private:
     using Key = std::pair<int, ColorSpace>;  // views count down from -1
@@ -52,10 +52,10 @@ private:
 };
 
 /// Adds each picture once.
-class PictureWriter {
+class GltfPictureWriter {
 public:
     /// `embed`: into buffer views; else images name the store's files ("../i/<16 hex>.png").
-    PictureWriter(tinygltf::Model& model, bool embed) : model_(model), embed_(embed) {}
+    GltfPictureWriter(tinygltf::Model& model, bool embed) : model_(model), embed_(embed) {}
 
     /// Index of the image. The picture must be resident when it is embedded.
     int image(const Picture& picture);

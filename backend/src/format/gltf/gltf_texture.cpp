@@ -13,25 +13,25 @@
 namespace lodestone::format {
 namespace {
 
-Extension extension_of(int wrap) {
+TextureExtension extension_of(int wrap) {
     switch (wrap) {
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
-            return Extension::Extend;
+            return TextureExtension::Extend;
         case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
-            return Extension::Mirror;
+            return TextureExtension::Mirror;
         default:
-            return Extension::Repeat;
+            return TextureExtension::Repeat;
     }
 }
 
-int wrap_of(Extension extension) {
+int wrap_of(TextureExtension extension) {
     switch (extension) {
-        case Extension::Mirror:
+        case TextureExtension::Mirror:
             return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
-        case Extension::Extend:
-        case Extension::Clip:
+        case TextureExtension::Extend:
+        case TextureExtension::Clip:
             return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-        case Extension::Repeat:
+        case TextureExtension::Repeat:
             break;
     }
     return TINYGLTF_TEXTURE_WRAP_REPEAT;
@@ -64,7 +64,7 @@ TextureLayout layout_of(const tinygltf::Model& model, const TextureUse& use) {
         out.texture.extension = extension_of(sampler.wrapS);
         out.one_wrap = extension_of(sampler.wrapT) == out.texture.extension;
         if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST)
-            out.texture.interpolation = Interpolation::Closest;
+            out.texture.interpolation = TextureInterpolation::Closest;
     }
     if (use.extensions == nullptr)
         return out;
@@ -130,7 +130,7 @@ int TextureWriter::texture(int image, const Texture& texture) {
     if (new_sampler) {
         tinygltf::Sampler out;
         out.wrapS = out.wrapT = wrap_of(texture.extension);
-        const bool closest = texture.interpolation == Interpolation::Closest;
+        const bool closest = texture.interpolation == TextureInterpolation::Closest;
         out.magFilter = closest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
         out.minFilter = closest ? TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR
                                 : TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;

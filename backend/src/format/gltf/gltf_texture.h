@@ -60,7 +60,7 @@ public:
 
 private:
     tinygltf::Model& model_;
-    std::map<std::pair<Extension, Interpolation>, int> samplers_;
+    std::map<std::pair<TextureExtension, TextureInterpolation>, int> samplers_;
     std::map<std::pair<int, int>, int> textures_;  // image and sampler
 };
 

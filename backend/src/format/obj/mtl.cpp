@@ -32,7 +32,7 @@ bool looks_like_normals(const Picture& picture) {
 }
 
 /// One material while its lines come.
-struct Draft {
+struct MaterialDraft {
     Material material;
     std::optional<double> dissolve;
     std::optional<double> transparency;
@@ -46,10 +46,10 @@ public:
         : pictures_(folder), name_(name), problems_(problems) {}
 
     std::vector<Material> read(std::string_view bytes) {
-        Lines lines(bytes);
+        LineReader lines(bytes);
         std::string_view line;
         std::vector<Material> out;
-        std::optional<Draft> draft;
+        std::optional<MaterialDraft> draft;
         while (lines.next(line)) {
             const std::string_view word = next_word(line);
             if (word == "newmtl") {
@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    static bool read_number(std::string_view word, std::string_view line, Draft& draft) {
+    static bool read_number(std::string_view word, std::string_view line, MaterialDraft& draft) {
         Material& m = draft.material;
         const auto share = [&line](double& value) {
             read_values(line, &value, 1);
@@ -126,19 +126,19 @@ private:
     }
 
     void read_map(std::string_view word, std::string_view line, Material& m) {
-        struct Map {
+        struct MapKeyword {
             std::string_view word;
             Texture Material::*texture;
             ColorSpace space;
         };
-        static constexpr Map kMaps[] = {
+        static constexpr MapKeyword kMaps[] = {
             {"map_Kd", &Material::base_color_texture, ColorSpace::Srgb},
             {"map_Ke", &Material::emission_texture, ColorSpace::Srgb},
             {"map_d", &Material::alpha_texture, ColorSpace::Linear},
             {"map_Pr", &Material::roughness_texture, ColorSpace::Linear},
             {"map_Pm", &Material::metallic_texture, ColorSpace::Linear},
         };
-        for (const Map& map : kMaps) {
+        for (const MapKeyword& map : kMaps) {
             if (word != map.word)
                 continue;
             const auto found = map_of(line, map.space, m);
@@ -148,7 +148,7 @@ private:
             const bool cut_out =
                 map.texture == &Material::alpha_texture && found->texture.picture->mean.w < 1;
             if (!found->channel && map.space == ColorSpace::Linear)
-                (m.*map.texture).channel = cut_out ? Channel::Alpha : Channel::Luma;
+                (m.*map.texture).channel = cut_out ? TextureChannel::Alpha : TextureChannel::Luma;
             return;
         }
         if (word == "norm" || word == "map_norm") {
@@ -172,7 +172,7 @@ private:
         }
         m.bump_texture = found->texture;
         if (!found->channel)
-            m.bump_texture.channel = Channel::Luma;
+            m.bump_texture.channel = TextureChannel::Luma;
         m.bump_distance = found->bump * kBumpMetres;
         problems_.push_back(
             {name_, Severity::Info, "bump_height_guessed",
@@ -180,7 +180,7 @@ private:
                   1000 * std::abs(m.bump_distance), " mm high; MTL gives them no unit")});
     }
 
-    static Material finished(Draft draft) {
+    static Material finished(MaterialDraft draft) {
         Material& m = draft.material;
         const double dissolve =
             draft.dissolve ? *draft.dissolve : 1 - draft.transparency.value_or(0.0);

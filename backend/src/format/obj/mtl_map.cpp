@@ -34,10 +34,11 @@ double take_number(std::string_view& words, double usual) {
     return next_float(word, value) && std::isfinite(value) ? static_cast<double>(value) : usual;
 }
 
-Channel channel_of(std::string_view word, Channel usual) {
+TextureChannel channel_of(std::string_view word, TextureChannel usual) {
     constexpr std::string_view kLetters = "rgbml";
-    constexpr std::array<Channel, 5> kChannels{Channel::Red, Channel::Green, Channel::Blue,
-                                               Channel::Alpha, Channel::Luma};
+    constexpr std::array<TextureChannel, 5> kChannels{TextureChannel::Red, TextureChannel::Green,
+                                                      TextureChannel::Blue, TextureChannel::Alpha,
+                                                      TextureChannel::Luma};
     const size_t at = word.size() == 1 ? kLetters.find(word[0]) : std::string_view::npos;
     return at == std::string_view::npos ? usual : kChannels[at];
 }
@@ -71,7 +72,7 @@ MapLine map_line(std::string_view words) {
             out.bump = take_number(rest, 1);
         } else if (option == "-clamp") {
             if (next_word(rest) == "on")
-                out.texture.extension = Extension::Extend;
+                out.texture.extension = TextureExtension::Extend;
         } else if (option == "-imfchan") {
             out.texture.channel = channel_of(next_word(rest), out.texture.channel);
             out.channel = true;
@@ -88,8 +89,8 @@ MapLine map_line(std::string_view words) {
 
 std::optional<std::string> map_options(const Texture& texture) {
     const std::array<double, 6>& m = texture.to_picture;
-    if (m[1] != 0 || m[3] != 0 || texture.extension == Extension::Clip ||
-        texture.extension == Extension::Mirror ||
+    if (m[1] != 0 || m[3] != 0 || texture.extension == TextureExtension::Clip ||
+        texture.extension == TextureExtension::Mirror ||
         !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); }))
         return std::nullopt;
     std::string out;
@@ -102,7 +103,7 @@ std::optional<std::string> map_options(const Texture& texture) {
         put(" -s", m[0], m[4], 1);
     if (m[2] != 0 || m[5] != 0)
         put(" -o", m[2], m[5], 0);
-    if (texture.extension == Extension::Extend)
+    if (texture.extension == TextureExtension::Extend)
         out += " -clamp on";
     return out;
 }

@@ -38,9 +38,11 @@ private:
     }
 
     void add(const Material& m) {
-        const Baked base = drawn(m.base_color_texture, ColorSpace::Srgb, Channel::Color, false);
+        const BakedTexture base =
+            drawn(m.base_color_texture, ColorSpace::Srgb, TextureChannel::Color, false);
         color("Kd", base.texture ? glm::dvec3(1.0) : m.base_color);
-        const Baked glow = drawn(m.emission_texture, ColorSpace::Srgb, Channel::Color, true);
+        const BakedTexture glow =
+            drawn(m.emission_texture, ColorSpace::Srgb, TextureChannel::Color, true);
         color("Ke", glow.texture ? glm::dvec3(glow.limit) : m.emission);
         number("Pr", m.roughness);
         number("Pm", m.metallic);
@@ -50,13 +52,14 @@ private:
         }
         map("map_Kd", base.texture);
         map("map_Ke", glow.texture);
-        map("map_Pr", drawn(m.roughness_texture, ColorSpace::Linear, Channel::Luma).texture);
-        map("map_Pm", drawn(m.metallic_texture, ColorSpace::Linear, Channel::Luma).texture);
-        const Texture normal = drawn(m.normal_texture, ColorSpace::Linear, Channel::Color).texture;
+        map("map_Pr", drawn(m.roughness_texture, ColorSpace::Linear, TextureChannel::Luma).texture);
+        map("map_Pm", drawn(m.metallic_texture, ColorSpace::Linear, TextureChannel::Luma).texture);
+        const Texture normal =
+            drawn(m.normal_texture, ColorSpace::Linear, TextureChannel::Color).texture;
         map("norm", normal, m.normal_strength);
         // Blender and others look for normals here.
         map("map_Bump",
-            m.bump_texture ? drawn(m.bump_texture, ColorSpace::Linear, Channel::Luma).texture
+            m.bump_texture ? drawn(m.bump_texture, ColorSpace::Linear, TextureChannel::Luma).texture
                            : normal,
             m.bump_texture ? m.bump_distance / kBumpMetres : m.normal_strength);
         add_cover(m);
@@ -70,7 +73,7 @@ private:
             number("d", 1 - m.transmission);
         } else if (m.alpha_mode != AlphaMode::Opaque && (m.alpha < 1 || m.alpha_texture)) {
             const Texture cover =
-                drawn(m.alpha_texture, ColorSpace::Linear, Channel::Alpha).texture;
+                drawn(m.alpha_texture, ColorSpace::Linear, TextureChannel::Alpha).texture;
             out_.text += "illum 9\n";
             number("d", cover ? 1 : m.alpha);
             map("map_d", cover);
@@ -92,24 +95,28 @@ private:
 
     /// As MTL can say it: the picture's own values times `limit`; Luma: its one number; Alpha:
     /// that, or the picture's alpha if it has one. Without a picture when that is not to be had.
-    Baked drawn(const Texture& texture, ColorSpace space, Channel channel, bool bright = false) {
+    BakedTexture drawn(const Texture& texture, ColorSpace space, TextureChannel channel,
+                       bool bright = false) {
         if (!texture || texture.picture->bytes.empty())
             return {};
         const bool covered = texture.picture->mean.w < 1;
-        const bool gray = texture.channel == Channel::Luma || texture.channel == Channel::Color;
-        const bool plain = channel == Channel::Color  ? texture.channel == Channel::Color
-                           : channel == Channel::Luma ? gray
-                           : covered                  ? texture.channel == Channel::Alpha
-                                                      : gray;
-        if (plain && (texture.picture->space == space || texture.channel == Channel::Alpha) &&
+        const bool gray =
+            texture.channel == TextureChannel::Luma || texture.channel == TextureChannel::Color;
+        const bool plain = channel == TextureChannel::Color
+                               ? texture.channel == TextureChannel::Color
+                           : channel == TextureChannel::Luma ? gray
+                           : covered ? texture.channel == TextureChannel::Alpha
+                                     : gray;
+        if (plain &&
+            (texture.picture->space == space || texture.channel == TextureChannel::Alpha) &&
             texture.scale == glm::dvec3(1.0) && texture.offset == glm::dvec3(0.0) &&
             map_options(texture))
             return {texture, 1};
         Recipe recipe = color_recipe(texture);
-        if (channel != Channel::Color)
+        if (channel != TextureChannel::Color)
             recipe[0] = recipe[1] = recipe[2] = {&texture};
-        const std::optional<Baked> baked = bake(recipe, space, bright);
-        return baked && map_options(baked->texture) ? *baked : Baked{};
+        const std::optional<BakedTexture> baked = bake_recipe(recipe, space, bright);
+        return baked && map_options(baked->texture) ? *baked : BakedTexture{};
     }
 
     MaterialLibrary out_;

@@ -18,18 +18,18 @@ namespace {
 constexpr int32_t kNone = -1;
 
 /// What a corner of a face names, counted from 0; kNone = not given.
-struct Corner {
+struct ObjCorner {
     int32_t position = kNone;
     int32_t uv = kNone;
     int32_t normal = kNone;
 
-    bool operator==(const Corner&) const = default;
+    bool operator==(const ObjCorner&) const = default;
 };
 
 /// The triangles between two `o` lines.
-struct Part {
+struct ObjPart {
     std::string name;
-    std::vector<Corner> corners;      // three a triangle
+    std::vector<ObjCorner> corners;   // three a triangle
     std::vector<uint32_t> materials;  // one a triangle, into the names of usemtl
 };
 
@@ -44,7 +44,7 @@ public:
     }
 
     Model read() {
-        Lines lines(bytes_);
+        LineReader lines(bytes_);
         std::string_view line;
         while (lines.next(line)) {
             if (!read_line(line)) {
@@ -125,7 +125,7 @@ private:
         return true;
     }
 
-    bool read_corner(std::string_view word, Corner& corner) const {
+    bool read_corner(std::string_view word, ObjCorner& corner) const {
         const size_t first = word.find('/');
         if (!index_of(word.substr(0, first), positions_.size(), corner.position))
             return false;
@@ -145,14 +145,14 @@ private:
     bool read_face(std::string_view line) {
         face_.clear();
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
-            Corner corner;
+            ObjCorner corner;
             if (!read_corner(word, corner))
                 return false;
             face_.push_back(corner);
         }
         if (face_.size() < 3)
             return false;
-        Part& part = parts_.back();
+        ObjPart& part = parts_.back();
         for (size_t i = 2; i < face_.size(); ++i) {
             part.corners.insert(part.corners.end(), {face_[0], face_[i - 1], face_[i]});
             part.materials.push_back(material_);
@@ -206,10 +206,10 @@ private:
         }
         auto assembly = std::make_shared<Assembly>();
         size_t dropped = 0;
-        for (Part& part : parts_) {
+        for (ObjPart& part : parts_) {
             Representation finest;
             auto mesh = std::make_shared<Mesh>(mesh_of(part, finest.materials, dropped));
-            part = Part{std::move(part.name), {}, {}};
+            part = ObjPart{std::move(part.name), {}, {}};
             check(*mesh);
             repair(*mesh, part.name, problems_);
             if (mesh->empty())
@@ -250,7 +250,7 @@ private:
     }
 
     /// Also gives the slots their materials; counts triangles whose positions are not there.
-    Mesh mesh_of(Part& part, std::vector<uint32_t>& materials, size_t& dropped) {
+    Mesh mesh_of(ObjPart& part, std::vector<uint32_t>& materials, size_t& dropped) {
         keep_valid(part, dropped);
         Mesh mesh;
         std::map<uint32_t, uint16_t> slots;
@@ -269,11 +269,11 @@ private:
         bool uvs = false;
         bool normals = false;
         bool plain = parts_.size() == 1;  // every corner has one index: keep the file's vertices
-        for (const Corner& corner : part.corners) {
+        for (const ObjCorner& corner : part.corners) {
             uvs = uvs || corner.uv != kNone;
             normals = normals || corner.normal != kNone;
         }
-        for (const Corner& corner : part.corners)
+        for (const ObjCorner& corner : part.corners)
             plain = plain && corner.uv == (uvs ? corner.position : kNone) &&
                     corner.normal == (normals ? corner.position : kNone);
         mesh.triangles.resize(part.corners.size() / 3);
@@ -295,12 +295,12 @@ private:
     }
 
     /// Leaves out triangles without positions and forgets indices of uvs and normals out of range.
-    void keep_valid(Part& part, size_t& dropped) const {
+    void keep_valid(ObjPart& part, size_t& dropped) const {
         size_t kept = 0;
         for (size_t i = 0; i < part.materials.size(); ++i) {
             bool valid = true;
             for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
-                Corner corner = part.corners[k];
+                ObjCorner corner = part.corners[k];
                 valid = valid && static_cast<size_t>(corner.position) < positions_.size();
                 if (corner.uv != kNone && static_cast<size_t>(corner.uv) >= uvs_.size())
                     corner.uv = kNone;
@@ -317,15 +317,15 @@ private:
     }
 
     /// One vertex for each different corner, numbered in the order of the faces.
-    void join(const Part& part, bool uvs, bool normals, Mesh& mesh) const {
+    void join(const ObjPart& part, bool uvs, bool normals, Mesh& mesh) const {
         size_t size = 16;
         while (size < part.corners.size() * 2)
             size *= 2;
         constexpr uint32_t kFree = ~uint32_t{0};
         std::vector<uint32_t> table(size, kFree);
-        std::vector<Corner> corners;
+        std::vector<ObjCorner> corners;
         for (size_t i = 0; i < part.corners.size(); ++i) {
-            const Corner& corner = part.corners[i];
+            const ObjCorner& corner = part.corners[i];
             uint64_t key = static_cast<uint32_t>(corner.position) * 0x9e3779b97f4a7c15u;
             key = (key ^ (key >> 29u) ^ static_cast<uint32_t>(corner.uv)) * 0xbf58476d1ce4e5b9u;
             key = (key ^ (key >> 32u) ^ static_cast<uint32_t>(corner.normal)) * 0x94d049bb133111ebu;
@@ -339,7 +339,7 @@ private:
             }
             mesh.triangles[i / 3][static_cast<int>(i % 3)] = table[slot];
         }
-        for (const Corner& corner : corners) {
+        for (const ObjCorner& corner : corners) {
             mesh.positions.push_back(positions_[static_cast<size_t>(corner.position)]);
             if (uvs)
                 mesh.uvs.push_back(corner.uv == kNone ? glm::vec2(0)
@@ -358,8 +358,8 @@ private:
     std::vector<glm::vec3> positions_;
     std::vector<glm::vec2> uvs_;
     std::vector<glm::vec3> normals_;
-    std::vector<Part> parts_;
-    std::vector<Corner> face_;
+    std::vector<ObjPart> parts_;
+    std::vector<ObjCorner> face_;
     std::map<std::string, size_t> material_of_{{"", 0}};  // before the first usemtl
     uint32_t material_ = 0;
     std::map<std::string, Material> defined_;

@@ -53,9 +53,9 @@ inline bool next_float(std::string_view& words, float& value) {
 }
 
 /// Lines end with LF, CR or both; one that ends with a backslash goes on in the next.
-class Lines {
+class LineReader {
 public:
-    explicit Lines(std::string_view bytes) : bytes_(bytes) {}
+    explicit LineReader(std::string_view bytes) : bytes_(bytes) {}
 
     /// False at the end. The line is valid until the next call.
     bool next(std::string_view& line) {

@@ -17,15 +17,15 @@ constexpr size_t kTrianglesOfLamp = 8;
 constexpr size_t kShareOfLamps = 3;
 constexpr size_t kFewestOfRest = 4;
 
-struct Lamps {
+struct LampSplit {
     Mesh lamps;
     Mesh rest;
     size_t parts = 0;  // of the lamps
 };
 
 /// No parts where the mesh has no lamps, or nothing else.
-Lamps lamps_in(const Mesh& mesh, std::span<const Material> materials) {
-    Lamps out;
+LampSplit lamps_in(const Mesh& mesh, std::span<const Material> materials) {
+    LampSplit out;
     std::vector<uint8_t> glows(mesh.triangles.size(), 0);
     bool any = false;
     for (size_t i = 0; i < glows.size(); ++i) {
@@ -115,7 +115,7 @@ Material unlit(const Material& material) {
 
 std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material> materials,
                                       std::span<const size_t> targets, const Job& job) {
-    const Lamps lamps = lamps_in(mesh, materials);
+    const LampSplit lamps = lamps_in(mesh, materials);
     if (lamps.parts == 0)
         return simplify::simplify_chain(mesh, targets, {}, job);
     std::vector<size_t> of_lamps;

@@ -40,14 +40,14 @@ constexpr double kPatches = 0.5;  // likewise of the patches that look different
 // looks alike.
 constexpr double kUsedNear = 1.0 / 12;
 
-Mesh tessellated(const Candidate& primitive) {
+Mesh tessellated(const StandInCandidate& primitive) {
     return primitive.kind == Kind::Box
                ? tessellate_box(primitive.primitive)
                : tessellate_ellipsoid(primitive.primitive, kMeasuredSubdivisions);
 }
 
 /// What stands for a candidate where rays are cast; `solid` holds it unless it is a mesh.
-const Mesh& traced_mesh(const Candidate& candidate, Mesh& solid) {
+const Mesh& traced_mesh(const StandInCandidate& candidate, Mesh& solid) {
     if (candidate.kind == Kind::Mesh)
         return *candidate.mesh;
     solid = candidate.kind == Kind::Composite ? tessellate(*candidate.composite, 2)
@@ -57,7 +57,7 @@ const Mesh& traced_mesh(const Candidate& candidate, Mesh& solid) {
 
 /// The ground is large, and what lies on it (roads, fields) a small share of it; a few triangles,
 /// with all of their corners, are known from a few points of each.
-uint32_t samples_of(const Mesh& finest, bool environment, const Settings& settings) {
+uint32_t samples_of(const Mesh& finest, bool environment, const BuildSettings& settings) {
     constexpr uint64_t kOfTriangle = 8;
     constexpr uint64_t kFewest = 512;
     if (environment)
@@ -66,7 +66,7 @@ uint32_t samples_of(const Mesh& finest, bool environment, const Settings& settin
         settings.samples, std::max(kFewest, kOfTriangle * finest.triangles.size())));
 }
 
-std::vector<double> area_by_tag(const measure::Visible& visible, size_t tags) {
+std::vector<double> area_by_tag(const measure::VisibleAttributes& visible, size_t tags) {
     uint64_t all = 0;
     for (const uint64_t hits : visible.hits_by_tag)
         all += hits;
@@ -83,9 +83,10 @@ double counted_error(double error, bool environment, double size) {
     return std::max((environment ? kLayerWidth : 1) * error, kLeastRelativeError * size);
 }
 
-Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::TexelCache& texels,
-             const Settings& settings, bool environment, uint64_t seed, double child_error,
-             const Job& job, int rays_of_triangle)
+StandInEvaluator::StandInEvaluator(const Mesh& finest, std::span<const Material> materials,
+                                   image::TexelCache& texels, const BuildSettings& settings,
+                                   bool environment, uint64_t seed, double child_error,
+                                   const Job& job, int rays_of_triangle)
     : texels_(texels),
       size_(bound_of(finest.positions).radius),
       child_error_(child_error),
@@ -93,17 +94,17 @@ Judge::Judge(const Mesh& finest, std::span<const Material> materials, image::Tex
       seed_(seed),
       rays_(settings.rays),
       materials_(materials.begin(), materials.end()),
-      skin_(std::make_shared<const ray::Skin>(materials, texels)),
+      skin_(std::make_shared<const ray::MeshSkin>(materials, texels)),
       finest_looks_(looks_.of(finest, materials)),
       reference_(
           finest,
           {samples_of(finest, environment, settings), settings.samples, seed, rays_of_triangle},
           {finest_looks_, &looks_, skin_}, job) {}
 
-void Judge::measure_finest(const Mesh& finest, const Job& job) {
+void StandInEvaluator::measure_finest(const Mesh& finest, const Job& job) {
     opacity_ = measure::mean_opacity(finest, *skin_, seed_);
     // The reference was made with the same rays.
-    cast_ = reference_.take_cast();
+    cast_ = reference_.take_cast_points();
     attributes_ = measure::measure_visible(finest, reference_.sampler(), skin_,
                                            visible_options(rays_), {}, cast_, job)
                       .attributes;
@@ -123,19 +124,20 @@ bool is_flat(const Attributes& attributes) {
     return !attributes.empty() && is_flat(variance(1), variance(2));
 }
 
-void Judge::count_layers() {
+void StandInEvaluator::count_layers() {
     layer_ = is_flat(attributes_);
 }
 
-bool Judge::solid() const {
+bool StandInEvaluator::solid() const {
     return opacity_ >= kLeastOpacity;
 }
 
-bool Judge::shows_as_much(const Mesh& level, const Job& job) const {
-    return shows_as_much(level, ray::Scene(level, skin_), job);
+bool StandInEvaluator::shows_as_much(const Mesh& level, const Job& job) const {
+    return shows_as_much(level, ray::MeshScene(level, skin_), job);
 }
 
-bool Judge::shows_as_much(const Mesh& level, const ray::Scene& scene, const Job& job) const {
+bool StandInEvaluator::shows_as_much(const Mesh& level, const ray::MeshScene& scene,
+                                     const Job& job) const {
     // Few rays tell what is nearly alike or far from it.
     constexpr double kUnsure = 0.15;
     const measure::VisibleSampler sampler(level, scene, seed_);
@@ -149,12 +151,12 @@ bool Judge::shows_as_much(const Mesh& level, const ray::Scene& scene, const Job&
     return change <= kMostAreaChange;
 }
 
-bool Judge::prove(Candidate& candidate, double used_to, const Job& job) const {
+bool StandInEvaluator::prove(StandInCandidate& candidate, double used_to, const Job& job) const {
     const bool is_mesh = candidate.kind == Kind::Mesh;
     Mesh solid;
     const Mesh& mesh = traced_mesh(candidate, solid);
     const ray::SkinPtr skin = skin_of(candidate);
-    const ray::Scene scene(mesh, skin);
+    const ray::MeshScene scene(mesh, skin);
     candidate.unproven = false;
     if (is_mesh && !shows_as_much(mesh, scene, job))
         return false;
@@ -162,40 +164,41 @@ bool Judge::prove(Candidate& candidate, double used_to, const Job& job) const {
         return true;
     const double own = candidate.error - child_error_;
     const double unlike =
-        patches_->unlike_up_to(mesh, scene, *skin, is_matched(used_to), own / kPatches);
+        patches_->largest_unlike_patch(mesh, scene, *skin, is_matched(used_to), own / kPatches);
     const double seen = kPatches * unlike + child_error_;
     candidate.error = std::max(candidate.error, seen);
     candidate.max_error = std::max(candidate.max_error, seen);
     return true;
 }
 
-bool Judge::is_matched(double used_to) const {
+bool StandInEvaluator::is_matched(double used_to) const {
     return !environment_ && (used_to >= kUsedNear * size_ ||
                              std::any_of(materials_.begin(), materials_.end(), emits));
 }
 
-void Judge::measure_mesh(Candidate& candidate, const Job& job, double useless,
-                         const measure::DeviationReference::Repainted& known) {
-    if (known.useless) {
+void StandInEvaluator::measure_mesh(StandInCandidate& candidate, const Job& job, double useless,
+                                    const measure::DeviationReference::RepaintResult& known) {
+    if (known.surely_useless) {
         candidate.error = candidate.max_error = std::numeric_limits<double>::infinity();
         return;
     }
     const Mesh& mesh = *candidate.mesh;
     const std::vector<uint16_t> looks = looks_.of(mesh, candidate.materials);
-    const measure::Surface surface{looks, &looks_, skin_of(candidate)};
+    const measure::SurfaceLooks surface{looks, &looks_, skin_of(candidate)};
     const double most = distance_for(useless);
     set_error(candidate, rough_ ? reference_.roughly(mesh, surface, known, most, job)
                                 : reference_.of(mesh, surface, known, most, job));
 }
 
-void Judge::measure_primitive(Candidate& candidate, const Job& job) {
+void StandInEvaluator::measure_primitive(StandInCandidate& candidate, const Job& job) {
     set_error(candidate, reference_.of(Solid{candidate.kind == Kind::Box, candidate.primitive},
                                        looks_.of(candidate.materials[0]),
                                        distance_for(least_primitive_), job));
     least_primitive_ = std::min(least_primitive_, candidate.error);
 }
 
-const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled, const Job& job) {
+const Attributes& StandInEvaluator::sure(const Mesh& finest, uint64_t rays, double settled,
+                                         const Job& job) {
     if (sure_rays_ < rays) {
         measure::VisibleOptions options = visible_options(rays);
         options.settled = settled;
@@ -207,7 +210,8 @@ const Attributes& Judge::sure(const Mesh& finest, uint64_t rays, double settled,
     return sure_;
 }
 
-void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const Job& job) {
+void StandInEvaluator::settle(StandInCandidate& candidate, const Mesh& finest, double floor,
+                              const Job& job) {
     // Solids that hide each other: 32,768 rays know their centroid to .1 % of the radius of
     // gyration, 262,144 to .04 %.
     constexpr uint32_t kRaysOfMany = 262144;
@@ -223,8 +227,9 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
         // The same rays for all (7 MB): making them takes as long as asking them once.
         static const solids::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
         Composite composite = *candidate.composite;
-        solids::settle_whole(composite, sure(finest, kRaysOfMany, solids::kSettledWhole, job),
-                             floor, kVisible, job);
+        solids::settle_composite(composite,
+                                 sure(finest, kRaysOfMany, solids::kSettledComposite, job), floor,
+                                 kVisible, job);
         candidate.composite = std::make_shared<const Composite>(std::move(composite));
         return;
     }
@@ -238,7 +243,7 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
         Material& material = candidate.materials[0];
         const double through = 1 - material.alpha;
         const auto now =
-            solids::settled(solids::Clear{primitive, 1 - through * through}, attributes_,
+            solids::settled(solids::ClearSolid{primitive, 1 - through * through}, attributes_,
                             sure(finest, solids::kRaysOfClear * rays_, 0, job));
         primitive = now.primitive;
         material.alpha = solids::surface_alpha(now.opacity);
@@ -252,12 +257,12 @@ void Judge::settle(Candidate& candidate, const Mesh& finest, double floor, const
         primitive.center.z += floor - low;
 }
 
-void Judge::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
+void StandInEvaluator::take_pictures(const Mesh& finest, bool coarse, const Job& job) {
     using Pictures = measure::AgreementReference;
     take_pictures_of(finest, coarse ? Pictures::kCoarseSide : Pictures::kSide, job);
 }
 
-void Judge::take_pictures_of(const Mesh& finest, int side, const Job& job) {
+void StandInEvaluator::take_pictures_of(const Mesh& finest, int side, const Job& job) {
     if (is_whole(finest))
         pictures_.emplace(finest, finest_scene(), skin_, seed_, side, job);
     else
@@ -265,20 +270,21 @@ void Judge::take_pictures_of(const Mesh& finest, int side, const Job& job) {
     glow_.reset();
 }
 
-ray::SkinPtr Judge::skin_of(const Candidate& unmatched) const {
+ray::SkinPtr StandInEvaluator::skin_of(const StandInCandidate& unmatched) const {
     const bool same =
         unmatched.kind == Kind::Mesh && unmatched.materials.size() == materials_.size();
     return same ? skin_ : skin_of(unmatched.materials);
 }
 
-ray::SkinPtr Judge::skin_of(std::span<const Material> materials) const {
-    return std::make_shared<const ray::Skin>(materials, texels_);
+ray::SkinPtr StandInEvaluator::skin_of(std::span<const Material> materials) const {
+    return std::make_shared<const ray::MeshSkin>(materials, texels_);
 }
 
-void Judge::match_glow(Candidate& candidate, const measure::AgreementReference::Traced& traced,
-                       const Mesh& finest, const Job& job) {
+void StandInEvaluator::match_glow(StandInCandidate& candidate,
+                                  const measure::AgreementReference::TracedPictures& traced,
+                                  const Mesh& finest, const Job& job) {
     constexpr double kMost = 4;
-    const auto emitted = [&](const measure::AgreementReference::Traced& pictures,
+    const auto emitted = [&](const measure::AgreementReference::TracedPictures& pictures,
                              std::span<const Material> materials) {
         std::vector<Material> dark;
         for (const Material& material : materials)
@@ -298,8 +304,8 @@ void Judge::match_glow(Candidate& candidate, const measure::AgreementReference::
         emit_more(material, more);
 }
 
-void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tinted,
-                             const Job& job) {
+void StandInEvaluator::compare_pictures(StandInCandidate& candidate,
+                                        std::span<const uint16_t> tinted, const Job& job) {
     constexpr double kAlikeBright = 0.02;
     // Of a mesh some of the light is that of other slots.
     constexpr int kRounds = 2;
@@ -329,8 +335,8 @@ void Judge::compare_pictures(Candidate& candidate, std::span<const uint16_t> tin
     candidate.pictured = true;
 }
 
-void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double used_to,
-                             const Job& job) {
+void StandInEvaluator::match_brightness(StandInCandidate& candidate, const Mesh& finest,
+                                        double used_to, const Job& job) {
     constexpr double kAlikeBright = 0.01;
     constexpr double kMost = 2;
     // What glows, and what is clear, has no part in the correction: further rounds are nearer.
@@ -367,19 +373,19 @@ void Judge::match_brightness(Candidate& candidate, const Mesh& finest, double us
     // Near something else that is left a point may have been all that closed a gap. Where the error
     // is as large as the pictures' pixels all that they show counts, half.
     const double own = candidate.error - child_error_;
-    const double seen = own < kUsedNear * size_ ? pictures_->gaps_of(traced, current, own)
+    const double seen = own < kUsedNear * size_ ? pictures_->gap_error(traced, current, own)
                                                 : kPictures * pictures_->of(traced, current).error;
     candidate.error = std::max(candidate.error, seen + child_error_);
     candidate.max_error = std::max(candidate.max_error, seen + child_error_);
 }
 
-void Judge::paint(Candidate& candidate) const {
+void StandInEvaluator::paint(StandInCandidate& candidate) const {
     if (candidate.kind != Kind::Box || candidate.pictured || !patches_ ||
         candidate.materials[0].alpha_mode != AlphaMode::Opaque || emits(candidate.materials[0]))
         return;
     std::optional<solids::PaintedBox> painted = solids::painted_box(
         candidate.primitive, candidate.materials[0],
-        patches_->paint_of(tessellate_box(candidate.primitive), finest_scene()));
+        patches_->fitted_vertex_colors(tessellate_box(candidate.primitive), finest_scene()));
     if (!painted)
         return;
     candidate.kind = Kind::Mesh;
@@ -387,27 +393,28 @@ void Judge::paint(Candidate& candidate) const {
     candidate.materials = {std::move(painted->material)};
 }
 
-bool Judge::looks_alike(const Mesh& drawn, std::span<const Material> materials, const Mesh& finest,
-                        double error, const Job& job) {
+bool StandInEvaluator::looks_alike(const Mesh& drawn, std::span<const Material> materials,
+                                   const Mesh& finest, double error, const Job& job) {
     constexpr double kMostOff = 0.1;
     if (!pictures_)
         take_pictures_of(finest, measure::AgreementReference::kCoarseSide, job);
     const ray::SkinPtr skin = skin_of(materials);
     const auto traced = pictures_->trace(drawn, skin, job);
-    const measure::Agreement seen = pictures_->of(traced, skin);
+    const measure::PictureAgreement seen = pictures_->of(traced, skin);
     const double light = (seen.light.x + seen.light.y + seen.light.z) / 3;
     return std::abs(light - 1) <= kMostOff && kPictures * seen.error + child_error_ <= error;
 }
 
-measure::VisibleOptions Judge::visible_options(uint64_t rays) const {
+measure::VisibleOptions StandInEvaluator::visible_options(uint64_t rays) const {
     measure::VisibleOptions options;
     options.rays = rays;
     options.seed = seed_;
     return options;
 }
 
-std::vector<double> Judge::visible_by_tag(const Mesh& finest, std::span<const uint32_t> by_triangle,
-                                          size_t tags, const Job& job) const {
+std::vector<double> StandInEvaluator::visible_by_tag(const Mesh& finest,
+                                                     std::span<const uint32_t> by_triangle,
+                                                     size_t tags, const Job& job) const {
     if (!is_whole(finest))
         return visible_by_tag_of_level(finest, by_triangle, tags, job);
     return area_by_tag(measure::measure_visible(finest, reference_.sampler(), skin_,
@@ -415,19 +422,20 @@ std::vector<double> Judge::visible_by_tag(const Mesh& finest, std::span<const ui
                        tags);
 }
 
-std::vector<double> Judge::visible_by_tag_of_level(const Mesh& level,
-                                                   std::span<const uint32_t> by_triangle,
-                                                   size_t tags, const Job& job) const {
-    return area_by_tag(measure::measure_visible(level, ray::Scene(level, skin_), skin_,
+std::vector<double> StandInEvaluator::visible_by_tag_of_level(const Mesh& level,
+                                                              std::span<const uint32_t> by_triangle,
+                                                              size_t tags, const Job& job) const {
+    return area_by_tag(measure::measure_visible(level, ray::MeshScene(level, skin_), skin_,
                                                 visible_options(rays_), by_triangle, job),
                        tags);
 }
 
-double Judge::distance_for(double error) const {
+double StandInEvaluator::distance_for(double error) const {
     return (error - child_error_) / counted_error(1, environment_ || layer_, 0);
 }
 
-void Judge::set_error(Candidate& candidate, const measure::Deviation& deviation) const {
+void StandInEvaluator::set_error(StandInCandidate& candidate,
+                                 const measure::SurfaceDeviation& deviation) const {
     const auto counted = [&](double error) {
         return counted_error(error, environment_ || layer_, size_) + child_error_;
     };

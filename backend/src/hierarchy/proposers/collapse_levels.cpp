@@ -26,7 +26,7 @@ std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
     return targets;
 }
 
-std::vector<size_t> targets_of(const Mesh& mesh, const Settings& settings) {
+std::vector<size_t> targets_of(const Mesh& mesh, const BuildSettings& settings) {
     const size_t count = mesh.triangles.size();
     const auto first = static_cast<size_t>(static_cast<double>(count) * settings.level_ratio);
     return targets_of(count, first, settings.level_ratio);

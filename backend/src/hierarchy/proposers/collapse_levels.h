@@ -16,7 +16,7 @@ inline constexpr size_t kFewestTriangles = 8;
 /// `triangles`.
 std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio);
 /// Triangles of a leaf's levels.
-std::vector<size_t> targets_of(const Mesh& mesh, const Settings& settings);
+std::vector<size_t> targets_of(const Mesh& mesh, const BuildSettings& settings);
 
 /// By slot; one that is plain where a representation has none.
 std::vector<Material> materials_of(const Model& model, const Representation& finest);

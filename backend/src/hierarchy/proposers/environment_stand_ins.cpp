@@ -17,14 +17,14 @@ namespace {
 constexpr int kBesideSubdivisions = 1;  // an ellipsoid of 80 triangles
 constexpr size_t kMostBeside = 8;       // solids
 
-struct Beside {
+struct SolidsInEnvironment {
     Composite composite;
     std::vector<Attributes> attributes;  // by slot
 };
 
 /// A box and an ellipsoid of all that is no environment, standing where it stands.
-std::vector<Beside> singles(const Attributes& attributes, const Bound& bound) {
-    std::vector<Beside> out;
+std::vector<SolidsInEnvironment> singles(const Attributes& attributes, const Bound& bound) {
+    std::vector<SolidsInEnvironment> out;
     for (const bool box : {true, false}) {
         const auto found =
             box ? solids::fit_box(attributes, bound) : solids::fit_ellipsoid(attributes, bound);
@@ -38,10 +38,11 @@ std::vector<Beside> singles(const Attributes& attributes, const Bound& bound) {
 
 }  // namespace
 
-void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh,
-                            const std::vector<uint8_t>& environment,
-                            const std::vector<Material>& materials, const Settings& settings,
-                            uint64_t seed, Judge& judge, const Job& job) {
+void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
+                               const std::vector<uint8_t>& environment,
+                               const std::vector<Material>& materials,
+                               const BuildSettings& settings, uint64_t seed,
+                               StandInEvaluator& judge, const Job& job) {
     std::vector<uint8_t> others;
     others.reserve(environment.size());
     for (const uint8_t one : environment)
@@ -53,20 +54,21 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
     measure::VisibleOptions options;
     options.rays = settings.rays;
     options.seed = seed;
-    const Attributes attributes = measure::measure_visible(rest, ray::Scene(rest, judge.skin()),
+    const Attributes attributes = measure::measure_visible(rest, ray::MeshScene(rest, judge.skin()),
                                                            judge.skin(), options, {}, job)
                                       .attributes;
     if (attributes.empty())
         return;
-    std::vector<Beside> all = singles(attributes, bound_of(rest.positions));
+    std::vector<SolidsInEnvironment> all = singles(attributes, bound_of(rest.positions));
     solids::CompositeOptions rough{seed};
     rough.shape = false;
     rough.rounds = 0;
     rough.rays = static_cast<uint32_t>(settings.rays / 4);
     rough.most = kMostBeside;
-    for (solids::Clustered& level : solids::composites(rest, judge.skin(), attributes, rough, job))
+    for (solids::ClusteredComposite& level :
+         solids::composites(rest, judge.skin(), attributes, rough, job))
         all.push_back({std::move(level.composite), std::move(level.attributes)});
-    for (const Beside& beside : all) {
+    for (const SolidsInEnvironment& beside : all) {
         job.check();
         if (materials.size() + beside.attributes.size() > std::numeric_limits<uint16_t>::max())
             return;
@@ -76,7 +78,7 @@ void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh
                         : around;
         both.slots.resize(both.triangles.size(), 0);
         append(both, solids, {}, static_cast<uint16_t>(materials.size()));
-        Candidate candidate;
+        StandInCandidate candidate;
         candidate.mesh = std::make_shared<const Mesh>(std::move(both));
         candidate.unproven = true;
         candidate.materials = materials;

@@ -12,9 +12,10 @@ namespace lodestone::hierarchy {
 /// which is a box, an ellipsoid, or a composite of four or eight. Judged by distance, to be proven
 /// by patches. `mesh`: the finest; `environment`: by triangle. Nothing where it has no environment,
 /// or nothing else.
-void add_beside_environment(std::vector<Candidate>& candidates, const Mesh& mesh,
-                            const std::vector<uint8_t>& environment,
-                            const std::vector<Material>& materials, const Settings& settings,
-                            uint64_t seed, Judge& judge, const Job& job);
+void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
+                               const std::vector<uint8_t>& environment,
+                               const std::vector<Material>& materials,
+                               const BuildSettings& settings, uint64_t seed,
+                               StandInEvaluator& judge, const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -15,22 +15,22 @@ namespace {
 /// Tells whether a level's error is one of materials: larger than that of the bare shape.
 class LookError {
 public:
-    LookError(const Mesh& finest, const std::vector<Material>& materials, const Settings& settings,
-              uint64_t seed, const Job& job) {
+    LookError(const Mesh& finest, const std::vector<Material>& materials,
+              const BuildSettings& settings, uint64_t seed, const Job& job) {
         const bool alike = materials.size() == 1 && finest.colors.empty() &&
                            !textured(materials[0]) && !materials[0].other;
         if (!alike)
             bare_.emplace(finest,
                           measure::DeviationOptions{settings.samples, settings.samples, seed},
-                          measure::Surface{}, job);
+                          measure::SurfaceLooks{}, job);
     }
 
     /// Metres; 0 where the shape decides.
-    double of(const Mesh& level, const std::vector<Material>& materials, Judge& judge,
+    double of(const Mesh& level, const std::vector<Material>& materials, StandInEvaluator& judge,
               const Job& job) const {
         if (!bare_)
             return 0;
-        Candidate candidate;
+        StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(level);
         candidate.materials = materials;
         judge.measure_mesh(candidate, job);
@@ -44,7 +44,7 @@ private:
 
 }  // namespace
 
-segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
+segment::BoundLevels bound_levels_of_leaf(const PoseBinding& bind, const BuildSettings& settings,
                                           const MeshSource& source, image::TexelCache& texels,
                                           const Job& job) {
     segment::BoundLevels out;
@@ -56,14 +56,14 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
     if (targets.empty())
         return out;
     const std::vector<Material> materials = materials_of(*bind.model, finest);
-    Judge judge(*mesh, materials, texels, settings, bind.object->role == Role::Environment,
-                bind.hash, 0, job);
+    StandInEvaluator judge(*mesh, materials, texels, settings,
+                           bind.object->role == ObjectRole::Environment, bind.hash, 0, job);
     judge.measure_finest(*mesh, job);
     if (judge.attributes().empty())
         return out;
     std::vector<std::vector<glm::vec3>> others;
     const std::vector<uint32_t> points = deform::points_of(*mesh, *bind.object->pose);
-    for (const Pose* pose : bind.others) {
+    for (const PosedSurface* pose : bind.others) {
         std::vector<glm::vec3>& positions = others.emplace_back();
         for (const uint32_t point : points)
             positions.push_back(pose->points.at(point));
@@ -71,7 +71,7 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
     Mesh plain;
     const Mesh& visible = without_unseen_colors(*mesh, materials, plain);
     const deform::PoseSurface surface(*bind.object->pose);
-    const deform::Binder binder(visible, surface);
+    const deform::LevelBinder binder(visible, surface);
     const LookError look_error(visible, materials, settings, bind.hash, job);
     for (simplify::TracedLevel& level :
          simplify::simplify_traced(visible, others, targets, {}, job)) {
@@ -89,33 +89,34 @@ segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& sett
     return out;
 }
 
-std::vector<Candidate> followed_levels(const Model& model, const Object& object,
-                                       const segment::BoundLevels& levels, const Job& job) {
+std::vector<StandInCandidate> followed_levels(const Model& model, const Object& object,
+                                              const segment::BoundLevels& levels, const Job& job) {
     // A coarser level may be the better one in some frame, but levels keep their numbers.
     constexpr double kRise = 1 + 1e-9;
-    std::vector<Candidate> out;
+    std::vector<StandInCandidate> out;
     const Representation& finest = object.representations.at(0);
     if (levels.empty() || object.pose == nullptr)
         return out;
     const std::vector<Material> materials = materials_of(model, finest);
     const deform::PoseSurface surface(*object.pose);
     const auto counted = [&](double error) {
-        return counted_error(error, object.role == Role::Environment, finest.summary.bound.radius);
+        return counted_error(error, object.role == ObjectRole::Environment,
+                             finest.summary.bound.radius);
     };
     for (const deform::BoundLevel& level : levels) {
         job.check();
         std::optional<Mesh> followed = deform::follow(level, surface);
         if (!followed || followed->triangles.size() >= finest.summary.cost.triangles)
             continue;
-        const deform::Strayed strayed = deform::strayed(level, *followed, surface);
-        Candidate candidate;
+        const deform::PoseError pose_error = deform::pose_error(level, *followed, surface);
+        StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(*followed));
         candidate.materials = materials;
-        candidate.error =
-            counted(std::max(strayed.error, level.look_error * std::max(1.0, strayed.growth)));
+        candidate.error = counted(
+            std::max(pose_error.error, level.look_error * std::max(1.0, pose_error.growth)));
         if (!out.empty())
             candidate.error = std::max(candidate.error, kRise * out.back().error);
-        candidate.max_error = std::max(counted(strayed.max), candidate.error);
+        candidate.max_error = std::max(counted(pose_error.max), candidate.error);
         out.push_back(std::move(candidate));
     }
     return out;

@@ -10,14 +10,14 @@ namespace lodestone::hierarchy {
 
 /// The levels of something that deforms, one collapse for all frames: the one that suits all poses
 /// of a bind together, tied to the surface it has in the first of them.
-segment::BoundLevels bound_levels_of_leaf(const Bind& bind, const Settings& settings,
+segment::BoundLevels bound_levels_of_leaf(const PoseBinding& bind, const BuildSettings& settings,
                                           const MeshSource& source, image::TexelCache& texels,
                                           const Job& job);
 
-/// These levels where the object has them now. The errors are those of now, by witnesses: nothing
+/// These levels where the object has them now. The errors are those of now, by samples: nothing
 /// is measured anew. All that can be drawn, fine to coarse; an error is raised to the finer one's
 /// where it would not be larger.
-std::vector<Candidate> followed_levels(const Model& model, const Object& object,
-                                       const segment::BoundLevels& levels, const Job& job);
+std::vector<StandInCandidate> followed_levels(const Model& model, const Object& object,
+                                              const segment::BoundLevels& levels, const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -10,9 +10,9 @@
 
 namespace lodestone::hierarchy {
 
-void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
+void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Wanted& wanted, Judge& judge, const Job& job) {
+                const LevelLimits& wanted, StandInEvaluator& judge, const Job& job) {
     // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
     // in groups: a tenth; of 275 that would have to be, one).
     constexpr double kMostNearer = 4;
@@ -21,7 +21,7 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
     Mesh plain;
     const Mesh& source = without_unseen_colors(mesh, materials, plain);
     std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
-    std::vector<Candidate> measured;
+    std::vector<StandInCandidate> measured;
     std::vector<double> nexts{wanted.solid};  // where a level may end, and one of them takes over
     double coarser = 0;
     for (size_t i = levels.size(); i-- > 0;) {
@@ -36,8 +36,8 @@ void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
             coarser /= kMostNearer;
             continue;
         }
-        const measure::DeviationReference::Repainted known = judge.repaint(level, job, most);
-        Candidate candidate;
+        const measure::DeviationReference::RepaintResult known = judge.repaint(level, job, most);
+        StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
         candidate.unproven = true;

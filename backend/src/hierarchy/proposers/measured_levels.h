@@ -11,7 +11,7 @@
 namespace lodestone::hierarchy {
 
 /// What makes levels worth measuring.
-struct Wanted {
+struct LevelLimits {
     /// The error from which on a mesh of so many triangles is no use, whatever else there is.
     std::function<double(size_t triangles)> useless;
     /// Of what is kept in any case and costs less than a level; infinite where there is nothing.
@@ -22,8 +22,8 @@ struct Wanted {
 
 /// Levels of so many triangles, fine to coarse. Measured from the coarsest on: what will not be
 /// near enough, by the one before it, is not measured at all.
-void add_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
+void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                 const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const Wanted& wanted, Judge& judge, const Job& job);
+                const LevelLimits& wanted, StandInEvaluator& judge, const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -21,22 +21,23 @@ constexpr double kMostGrowth = 64;
 constexpr int kCorrections = 3;
 
 /// What is kept at one level.
-struct Step {
+struct PruningStep {
     size_t parts;
     size_t crowd_triangles;  // after simplification
     size_t rest_triangles;
 };
 
-std::vector<Step> steps_of(const Crowd& crowd, size_t rest, double ratio) {
+std::vector<PruningStep> steps_of(const Crowd& crowd, size_t rest, double ratio) {
     const bool plain = crowd.triangles <= kPlainPart * crowd.parts.size();
-    std::vector<Step> out;
+    std::vector<PruningStep> out;
     for (double share = ratio;; share *= ratio) {
         // Half the way each, on a scale of powers.
         const double kept = plain ? share : std::sqrt(share);
         const auto of = [](double part, size_t whole) {
             return static_cast<size_t>(std::round(part * static_cast<double>(whole)));
         };
-        const Step step{of(kept, crowd.parts.size()), of(share, crowd.triangles), of(share, rest)};
+        const PruningStep step{of(kept, crowd.parts.size()), of(share, crowd.triangles),
+                               of(share, rest)};
         if (step.parts < std::max(kFewestParts, crowd.slots.size()))
             return out;
         out.push_back(step);
@@ -44,9 +45,10 @@ std::vector<Step> steps_of(const Crowd& crowd, size_t rest, double ratio) {
 }
 
 /// The rest at each step's triangles; the mesh itself where it cannot get simpler.
-std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<Step>& steps, const Job& job) {
+std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<PruningStep>& steps,
+                           const Job& job) {
     std::vector<size_t> targets;
-    for (const Step& step : steps) {
+    for (const PruningStep& step : steps) {
         const size_t target = std::max(step.rest_triangles, kFewestTriangles);
         if (target < rest.triangles.size() && (targets.empty() || target < targets.back()))
             targets.push_back(target);
@@ -55,7 +57,7 @@ std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<Step>& steps, con
     if (!targets.empty())
         levels = simplify::simplify_chain(rest, targets, {}, job);
     std::vector<Mesh> out;
-    for (const Step& step : steps) {
+    for (const PruningStep& step : steps) {
         const Mesh* best = &rest;
         for (const Mesh& level : levels) {
             if (best->triangles.size() > std::max(step.rest_triangles, kFewestTriangles))
@@ -91,10 +93,10 @@ std::vector<Material> contrasted(const std::vector<Material>& materials, const C
     return out;
 }
 
-class Thinner {
+class CrowdPruner {
 public:
-    Thinner(const Mesh& mesh, const std::vector<Material>& materials, const Crowd& crowd,
-            const Judge& judge, const Job& job)
+    CrowdPruner(const Mesh& mesh, const std::vector<Material>& materials, const Crowd& crowd,
+                const StandInEvaluator& judge, const Job& job)
         : mesh_(mesh), materials_(materials), crowd_(crowd), judge_(judge), job_(job) {
         std::vector<uint8_t> keep(mesh.triangles.size(), 0);
         std::vector<uint32_t> tags(mesh.triangles.size(), 0);
@@ -124,12 +126,12 @@ public:
     }
 
     /// With these parts kept, and the rest already simplified.
-    Candidate thinned(const std::vector<uint32_t>& order, const Step& step,
-                      const Mesh& rest) const {
+    StandInCandidate thinned(const std::vector<uint32_t>& order, const PruningStep& step,
+                             const Mesh& rest) const {
         std::vector<double> growth = first_growth(order, step.parts);
-        Candidate out;
+        StandInCandidate out;
         for (int i = 0;; ++i) {
-            prune::Pruned crowd = prune::pruned(mesh_, crowd_, order, step.parts, growth);
+            prune::PrunedMesh crowd = prune::prune_crowd(mesh_, crowd_, order, step.parts, growth);
             if (crowd_.triangles > kPlainPart * crowd_.parts.size() &&
                 step.crowd_triangles < crowd.mesh.triangles.size())
                 simplify(crowd, step.crowd_triangles);
@@ -155,7 +157,7 @@ private:
         std::vector<double> all(crowd_.slots.size(), 0);
         std::vector<double> kept(crowd_.slots.size(), 0);
         for (size_t i = 0; i < order.size(); ++i) {
-            const Crowd::Part& part = crowd_.parts[order[i]];
+            const Crowd::CrowdPart& part = crowd_.parts[order[i]];
             all[part.kind] += part.area;
             if (i < std::max(keep, crowd_.slots.size()))
                 kept[part.kind] += part.area;
@@ -181,7 +183,7 @@ private:
     }
 
     /// Kinds are told by slots, which simplification keeps.
-    void simplify(prune::Pruned& crowd, size_t triangles) const {
+    void simplify(prune::PrunedMesh& crowd, size_t triangles) const {
         std::vector<uint32_t> kind_of_slot;
         for (size_t kind = 0; kind < crowd_.slots.size(); ++kind) {
             kind_of_slot.resize(std::max<size_t>(kind_of_slot.size(), crowd_.slots[kind] + 1u), 0);
@@ -201,7 +203,7 @@ private:
     const Mesh& mesh_;
     const std::vector<Material>& materials_;
     const Crowd& crowd_;
-    const Judge& judge_;
+    const StandInEvaluator& judge_;
     const Job& job_;
     Mesh rest_;
     std::set<uint16_t> rest_slots_;
@@ -210,12 +212,13 @@ private:
 
 }  // namespace
 
-void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
+void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                        const std::vector<Material>& materials, const Crowd& crowd,
-                       double level_ratio, size_t most, uint64_t seed, Judge& judge,
+                       double level_ratio, size_t most, uint64_t seed, StandInEvaluator& judge,
                        const Job& job) {
-    const Thinner thinner(mesh, materials, crowd, judge, job);
-    const std::vector<Step> steps = steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
+    const CrowdPruner thinner(mesh, materials, crowd, judge, job);
+    const std::vector<PruningStep> steps =
+        steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
     const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
     const std::vector<uint16_t> own = thinner.own_slots();
     const Bound bound = bound_of(mesh.positions);
@@ -228,7 +231,7 @@ void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
             job.check();
             if (steps[i].crowd_triangles + rests[i].triangles.size() > most)
                 continue;
-            Candidate candidate = thinner.thinned(order, steps[i], rests[i]);
+            StandInCandidate candidate = thinner.thinned(order, steps[i], rests[i]);
             if (candidate.mesh->triangles.size() >= mesh.triangles.size())
                 continue;
             judge.compare_pictures(candidate, own, job);

@@ -10,9 +10,9 @@ namespace lodestone::hierarchy {
 /// Levels of a mesh with a crowd in it: of the crowd some parts, enlarged until each kind shows as
 /// much as in the mesh; of the rest as many triangles in proportion; none of more than about `most`
 /// triangles. Judged by pictures, which the judge must have taken of the same mesh.
-void add_pruned_levels(std::vector<Candidate>& candidates, const Mesh& mesh,
+void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                        const std::vector<Material>& materials, const prune::Crowd& crowd,
-                       double level_ratio, size_t most, uint64_t seed, Judge& judge,
+                       double level_ratio, size_t most, uint64_t seed, StandInEvaluator& judge,
                        const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -24,11 +24,11 @@ bool is_foliage(const prune::Crowd& crowd) {
 }
 
 /// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
-void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool by_pictures,
-                    Judge& judge, const Job& job) {
+void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& bound, bool by_pictures,
+                    StandInEvaluator& judge, const Job& job) {
     const Material material = solids::mean_material(judge.attributes());
     const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
-        Candidate candidate;
+        StandInCandidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {solids::clear_material(material, opacity)};
@@ -45,7 +45,7 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
     const double floor = bound.box.low.z;
     const auto add_standing = [&](Kind kind, const Primitive& primitive) {
         const bool is_box = kind == Kind::Box;
-        const solids::Reach reach = solids::reach_of(primitive, is_box);
+        const solids::HeightRange reach = solids::reach_of(primitive, is_box);
         add(kind, solids::kept_above(primitive, is_box, floor), 1);
         constexpr double kStands = 0.01;  // over its height
         if (reach.low - floor > kStands * (reach.high - reach.low))
@@ -65,11 +65,11 @@ void add_primitives(std::vector<Candidate>& candidates, const Bound& bound, bool
 }
 
 /// How many solids may be of use beside the parts of the whole.
-size_t most_solids(const std::vector<Candidate>& candidates, const Whole& whole) {
+size_t most_solids(const std::vector<StandInCandidate>& candidates, const ReplacedObject& whole) {
     constexpr size_t kMost = 32;
     // It is used up to the error of the next one, and what its parts cost is asked for half way.
     double next = std::numeric_limits<double>::infinity();
-    for (const Candidate& candidate : candidates) {
+    for (const StandInCandidate& candidate : candidates) {
         if (candidate.kind != Kind::Mesh)
             next = std::min(next, candidate.error);
     }
@@ -85,8 +85,8 @@ size_t most_solids(const std::vector<Candidate>& candidates, const Whole& whole)
     return out;
 }
 
-Candidate candidate_of(const solids::Clustered& level) {
-    Candidate out;
+StandInCandidate candidate_of(const solids::ClusteredComposite& level) {
+    StandInCandidate out;
     out.kind = Kind::Composite;
     out.composite = std::make_shared<const Composite>(level.composite);
     for (size_t i = 0; i < level.attributes.size(); ++i)
@@ -97,11 +97,11 @@ Candidate candidate_of(const solids::Clustered& level) {
 
 /// Whether a composite of that error would be of use beside the others, and beside the parts of the
 /// whole.
-bool would_pay(const Candidate& composite, double error, const std::vector<Candidate>& others,
-               const Whole& whole) {
+bool would_pay(const StandInCandidate& composite, double error,
+               const std::vector<StandInCandidate>& others, const ReplacedObject& whole) {
     const double own = bytes_of(composite, whole.uses);
     double next = std::numeric_limits<double>::infinity();  // the cheaper one that takes over
-    for (const Candidate& other : others) {
+    for (const StandInCandidate& other : others) {
         if (bytes_of(other, whole.uses) <= own)
             next = std::min(next, other.error);
     }
@@ -114,9 +114,9 @@ bool would_pay(const Candidate& composite, double error, const std::vector<Candi
 }
 
 /// `airy`: clear ones too, of these parts, of at most so many solids.
-void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool airy,
-                    const prune::Crowd& crowd, size_t most, uint64_t seed, Judge& judge,
-                    const Whole& whole, const Job& job) {
+void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh, bool airy,
+                    const prune::Crowd& crowd, size_t most, uint64_t seed, StandInEvaluator& judge,
+                    const ReplacedObject& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
     // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
     // more): only those that may pay by these are matched. Fewer solids are hardly ever much
@@ -137,8 +137,8 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
     solids::CompositeOptions exact = options;
     exact.settled = 0;  // those that are kept are
     exact.least = exact.most = 0;
-    std::vector<Candidate> rough;  // fewest solids first
-    for (const solids::Clustered& level :
+    std::vector<StandInCandidate> rough;  // fewest solids first
+    for (const solids::ClusteredComposite& level :
          solids::composites(mesh, judge.skin(), judge.attributes(), few, job))
         rough.push_back(candidate_of(level));
     for (bool more = true; more && !rough.empty(); rough.pop_back()) {
@@ -150,21 +150,21 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
             exact.most = std::max(exact.most, exact.least);
             continue;
         }
-        more =
-            exact.most == 0 && std::any_of(rough.begin(), rough.end(), [&](const Candidate& other) {
-                return would_pay(other, kFewerNearer * error, candidates, whole);
-            });
+        more = exact.most == 0 &&
+               std::any_of(rough.begin(), rough.end(), [&](const StandInCandidate& other) {
+                   return would_pay(other, kFewerNearer * error, candidates, whole);
+               });
     }
-    std::vector<solids::Clustered> levels;
+    std::vector<solids::ClusteredComposite> levels;
     if (exact.most > 0)
         levels = solids::composites(mesh, judge.skin(), judge.attributes(), exact, job);
     if (airy) {
-        for (solids::Clustered& level : solids::clear_composites(mesh, judge.skin(), crowd.part_of,
-                                                                 judge.attributes(), options, job))
+        for (solids::ClusteredComposite& level : solids::clear_composites(
+                 mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
             levels.push_back(std::move(level));
     }
-    for (const solids::Clustered& level : levels) {
-        Candidate candidate = candidate_of(level);
+    for (const solids::ClusteredComposite& level : levels) {
+        StandInCandidate candidate = candidate_of(level);
         candidate.unsettled = options.shape;
         judge.compare_pictures(candidate, {}, job);
         candidates.push_back(std::move(candidate));
@@ -173,8 +173,10 @@ void add_composites(std::vector<Candidate>& candidates, const Mesh& mesh, bool a
 
 }  // namespace
 
-Replacements::Replacements(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
-                           const Whole& whole, Judge& judge, const Job& job)
+SolidCandidates::SolidCandidates(const Mesh& mesh,
+                                 const std::function<prune::Crowd()>& crowd_in_mesh,
+                                 const ReplacedObject& whole, StandInEvaluator& judge,
+                                 const Job& job)
     : mesh_(mesh), whole_(whole), judge_(judge) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
     constexpr double kFewSolids = 32;
@@ -186,15 +188,16 @@ Replacements::Replacements(const Mesh& mesh, const std::function<prune::Crowd()>
         add_primitives(solids_, whole.bound, false, judge, job);
 }
 
-double Replacements::nearest_solid() const {
+double SolidCandidates::nearest_solid() const {
     double out = std::numeric_limits<double>::infinity();
-    for (const Candidate& solid : solids_)
+    for (const StandInCandidate& solid : solids_)
         out = std::min(out, solid.error);
     return out;
 }
 
-void Replacements::add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
-                       const Settings& settings, uint64_t seed, const Job& job) {
+void SolidCandidates::add(std::vector<StandInCandidate>& candidates,
+                          const std::vector<Material>& materials, const BuildSettings& settings,
+                          uint64_t seed, const Job& job) {
     const double radius = whole_.bound.radius;
     const bool dear =
         bytes_within(candidates, kNear * radius, whole_.uses) > kCollapsed * whole_.bytes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replacements: pruned meshes, primitives and composites of one mesh.
+// Solid candidates: pruned meshes, primitives and composites of one mesh.
 #pragma once
 
 #include "hierarchy/build_settings.h"
@@ -21,7 +21,7 @@ inline constexpr double kOff = 0.2;
 size_t triangles_for(double bytes, uint64_t uses);
 
 /// What replacements must be better than.
-struct Whole {
+struct ReplacedObject {
     Bound bound;
     uint64_t uses = 1;
     double bytes = 0;     // as one mesh
@@ -33,26 +33,26 @@ struct Whole {
 };
 
 /// Of what is no environment. All that is given must last.
-class Replacements {
+class SolidCandidates {
 public:
     /// Measures what costs little: a box and an ellipsoid, by distance, where that tells enough.
-    Replacements(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
-                 const Whole& whole, Judge& judge, const Job& job);
+    SolidCandidates(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
+                    const ReplacedObject& whole, StandInEvaluator& judge, const Job& job);
 
     /// The error of the nearest of them, which cost less than any level; infinite without one.
     double nearest_solid() const;
     /// Pruned levels, primitives and composites, where they promise more than the levels, which
     /// `candidates` has.
-    void add(std::vector<Candidate>& candidates, const std::vector<Material>& materials,
-             const Settings& settings, uint64_t seed, const Job& job);
+    void add(std::vector<StandInCandidate>& candidates, const std::vector<Material>& materials,
+             const BuildSettings& settings, uint64_t seed, const Job& job);
 
 private:
     const Mesh& mesh_;
-    const Whole& whole_;
-    Judge& judge_;
+    const ReplacedObject& whole_;
+    StandInEvaluator& judge_;
     prune::Crowd crowd_;
     bool by_pictures_ = false;  // whatever the levels are like
-    std::vector<Candidate> solids_;
+    std::vector<StandInCandidate> solids_;
 };
 
 }  // namespace lodestone::hierarchy

@@ -30,7 +30,7 @@ constexpr uint64_t kRaysOfPart = 4096;
 
 /// The thin parts of a mesh.
 struct ThinParts {
-    std::vector<solids::Thin> parts;
+    std::vector<solids::ThinPart> parts;
     std::vector<Attributes> attributes;
     std::vector<uint8_t> is_thin;  // by triangle
     double thickness = 0;          // the largest
@@ -50,17 +50,17 @@ std::vector<uint8_t> perhaps_thin(const Mesh& mesh, const std::vector<uint32_t>&
                                   const std::vector<Material>& materials) {
     // The area of what is twelve times longer than thick is a third of its diagonal's square.
     constexpr double kMostArea = 0.5;
-    struct Part {
+    struct PartBounds {
         glm::dvec3 low{std::numeric_limits<double>::infinity()};
         glm::dvec3 high{-std::numeric_limits<double>::infinity()};
         double area = 0;
         bool plain = true;
     };
-    std::vector<Part> parts;
+    std::vector<PartBounds> parts;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (part_of[i] >= parts.size())
             parts.resize(part_of[i] + size_t{1});
-        Part& part = parts[part_of[i]];
+        PartBounds& part = parts[part_of[i]];
         const Triangle& t = mesh.triangles[i];
         for (const uint32_t corner : {t.x, t.y, t.z}) {
             part.low = glm::min(part.low, glm::dvec3(mesh.positions[corner]));
@@ -70,7 +70,7 @@ std::vector<uint8_t> perhaps_thin(const Mesh& mesh, const std::vector<uint32_t>&
         part.plain = part.plain && is_plain(mesh, i, materials);
     }
     std::vector<uint8_t> out;
-    for (const Part& part : parts) {
+    for (const PartBounds& part : parts) {
         const glm::dvec3 diagonal = part.high - part.low;
         out.push_back(part.plain && part.area > 0 &&
                               part.area < kMostArea * glm::dot(diagonal, diagonal)
@@ -88,7 +88,7 @@ ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
     if (static_cast<size_t>(std::count(perhaps.begin(), perhaps.end(), 1)) > kMostThin)
         return out;
     out.is_thin.assign(mesh.triangles.size(), 0);
-    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
+    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
     double area = 0;
     for (uint32_t number = 0; number < perhaps.size(); ++number) {
         if (perhaps[number] == 0)
@@ -101,10 +101,10 @@ ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
         options.rays = kRaysOfPart;
         options.seed = seed;
         const Attributes attributes =
-            measure::measure_visible(part, ray::Scene(part, skin), skin, options, {}, job)
+            measure::measure_visible(part, ray::MeshScene(part, skin), skin, options, {}, job)
                 .attributes;
-        const std::optional<solids::Thin> thin =
-            attributes.empty() ? std::nullopt : solids::thin_of(part, attributes);
+        const std::optional<solids::ThinPart> thin =
+            attributes.empty() ? std::nullopt : solids::find_thin_part(part, attributes);
         if (!thin)
             continue;
         out.parts.push_back(*thin);
@@ -126,7 +126,7 @@ std::vector<uint8_t> not_of(std::vector<uint8_t> marks) {
 }
 
 /// Of a level all loose parts but those that stand for thin ones.
-Mesh rest_of(const Mesh& level, const ThinParts& thin, const Judge& judge) {
+Mesh rest_of(const Mesh& level, const ThinParts& thin, const StandInEvaluator& judge) {
     const std::vector<uint32_t> part_of = group::loose_parts(level);
     std::vector<double> thin_area;  // by part, less what is not
     for (size_t i = 0; i < level.triangles.size(); ++i) {
@@ -137,7 +137,7 @@ Mesh rest_of(const Mesh& level, const ThinParts& thin, const Judge& judge) {
             (glm::dvec3(level.positions[t.x]) + glm::dvec3(level.positions[t.y]) +
              glm::dvec3(level.positions[t.z])) /
             3.0;
-        const ray::Closest found = judge.finest_scene().closest_point(middle);
+        const ray::ClosestPoint found = judge.finest_scene().closest_point(middle);
         const double area = glm::length(area_vector(level, static_cast<uint32_t>(i)));
         if (found.triangle != ray::kNoTriangle)
             thin_area[part_of[i]] += thin.is_thin[found.triangle] != 0 ? area : -area;
@@ -149,13 +149,13 @@ Mesh rest_of(const Mesh& level, const ThinParts& thin, const Judge& judge) {
 }
 
 /// A level's other parts, and boxes so wide in slots of their own.
-Candidate widened_level(const Candidate& level, const Mesh& others, const ThinParts& thin,
-                        double width, double floor) {
-    Candidate out = level;
+StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others,
+                               const ThinParts& thin, double width, double floor) {
+    StandInCandidate out = level;
     Composite boxes;
     out.clear_area = 0;
     for (size_t i = 0; i < thin.parts.size(); ++i) {
-        const solids::Clear clear = solids::widened(thin.parts[i], width, floor);
+        const solids::ClearSolid clear = solids::widened_box(thin.parts[i], width, floor);
         boxes.solids.push_back(
             {true, clear.primitive, static_cast<uint16_t>(out.materials.size())});
         out.materials.push_back(
@@ -170,17 +170,19 @@ Candidate widened_level(const Candidate& level, const Mesh& others, const ThinPa
 
 }  // namespace
 
-void widen(std::vector<Candidate>& kept, const Mesh& finest, const std::vector<Material>& materials,
-           image::TexelCache& texels, uint64_t seed, Judge& judge, const Job& job) {
+void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
+                      const std::vector<Material>& materials, image::TexelCache& texels,
+                      uint64_t seed, StandInEvaluator& judge, const Job& job) {
     const double radius = bound_of(finest.positions).radius;
     const double visible = judge.attributes().visible_area;
     const double widest = kWidest * radius;
     const double floor = bound_of(finest.positions).box.low.z;
-    const auto is_level = [&](const Candidate& candidate) {  // no pruned mesh and no painted box
-        return candidate.kind == Kind::Mesh && !candidate.pictured &&
-               candidate.materials.size() == materials.size() &&
-               candidate.mesh->colors.empty() == finest.colors.empty();
-    };
+    const auto is_level =
+        [&](const StandInCandidate& candidate) {  // no pruned mesh and no painted box
+            return candidate.kind == Kind::Mesh && !candidate.pictured &&
+                   candidate.materials.size() == materials.size() &&
+                   candidate.mesh->colors.empty() == finest.colors.empty();
+        };
     if (!(visible < kSparsest * 4 * std::numbers::pi * radius * radius) ||
         materials.size() + kMostThin > std::numeric_limits<uint16_t>::max() ||
         std::none_of(kept.begin(), kept.end(), is_level))
@@ -194,17 +196,17 @@ void widen(std::vector<Candidate>& kept, const Mesh& finest, const std::vector<M
         if (!pictures)
             pictures.emplace(finest, judge.finest_scene(), judge.skin(), seed,
                              measure::AgreementReference::kSide, job);
-        Candidate exact;  // but for what is widened
+        StandInCandidate exact;  // but for what is widened
         exact.materials = materials;
         exact = widened_level(exact, beside, thin, width, floor);
-        const auto skin = std::make_shared<const ray::Skin>(exact.materials, texels);
+        const auto skin = std::make_shared<const ray::MeshSkin>(exact.materials, texels);
         return pictures->of(*exact.mesh, skin, job).error;
     };
-    std::vector<Candidate> out;
+    std::vector<StandInCandidate> out;
     size_t most = finest.triangles.size();
     bool wide = false;
     for (size_t i = 0; i < kept.size(); ++i) {
-        const Candidate& level = kept[i];
+        const StandInCandidate& level = kept[i];
         if (!is_level(level) || !(level.error > thin.thickness && (wide || level.error < widest))) {
             if (is_level(level))
                 most = level.mesh->triangles.size();
@@ -218,7 +220,7 @@ void widen(std::vector<Candidate>& kept, const Mesh& finest, const std::vector<M
         bool any = false;
         double width = std::min(level.error, widest);
         for (int step = 0; step < kMostWidths && width <= widest; ++step) {
-            Candidate made = widened_level(level, others, thin, width, floor);
+            StandInCandidate made = widened_level(level, others, thin, width, floor);
             error = std::max({error, 0.5 * width, seen_from(width)});
             if (made.mesh->triangles.size() > most || !(error < next))
                 break;

@@ -19,7 +19,8 @@ namespace lodestone::hierarchy {
 /// `kept`: finest first, as bright as the finest. An error is the level's own, half of the width,
 /// or what pictures say in which everything else is the finest's, whichever is most. Bytes never
 /// rise with the error. `materials`: the finest's.
-void widen(std::vector<Candidate>& kept, const Mesh& finest, const std::vector<Material>& materials,
-           image::TexelCache& texels, uint64_t seed, Judge& judge, const Job& job);
+void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
+                      const std::vector<Material>& materials, image::TexelCache& texels,
+                      uint64_t seed, StandInEvaluator& judge, const Job& job);
 
 }  // namespace lodestone::hierarchy

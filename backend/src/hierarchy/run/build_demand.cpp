@@ -18,7 +18,7 @@ constexpr double kTrianglesPerSizeOverError = 3.6;
 constexpr uint64_t kLeastTriangles = 12;
 
 /// What of one stale thing the picture shows.
-struct Shown {
+struct PictureNeed {
     double error = -1;   // the least error any of its occurrences allows, metres; < 0: none shown
     uint64_t below = 0;  // groups: occurrences drawn for it
     double seconds() const { return static_cast<double>(below) * kSecondsPerOccurrence; }
@@ -29,11 +29,11 @@ double triangles_within(double size, double error) {
     return std::max(static_cast<double>(kLeastTriangles), wanted);
 }
 
-class Survey {
+class DemandSurvey {
 public:
-    Survey(const Model& model, const std::vector<Stale>& stale, const Demand& demand,
-           const Job& job)
-        : model_(model), cut_(choose::choose(model, demand.view, job)), shown_(stale.size()) {
+    DemandSurvey(const Model& model, const std::vector<StaleObject>& stale,
+                 const BuildDemand& demand, const Job& job)
+        : model_(model), cut_(choose::choose_cut(model, demand.view, job)), shown_(stale.size()) {
         for (size_t i = 0; i < stale.size(); ++i) {
             position_[stale[i].index] = i;
             for (const ObjectIndex copy : stale[i].copies)
@@ -41,7 +41,7 @@ public:
         }
         std::vector<uint64_t> below(cut_.nodes.size(), 0);
         for (size_t i = cut_.nodes.size(); i-- > 0;) {  // children follow their parents
-            const choose::Node& node = cut_.nodes[i];
+            const choose::CutNode& node = cut_.nodes[i];
             if (!node.opened)
                 below[i] = 1;
             if (node.parent != choose::kNoParent)
@@ -49,7 +49,7 @@ public:
             const auto at = position_.find(node.object);
             if (at == position_.end())
                 continue;
-            Shown& shown = shown_[at->second];
+            PictureNeed& shown = shown_[at->second];
             shown.below += below[i];
             const double allowed = error_allowed(node, demand.view);
             shown.error = shown.error < 0 ? allowed : std::min(shown.error, allowed);
@@ -60,7 +60,7 @@ public:
 
     /// CPU seconds that the picture saves.
     double gain(size_t position, ObjectIndex index, uint64_t group_triangles) const {
-        const Shown& shown = shown_[position];
+        const PictureNeed& shown = shown_[position];
         if (shown.error < 0)
             return 0;
         const Object& object = model_.objects[index];
@@ -81,12 +81,12 @@ public:
     }
 
 private:
-    double error_allowed(const choose::Node& node, const View& view) const {
+    double error_allowed(const choose::CutNode& node, const View& view) const {
         const Object& object = model_.objects[node.object];
         const Affine& world = cut_.world(node);
         const double z = distance(transformed(object.bound(), world), view.camera.position);
         const double enlarged = stretch(world);
-        const double counted = counted_error(1, object.role == Role::Environment, 0);
+        const double counted = counted_error(1, object.role == ObjectRole::Environment, 0);
         return enlarged > 0 ? view.pixel_error * choose::pixel_size(view, z) / enlarged / counted
                             : 0;
     }
@@ -94,15 +94,15 @@ private:
     const Model& model_;
     choose::Cut cut_;
     std::map<ObjectIndex, size_t> position_;  // in stale
-    std::vector<Shown> shown_;
+    std::vector<PictureNeed> shown_;
 };
 
 }  // namespace
 
-std::vector<uint8_t> called_for(const Model& model, const std::vector<Stale>& stale,
-                                const Settings& settings, const Job& job) {
-    const Demand& demand = settings.demand.value();
-    const Survey survey(model, stale, demand, job);
+std::vector<uint8_t> select_demanded(const Model& model, const std::vector<StaleObject>& stale,
+                                     const BuildSettings& settings, const Job& job) {
+    const BuildDemand& demand = settings.demand.value();
+    const DemandSurvey survey(model, stale, demand, job);
     std::vector<uint8_t> called(stale.size(), 0);
     double left = demand.share * seconds_to_draw(model, survey.cut(), demand.view);
     const auto take = [&](size_t i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Demand: which of the objects without stand-ins a picture gains most from.
+// Build demand: which of the objects without stand-ins a picture gains most from.
 #pragma once
 
 #include "base/job.h"
@@ -9,7 +9,7 @@
 namespace lodestone::hierarchy {
 
 /// Something stale: an object, and whatever else takes over what is built for it.
-struct Stale {
+struct StaleObject {
     ObjectIndex index = kNoObject;
     std::vector<ObjectIndex> copies;
 };
@@ -18,7 +18,7 @@ struct Stale {
 /// save the picture most time for the time they take, then groups of which nothing stale is left
 /// below. From counts alone: the same on every machine. `model` has the stand-ins the store holds,
 /// settings a demand.
-std::vector<uint8_t> called_for(const Model& model, const std::vector<Stale>& stale,
-                                const Settings& settings, const Job& job);
+std::vector<uint8_t> select_demanded(const Model& model, const std::vector<StaleObject>& stale,
+                                     const BuildSettings& settings, const Job& job);
 
 }  // namespace lodestone::hierarchy

@@ -49,32 +49,33 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
 
 }  // namespace
 
-Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
-             const Surroundings& surroundings, const Shelf& shelf, const Settings& settings) {
+BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
+                     const StandInSurroundings& surroundings, const StoredStandIns& shelf,
+                     const BuildSettings& settings) {
     const Hash of_settings = hash_of(settings);
     std::vector<bool> inside = within(settings.scope, model, order);
     // What is another group moved has the levels of that one, whichever of them is stale: so an
     // early partial build comes to the same as a whole one.
-    std::map<ObjectIndex, Moved> moved;
-    for (const Moved& one : moved_groups(model, order, surroundings)) {
+    std::map<ObjectIndex, MovedCopy> moved;
+    for (const MovedCopy& one : moved_groups(model, order, surroundings)) {
         moved.emplace(one.index, one);
         if (inside[one.index])
             inside[one.original] = true;
     }
     const std::vector<uint8_t> deforming = with_deforming(model);
-    const Poses poses(settings.poses);
-    Plan plan;
+    const DeformingPoses poses(settings.poses);
+    BuildPlan plan;
     plan.wanted.resize(model.objects.size());
-    std::map<Hash, size_t> task_of;      // content-equal objects are built once
-    std::map<Hash, Moved> moved_one_of;  // likewise where they are others moved
+    std::map<Hash, size_t> task_of;          // content-equal objects are built once
+    std::map<Hash, MovedCopy> moved_one_of;  // likewise where they are others moved
     std::map<ObjectIndex, size_t> task_for;
-    const auto move = [&](const Moved& one) {
+    const auto move = [&](const MovedCopy& one) {
         const auto at = task_for.find(one.original);
         if (at == task_for.end()) {
             plan.moved.push_back(one);
             return;
         }
-        Task& task = plan.tasks[at->second];
+        BuildTask& task = plan.tasks[at->second];
         task.moved.push_back(one);
         task.moved.back().original = task.index;  // of which it may be a copy
     };
@@ -87,7 +88,7 @@ Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
             continue;
         Hash wanted = build_hash_of(object, of_settings, surroundings.layers[index],
                                     surroundings.ground[index]);
-        std::optional<Bind> bind;
+        std::optional<PoseBinding> bind;
         if (deforming[index] != 0) {
             if (!object.deforms || object.group() || poses.empty())
                 continue;
@@ -105,7 +106,7 @@ Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
             plan.tasks[same->second].copies.push_back(index);
             task_for.emplace(index, same->second);
         } else if (same_moved != moved_one_of.end()) {
-            Moved one = same_moved->second;
+            MovedCopy one = same_moved->second;
             one.index = index;
             move(one);
         } else if (const Object* stored = shelf.find(wanted)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plan: of everything a model draws, what its store has already, and what is to be built.
+// Build plan: of everything a model draws, what its store has already, and what is to be built.
 #pragma once
 
 #include "hierarchy/build_settings.h"
@@ -17,24 +17,25 @@ namespace lodestone::hierarchy {
 
 /// Something stale that is to be built, for itself, for its copies (objects of the same content)
 /// and for what is the same group moved.
-struct Task : Stale {
-    std::optional<Bind> bind;  // of what deforms
-    std::vector<Moved> moved;
+struct BuildTask : StaleObject {
+    std::optional<PoseBinding> bind;  // of what deforms
+    std::vector<MovedCopy> moved;
 };
 
-struct Plan {
+struct BuildPlan {
     uint64_t objects = 0;                                       // that show anything
     std::vector<Hash> wanted;                                   // build hashes, by object
     std::vector<std::pair<ObjectIndex, const Object*>> stored;  // what the shelf has for which
-    std::vector<Moved> moved;                                   // whose originals the shelf has
-    std::vector<Task> tasks;                                    // children before parents
+    std::vector<MovedCopy> moved;                               // whose originals the shelf has
+    std::vector<BuildTask> tasks;                               // children before parents
     std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
 };
 
 /// Of the objects of `order` (children before parents), within the scope of the settings. Valid as
 /// long as the shelf and the models of poses. Throws Error(InvalidArgument) for a scope that names
 /// no object.
-Plan plan_of(const Model& model, const std::vector<ObjectIndex>& order,
-             const Surroundings& surroundings, const Shelf& shelf, const Settings& settings);
+BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
+                     const StandInSurroundings& surroundings, const StoredStandIns& shelf,
+                     const BuildSettings& settings);
 
 }  // namespace lodestone::hierarchy

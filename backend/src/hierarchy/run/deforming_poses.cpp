@@ -8,7 +8,7 @@
 
 namespace lodestone::hierarchy {
 
-Poses::Poses(std::span<const Model* const> models) {
+DeformingPoses::DeformingPoses(std::span<const Model* const> models) {
     for (const Model* model : models) {
         PoseModel& added = models_.emplace_back(PoseModel{model, {}});
         for (ObjectIndex i = 0; i < model->objects.size(); ++i) {
@@ -19,10 +19,10 @@ Poses::Poses(std::span<const Model* const> models) {
     }
 }
 
-std::optional<Bind> Poses::of(const Object& object, Hash settings) const {
+std::optional<PoseBinding> DeformingPoses::of(const Object& object, Hash settings) const {
     if (object.pose == nullptr || object.group())
         return std::nullopt;
-    Bind bind;
+    PoseBinding bind;
     Hasher hasher;
     hasher.value(settings).value(object.pose->connectivity).value(object.role);
     for (const PoseModel& held : models_) {
@@ -32,7 +32,7 @@ std::optional<Bind> Poses::of(const Object& object, Hash settings) const {
         const Object& there = held.model->objects[at->second];
         if (there.pose->connectivity != object.pose->connectivity)
             continue;
-        const Pose& pose = *there.pose;
+        const PosedSurface& pose = *there.pose;
         if (!all_finite(pose.points))
             continue;
         if (bind.object == nullptr) {
@@ -41,7 +41,9 @@ std::optional<Bind> Poses::of(const Object& object, Hash settings) const {
             // Materials too: levels are painted like what can be seen of the finest.
             hasher.value(there.representations[0].summary.hash);
         } else {
-            const auto same = [&](const Pose* other) { return other->points == pose.points; };
+            const auto same = [&](const PosedSurface* other) {
+                return other->points == pose.points;
+            };
             if (same(bind.object->pose.get()) ||
                 std::any_of(bind.others.begin(), bind.others.end(), same))
                 continue;  // it rests there

@@ -13,23 +13,23 @@
 namespace lodestone::hierarchy {
 
 /// What one object's levels are collapsed from: its poses of the same connectivity.
-struct Bind {
+struct PoseBinding {
     Hash hash = 0;  // of all that the levels depend on
     const Model* model = nullptr;
-    const Object* object = nullptr;   // the first pose: levels are made of its mesh
-    std::vector<const Pose*> others;  // in the order of the models
+    const Object* object = nullptr;           // the first pose: levels are made of its mesh
+    std::vector<const PosedSurface*> others;  // in the order of the models
 };
 
 /// Models of one scene in a few fixed frames. They must outlive it.
-class Poses {
+class DeformingPoses {
 public:
-    explicit Poses(std::span<const Model* const> models);
+    explicit DeformingPoses(std::span<const Model* const> models);
 
     bool empty() const { return models_.empty(); }
 
     /// The object's levels do not depend on the frame it is in, only on which of the poses have its
     /// connectivity. Nothing for an object that no pose is of.
-    std::optional<Bind> of(const Object& object, Hash settings) const;
+    std::optional<PoseBinding> of(const Object& object, Hash settings) const;
 
 private:
     struct PoseModel {

@@ -15,7 +15,7 @@ constexpr double kSecondsToStart = 0.2;     // POV-Ray, and the empty scene
 
 }  // namespace
 
-double seconds_to_build(const Object& object, const Settings& settings) {
+double seconds_to_build(const Object& object, const BuildSettings& settings) {
     const uint64_t own = object.representations.at(0).summary.cost.triangles;
     // Groups are flattened to about a third of what they may be.
     const uint64_t read = object.group() ? std::min(own, settings.group_triangles) / 3 : own;
@@ -26,8 +26,9 @@ double seconds_to_draw(const Model& model, const choose::Cut& cut, const View& v
     std::set<Hash> distinct;
     uint64_t triangles = 0;
     for (const uint32_t index : cut.chosen) {
-        const choose::Node& node = cut.nodes[index];
-        const Summary& summary = model.objects[node.object].representations[node.lod].summary;
+        const choose::CutNode& node = cut.nodes[index];
+        const RepresentationSummary& summary =
+            model.objects[node.object].representations[node.lod].summary;
         if (distinct.insert(summary.hash).second)
             triangles += summary.cost.triangles;
     }

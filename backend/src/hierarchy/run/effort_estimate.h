@@ -9,7 +9,7 @@
 namespace lodestone::hierarchy {
 
 /// CPU seconds to make the stand-ins of one object.
-double seconds_to_build(const Object& object, const Settings& settings);
+double seconds_to_build(const Object& object, const BuildSettings& settings);
 
 /// CPU seconds that a picture saves in POV-Ray for each triangle it need not read, and for each
 /// occurrence it need not place.

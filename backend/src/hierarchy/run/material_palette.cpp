@@ -3,12 +3,12 @@
 
 namespace lodestone::hierarchy {
 
-Palette::Palette(Model& model) : model_(model) {
+MaterialPalette::MaterialPalette(Model& model) : model_(model) {
     for (uint32_t i = 0; i < model.materials.size(); ++i)
         by_hash_.try_emplace(hash_of(model.materials[i]), i);
 }
 
-uint32_t Palette::index_of(const Material& material) {
+uint32_t MaterialPalette::index_of(const Material& material) {
     const auto [at, fresh] =
         by_hash_.try_emplace(hash_of(material), static_cast<uint32_t>(model_.materials.size()));
     if (fresh)

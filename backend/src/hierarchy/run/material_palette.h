@@ -11,10 +11,10 @@
 namespace lodestone::hierarchy {
 
 /// Not safe from several threads.
-class Palette {
+class MaterialPalette {
 public:
     /// Of the materials that the model has already; it must outlive the palette.
-    explicit Palette(Model& model);
+    explicit MaterialPalette(Model& model);
 
     /// Its place in the model's list, where it is added when its content is new; the name of the
     /// first stays.

@@ -19,10 +19,10 @@ const std::vector<Placement>& placed_in(const Model& model, ObjectIndex group) {
 }
 
 /// Of all but where things are: groups with different ones are different.
-Hash kind_of(const Model& model, ObjectIndex group, const Surroundings& around) {
+Hash kind_of(const Model& model, ObjectIndex group, const StandInSurroundings& around) {
     const Object& object = model.objects[group];
     Hasher hasher;
-    hasher.value(object.role).value(object.of_parts).value(object.demand);
+    hasher.value(object.role).value(object.made_of_parts).value(object.demand);
     hasher.value(around.uses[group]).value(around.environment[group]).value(around.hidden[group]);
     hasher.value(around.layers[group]).value(around.marked[group]).value(around.ground[group]);
     for (const Placement& at : placed_in(model, group))
@@ -52,13 +52,13 @@ double distance_between(const Affine& a, const Affine& b, const Bound& bound) {
 }
 
 /// How `group` is the original, moved, if `off` is small.
-Moved moved_from(const Model& model, ObjectIndex group, ObjectIndex original) {
+MovedCopy moved_from(const Model& model, ObjectIndex group, ObjectIndex original) {
     const std::vector<Placement>& own = placed_in(model, group);
     const std::vector<Placement>& others = placed_in(model, original);
     const auto bound_of = [&](size_t i) -> const Bound& {
         return model.objects[own[i].object].bound();
     };
-    Moved out{group, original, {}, 0};
+    MovedCopy out{group, original, {}, 0};
     const glm::dmat3 turn = own[0].transform.linear * glm::inverse(others[0].transform.linear);
     out.place = turned_about_z(std::atan2(turn[0].y, turn[0].x));
     const glm::dvec3& center = bound_of(0).center;
@@ -96,10 +96,10 @@ Payload moved_payload(const Representation& from, const Affine& place, const Mes
 
 }  // namespace
 
-std::vector<Moved> moved_groups(const Model& model, const std::vector<ObjectIndex>& order,
-                                const Surroundings& surroundings) {
+std::vector<MovedCopy> moved_groups(const Model& model, const std::vector<ObjectIndex>& order,
+                                    const StandInSurroundings& surroundings) {
     constexpr size_t kMostKinds = 64;  // that place the same things each in its own way
-    std::vector<Moved> out;
+    std::vector<MovedCopy> out;
     std::map<Hash, std::vector<ObjectIndex>> originals;
     for (const ObjectIndex group : order) {
         const Object& object = model.objects[group];
@@ -108,7 +108,7 @@ std::vector<Moved> moved_groups(const Model& model, const std::vector<ObjectInde
         std::vector<ObjectIndex>& alike = originals[kind_of(model, group, surroundings)];
         const size_t before = out.size();
         for (size_t i = 0; i < alike.size() && out.size() == before; ++i) {
-            const Moved moved = moved_from(model, group, alike[i]);
+            const MovedCopy moved = moved_from(model, group, alike[i]);
             if (moved.off <= kSamePlace * object.bound().radius)
                 out.push_back(moved);
         }
@@ -118,7 +118,7 @@ std::vector<Moved> moved_groups(const Model& model, const std::vector<ObjectInde
     return out;
 }
 
-void add_moved(Model& model, const Moved& moved, const MeshSource& source) {
+void add_moved_copy(Model& model, const MovedCopy& moved, const MeshSource& source) {
     const Object& from = model.objects[moved.original];
     Object& to = model.objects[moved.index];
     if (from.attributes)

@@ -6,14 +6,14 @@
 
 namespace lodestone::hierarchy {
 
-Surroundings surroundings_of(const Model& model, const std::vector<ObjectIndex>& order,
-                             const MeshSource& source, const Job& job) {
-    Surroundings around{uses_of(model),
-                        with_environment(model),
-                        with_hidden(model),
-                        layers_of(model, order, source, job),
-                        marked_environment(model, order),
-                        {}};
+StandInSurroundings surroundings_of(const Model& model, const std::vector<ObjectIndex>& order,
+                                    const MeshSource& source, const Job& job) {
+    StandInSurroundings around{uses_of(model),
+                               with_environment(model),
+                               with_hidden(model),
+                               layers_of(model, order, source, job),
+                               marked_environment(model, order),
+                               {}};
     around.ground = grounds_of(model, order, around.marked);
     return around;
 }

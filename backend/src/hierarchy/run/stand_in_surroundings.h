@@ -10,7 +10,7 @@
 namespace lodestone::hierarchy {
 
 /// Of every object of a model, by index; made once for a build.
-struct Surroundings {
+struct StandInSurroundings {
     std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
     std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
     std::vector<uint8_t> hidden;       // whether it hides anything from some rays (with_hidden)
@@ -20,8 +20,8 @@ struct Surroundings {
 };
 
 /// `order`: children before parents.
-Surroundings surroundings_of(const Model& model, const std::vector<ObjectIndex>& order,
-                             const MeshSource& source, const Job& job);
+StandInSurroundings surroundings_of(const Model& model, const std::vector<ObjectIndex>& order,
+                                    const MeshSource& source, const Job& job);
 
 /// How often each object is drawn: the number of paths to it from the root.
 std::vector<uint64_t> uses_of(const Model& model);

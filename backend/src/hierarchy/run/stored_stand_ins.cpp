@@ -5,7 +5,7 @@
 
 namespace lodestone::hierarchy {
 
-Shelf::Shelf(const segment::Store& store, bool ignore) {
+StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore) {
     if (ignore || !store.exists())
         return;
     try {
@@ -19,12 +19,12 @@ Shelf::Shelf(const segment::Store& store, bool ignore) {
     }
 }
 
-const Object* Shelf::find(Hash build_hash) const {
+const Object* StoredStandIns::find(Hash build_hash) const {
     const auto at = by_hash_.find(build_hash);
     return at == by_hash_.end() ? nullptr : at->second;
 }
 
-void Shelf::adopt(Object& object, const Object& stored, Palette& palette) const {
+void StoredStandIns::adopt(Object& object, const Object& stored, MaterialPalette& palette) const {
     object.build_hash = stored.build_hash;
     object.bind_hash = stored.bind_hash;
     object.attributes = stored.attributes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shelf: the stand-ins that a store has already, found by what they were built from.
+// Stored stand-ins: those that a store has already, found by what they were built from.
 #pragma once
 
 #include "hierarchy/run/material_palette.h"
@@ -9,17 +9,17 @@
 
 namespace lodestone::hierarchy {
 
-class Shelf {
+class StoredStandIns {
 public:
     /// Empty with `ignore`, and where the store cannot be read or is of another version: then
     /// everything is built again.
-    Shelf(const segment::Store& store, bool ignore);
+    StoredStandIns(const segment::Store& store, bool ignore);
 
     /// The stored object of this build hash; null when there is none, or a file of it is gone.
     const Object* find(Hash build_hash) const;
 
     /// Takes over the stand-ins of what find() gave; the finest representation stays ours.
-    void adopt(Object& object, const Object& stored, Palette& palette) const;
+    void adopt(Object& object, const Object& stored, MaterialPalette& palette) const;
 
 private:
     Model stored_;

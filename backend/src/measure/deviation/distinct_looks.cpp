@@ -23,12 +23,12 @@ double decode(double encoded) {
 }
 
 /// What a material shows where nothing is looked up: what it mixes is mixed.
-struct Mean {
+struct MeanLook {
     glm::dvec3 light;  // color and emission
     glm::dvec3 emission;
     double opacity;
 
-    explicit Mean(const Material& material)
+    explicit MeanLook(const Material& material)
         : light(material.base_color + material.emission), emission(material.emission), opacity(1) {
         if (material.alpha_mode == AlphaMode::Blend)
             opacity = material.alpha;
@@ -36,7 +36,7 @@ struct Mean {
             opacity = material.alpha_texture || material.alpha >= material.alpha_cutoff ? 1 : 0;
         opacity *= 1 - material.transmission * (1 - material.metallic);
         if (material.other) {
-            const Mean second(*material.other);
+            const MeanLook second(*material.other);
             light = glm::mix(light, second.light, material.mix);
             emission = glm::mix(emission, second.emission, material.mix);
             opacity = glm::mix(opacity, second.opacity, material.mix);
@@ -51,7 +51,7 @@ bool emit_alike(const glm::dvec3& a, const glm::dvec3& b) {
         const double less = std::min(a[i], b[i]);
         const double more = std::max(a[i], b[i]);
         if (more > kSameLamp * less &&
-            (more >= 1 || encode(more) - encode(less) > Looks::kSameLook))
+            (more >= 1 || encode(more) - encode(less) > LookPalette::kSameLook))
             return false;
     }
     return true;
@@ -68,20 +68,20 @@ bool varies_by_vertex(const Material& material) {
 
 }  // namespace
 
-glm::dvec3 Looks::color_of(const ray::Shown& shown) {
+glm::dvec3 LookPalette::color_of(const ray::SurfaceAppearance& shown) {
     return encoded(shown.color + shown.emission);
 }
 
-glm::dvec3 Looks::encoded(const glm::dvec3& light) {
+glm::dvec3 LookPalette::encoded(const glm::dvec3& light) {
     return {encode(light.x), encode(light.y), encode(light.z)};
 }
 
-glm::dvec3 Looks::light_of(const glm::dvec3& color) {
+glm::dvec3 LookPalette::light_of(const glm::dvec3& color) {
     return {decode(color.x), decode(color.y), decode(color.z)};
 }
 
-Looks::Lights Looks::lights_alike(const glm::dvec3& color) {
-    Lights out;
+LookPalette::LightRange LookPalette::lights_alike(const glm::dvec3& color) {
+    LightRange out;
     for (int i = 0; i < 3; ++i) {
         // Encoding rises with light, and shows all that is above 1 as 1.
         out.least[i] = color[i] - kSameLook > 0 ? decode(color[i] - kSameLook) : -kInfinity;
@@ -90,22 +90,22 @@ Looks::Lights Looks::lights_alike(const glm::dvec3& color) {
     return out;
 }
 
-bool Looks::alike(const glm::dvec3& a, const glm::dvec3& b) {
+bool LookPalette::alike(const glm::dvec3& a, const glm::dvec3& b) {
     const glm::dvec3 off = glm::abs(a - b);
     return std::max({off.x, off.y, off.z}) <= kSameLook;
 }
 
-uint16_t Looks::add(const Look& look) {
+uint16_t LookPalette::add(const PaletteLook& look) {
     if (looks_.size() < std::numeric_limits<uint16_t>::max())
         looks_.push_back(look);
     return static_cast<uint16_t>(looks_.size() - 1);
 }
 
-uint16_t Looks::of(const Material& material) {
-    const Mean mean(material);
+uint16_t LookPalette::of(const Material& material) {
+    const MeanLook mean(material);
     const glm::dvec3 color = encoded(mean.light);
     for (size_t i = 0; i < looks_.size(); ++i) {
-        const Look& known = looks_[i];
+        const PaletteLook& known = looks_[i];
         if (!known.varies && alike(color, known.color) &&
             emit_alike(mean.emission, known.emission) &&
             std::abs(mean.opacity - known.opacity) <= kSameLook)
@@ -114,7 +114,7 @@ uint16_t Looks::of(const Material& material) {
     return add({color, mean.emission, mean.opacity, false});
 }
 
-std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> materials) {
+std::vector<uint16_t> LookPalette::of(const Mesh& mesh, std::span<const Material> materials) {
     std::vector<uint16_t> by_slot;
     for (const Material& material : materials) {
         if (!(varies_by_texture(material) && !mesh.uvs.empty()) &&
@@ -124,7 +124,7 @@ std::vector<uint16_t> Looks::of(const Mesh& mesh, std::span<const Material> mate
         }
         const auto [at, fresh] = by_texture_.try_emplace(hash_of(material), uint16_t{0});
         if (fresh) {
-            const Mean mean(material);
+            const MeanLook mean(material);
             at->second = add({encoded(mean.light), mean.emission, mean.opacity, true});
         }
         by_slot.push_back(at->second);

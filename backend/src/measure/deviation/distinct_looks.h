@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks: which materials a picture can tell apart.
+// LookPalette: which materials a picture can tell apart.
 #pragma once
 
 #include "ray/mesh_skin.h"
@@ -13,19 +13,19 @@ namespace lodestone::measure {
 /// differ by at most kSameLook share one (the first seen decides, so ask for the finest's materials
 /// first). What varies by texture or vertex color has a look of its own, as long as the mesh has
 /// what it varies by; its color is the mean.
-class Looks {
+class LookPalette {
 public:
     static constexpr double kSameLook = 0.1;
 
     /// Display-encoded, of a point.
-    static glm::dvec3 color_of(const ray::Shown& shown);
+    static glm::dvec3 color_of(const ray::SurfaceAppearance& shown);
     /// The light of a display-encoded color: what mixes where a pixel shows several.
     static glm::dvec3 light_of(const glm::dvec3& color);
     static glm::dvec3 encoded(const glm::dvec3& light);
     static bool alike(const glm::dvec3& a, const glm::dvec3& b);
 
     /// Lights whose encoded colors are alike one color: known without encoding each.
-    struct Lights {
+    struct LightRange {
         glm::dvec3 least{0.0};
         glm::dvec3 most{0.0};
         bool hold(const glm::dvec3& light) const {
@@ -33,7 +33,7 @@ public:
                    light.x <= most.x && light.y <= most.y && light.z <= most.z;
         }
     };
-    static Lights lights_alike(const glm::dvec3& color);
+    static LightRange lights_alike(const glm::dvec3& color);
 
     uint16_t of(const Material& material);
     /// One a triangle; a slot without a material looks like Material{}.
@@ -48,15 +48,15 @@ public:
     size_t size() const { return looks_.size(); }
 
 private:
-    struct Look {
+    struct PaletteLook {
         glm::dvec3 color;  // display-encoded, with what it emits
         glm::dvec3 emission;
         double opacity;
         bool varies;  // looks like nothing else
     };
-    uint16_t add(const Look& look);
+    uint16_t add(const PaletteLook& look);
 
-    std::vector<Look> looks_;
+    std::vector<PaletteLook> looks_;
     std::map<Hash, uint16_t> by_texture_;
 };
 

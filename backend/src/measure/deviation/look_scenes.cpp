@@ -4,12 +4,12 @@
 namespace lodestone::measure {
 
 LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const ray::SkinPtr& skin,
-                       ray::Uses uses, std::shared_ptr<const ray::Scene> opaque)
+                       ray::SceneUse uses, std::shared_ptr<const ray::MeshScene> opaque)
     : mesh_(&mesh),
       skin_(skin),
       whole_(opaque && !(skin && skin->see_through(mesh))
                  ? std::move(opaque)
-                 : std::make_shared<const ray::Scene>(mesh, skin, uses)),
+                 : std::make_shared<const ray::MeshScene>(mesh, skin, uses)),
       looks_(looks.begin(), looks.end()) {
     if (!looks_.empty() && looks_.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, looks_.size(), " looks for ", mesh.triangles.size(),
@@ -22,17 +22,17 @@ LookScenes::LookScenes(const Mesh& mesh, std::span<const uint16_t> looks, const 
         scene = std::make_unique<OfLook>();
 }
 
-ray::Closest LookScenes::nearest(uint16_t look, const glm::dvec3& point, double radius) const {
+ray::ClosestPoint LookScenes::nearest(uint16_t look, const glm::dvec3& point, double radius) const {
     if (!has(look))
         return {};
-    if (!several())
+    if (!has_several_looks())
         return whole_->closest_point(point, radius);
     OfLook& own = *by_look_.at(look);
     std::call_once(own.once, [&] {
         std::vector<uint8_t> keep(looks_.size(), 0);
         for (size_t i = 0; i < keep.size(); ++i)
             keep[i] = looks_[i] == look ? 1 : 0;
-        own.scene.emplace(subset(*mesh_, keep), skin_, ray::Uses::ClosestPoints);
+        own.scene.emplace(subset(*mesh_, keep), skin_, ray::SceneUse::ClosestPoints);
     });
     return own.scene->closest_point(point, radius);
 }

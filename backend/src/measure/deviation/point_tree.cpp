@@ -24,9 +24,11 @@ void PointTree::build(size_t begin, size_t end) {
     const size_t middle = begin + (end - begin) / 2;
     const auto at = [&](size_t i) { return nodes_.begin() + static_cast<std::ptrdiff_t>(i); };
     // By number where the places are equal: the same tree everywhere.
-    std::nth_element(at(begin), at(middle), at(end), [axis](const Node& a, const Node& b) {
-        return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis] : a.number < b.number;
-    });
+    std::nth_element(at(begin), at(middle), at(end),
+                     [axis](const PointNode& a, const PointNode& b) {
+                         return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis]
+                                                               : a.number < b.number;
+                     });
     nodes_[middle].axis = static_cast<uint32_t>(axis);
     build(begin, middle);
     build(middle + 1, end);

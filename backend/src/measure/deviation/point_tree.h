@@ -30,7 +30,7 @@ public:
 private:
     static constexpr size_t kLeaf = 8;
 
-    struct Node {
+    struct PointNode {
         glm::dvec3 point;
         uint32_t number;
         uint32_t axis;  // of the split, of the one in the middle of its range
@@ -47,7 +47,7 @@ private:
             return;
         }
         const size_t middle = begin + (end - begin) / 2;
-        const Node& node = nodes_[middle];
+        const PointNode& node = nodes_[middle];
         const auto axis = static_cast<int>(node.axis);
         const double off = from[axis] - node.point[axis];
         // The other half is at least as far as the plane.
@@ -64,7 +64,7 @@ private:
     }
 
     template <typename Wanted>
-    static void visit(const Node& node, const glm::dvec3& from, double& square,
+    static void visit(const PointNode& node, const glm::dvec3& from, double& square,
                       const Wanted& wanted) {
         const glm::dvec3 arm = node.point - from;
         const double here = glm::dot(arm, arm);
@@ -72,7 +72,7 @@ private:
             square = here;
     }
 
-    std::vector<Node> nodes_;
+    std::vector<PointNode> nodes_;
 };
 
 }  // namespace lodestone::measure

@@ -36,7 +36,7 @@ struct UvMap {
 using Voters = std::vector<const SurfaceSample*>;
 
 /// That the level's triangle nearest to a point shows the point's slot.
-struct Vote {
+struct SlotVote {
     uint32_t triangle;
     uint16_t slot;
     const SurfaceSample* voter;
@@ -89,7 +89,7 @@ void set_uvs(Mesh& level, uint32_t triangle, const UvMap& map) {
 
 /// Whether the triangle, painted with `slot` and the map, shows what the voters show.
 bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const UvMap& map,
-                    const ray::Skin& skin, const Voters& voters) {
+                    const ray::MeshSkin& skin, const Voters& voters) {
     // One triangle that is all map: its corners' coordinates are looked up where each voter is.
     Mesh probe;
     probe.positions.resize(3);
@@ -102,8 +102,8 @@ bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const U
     size_t right = 0;
     for (const SurfaceSample* voter : voters) {
         probe.uvs.assign(3, glm::vec2(map.at(voter->point)));
-        const glm::dvec3 color = Looks::color_of(skin.at(probe, 0, 1.0 / 3, 1.0 / 3));
-        right += Looks::alike(color, voter->color) ? 1 : 0;
+        const glm::dvec3 color = LookPalette::color_of(skin.at(probe, 0, 1.0 / 3, 1.0 / 3));
+        right += LookPalette::alike(color, voter->color) ? 1 : 0;
     }
     return static_cast<double>(right) >= kLeastRight * static_cast<double>(voters.size());
 }
@@ -128,16 +128,18 @@ size_t step_for(size_t triangles, size_t points) {
 
 }  // namespace
 
-DeviationReference::Repainted DeviationReference::repaint(Mesh& level, const ray::Skin* skin,
-                                                          const Job& job, bool rough,
-                                                          double useless) const {
+DeviationReference::RepaintResult DeviationReference::repaint(Mesh& level,
+                                                              const ray::MeshSkin* skin,
+                                                              const Job& job, bool rough,
+                                                              double useless) const {
     const std::vector<SurfaceSample>& points = seen_.points;
-    Repainted out;
+    RepaintResult out;
     if (level.slots.empty() || shows_one_slot(level, points))
         return out;
-    std::vector<ray::Closest>& nearest = out.nearest;
+    std::vector<ray::ClosestPoint>& nearest = out.nearest;
     nearest.resize(points.size());
-    out.scene = std::make_shared<const ray::Scene>(level, nullptr, ray::Uses::ClosestPoints);
+    out.scene =
+        std::make_shared<const ray::MeshScene>(level, nullptr, ray::SceneUse::ClosestPoints);
     const auto search = [&](const auto& wanted) {
         parallel_for((points.size() + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
@@ -157,7 +159,7 @@ DeviationReference::Repainted DeviationReference::repaint(Mesh& level, const ray
         std::vector<uint8_t> asked(points.size(), 0);
         size_t count = 0;
         for (size_t i = 0; i < points.size(); ++i) {
-            if ((rough && !is_of_few(i)) || count++ % kEvery != 0)
+            if ((rough && !is_rough_sample(i)) || count++ % kLookSampleStep != 0)
                 continue;
             some.push_back(i);
             asked[i] = 1;
@@ -167,31 +169,31 @@ DeviationReference::Repainted DeviationReference::repaint(Mesh& level, const ray
         for (const size_t i : some)
             places[i] = nearest[i].distance;
         const std::vector<double> moves(points.size(), 0);
-        out.useless = surely_above(useless, points, some, places, moves);
-        if (out.useless)
+        out.surely_useless = surely_above(useless, points, some, places, moves);
+        if (out.surely_useless)
             return out;
     }
     const size_t step = step_for(level.triangles.size(), points.size());
     const auto votes_at = [&](size_t i) { return points[i].look != kAnyLook && i % step == 0; };
     search([&](size_t i) { return votes_at(i) && !std::isfinite(nearest[i].distance); });
-    std::vector<Vote> votes;
+    std::vector<SlotVote> votes;
     votes.reserve(nearest.size());
     for (size_t i = 0; i < nearest.size(); ++i) {
         if (votes_at(i) && nearest[i].triangle != ray::kNoTriangle)
             votes.push_back({nearest[i].triangle, points[i].slot, &points[i]});
     }
-    std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+    std::stable_sort(votes.begin(), votes.end(), [](const SlotVote& a, const SlotVote& b) {
         return a.triangle != b.triangle ? a.triangle < b.triangle : a.slot < b.slot;
     });
     for (auto first = votes.begin(); first != votes.end();) {
         const uint32_t triangle = first->triangle;
-        std::span<const Vote> most;
+        std::span<const SlotVote> most;
         size_t own = 0;
         while (first != votes.end() && first->triangle == triangle) {
-            const auto end = std::find_if(first, votes.end(), [&](const Vote& other) {
+            const auto end = std::find_if(first, votes.end(), [&](const SlotVote& other) {
                 return other.triangle != triangle || other.slot != first->slot;
             });
-            const std::span<const Vote> alike(first, end);
+            const std::span<const SlotVote> alike(first, end);
             if (alike.size() > most.size())
                 most = alike;
             if (first->slot == level.slots[triangle])
@@ -206,7 +208,7 @@ DeviationReference::Repainted DeviationReference::repaint(Mesh& level, const ray
             if (most.size() < kLeastTextured)
                 continue;
             Voters voters;
-            for (const Vote& vote : most)
+            for (const SlotVote& vote : most)
                 voters.push_back(vote.voter);
             const std::optional<UvMap> map = fit(level, triangle, voters);
             if (!map || !shows_the_same(level, triangle, slot, *map, *skin, voters))

@@ -64,9 +64,10 @@ double quantile(const std::vector<SurfaceSample>& samples, const std::vector<dou
     return out;
 }
 
-Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
-                       const std::vector<double>& moves, double enough) {
-    Deviation out;
+SurfaceDeviation deviation_of(const std::vector<SurfaceSample>& samples,
+                              const std::vector<double>& places, const std::vector<double>& moves,
+                              double enough) {
+    SurfaceDeviation out;
     double all = 0;
     std::vector<size_t> far;
     ByLook<uint8_t> any_moved;
@@ -114,7 +115,7 @@ bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
     constexpr double kMoves = 0.06;
     constexpr size_t kFewest = 6;
     constexpr double kLeastShare = 5 * kLeastLookShare;
-    struct Sum {
+    struct ShareAbove {
         double all = 0;
         double above = 0;
         size_t count = 0;
@@ -126,8 +127,8 @@ bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
     };
     if (!std::isfinite(useless))
         return false;
-    Sum place;
-    ByLook<Sum> looks;
+    ShareAbove place;
+    ByLook<ShareAbove> looks;
     for (const size_t i : some) {
         place.add(samples[i].weight, places[i] > useless);
         if (samples[i].look != kAnyLook)
@@ -135,13 +136,13 @@ bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
     }
     if (place.count >= kFewest && place.above > kPlaces * place.all)
         return true;
-    return std::any_of(looks.begin(), looks.end(), [&](const Sum& moved) {
+    return std::any_of(looks.begin(), looks.end(), [&](const ShareAbove& moved) {
         return moved.count >= kFewest && moved.above > kMoves * moved.all &&
                moved.all > kLeastShare * place.all;
     });
 }
 
-std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, size_t wanted) {
+std::vector<uint8_t> look_samples(const std::vector<SurfaceSample>& samples, size_t wanted) {
     ByLook<size_t> counts;
     for (const SurfaceSample& sample : samples) {
         if (sample.look != kAnyLook)
@@ -152,15 +153,19 @@ std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, 
     for (size_t i = 0; i < samples.size(); ++i) {
         if (samples[i].look == kAnyLook)
             continue;
-        const size_t stride = std::clamp<size_t>(counts[samples[i].look] / wanted, 1, kEvery);
+        const size_t stride =
+            std::clamp<size_t>(counts[samples[i].look] / wanted, 1, kLookSampleStep);
         const size_t rank = ranks[samples[i].look]++;
-        out[i] = i % kEvery == 0 || rank == 0 || (stride < kEvery && rank % stride == 0) ? 1 : 0;
+        out[i] = i % kLookSampleStep == 0 || rank == 0 ||
+                         (stride < kLookSampleStep && rank % stride == 0)
+                     ? 1
+                     : 0;
     }
     return out;
 }
 
-void spread(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
-            std::vector<double>& moves) {
+void spread_moves(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
+                  std::vector<double>& moves) {
     ByLook<double> last;
     for (size_t i = 0; i < samples.size(); ++i) {
         if (samples[i].look == kAnyLook)

@@ -17,8 +17,9 @@ double quantile(const std::vector<SurfaceSample>& samples, const std::vector<dou
 /// `places`: how far every sample is from the other surface, exactly where that is above `enough`;
 /// `moves`: how far its look was moved. A quantile of places that is not above `enough` counts as
 /// that.
-Deviation deviation_of(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
-                       const std::vector<double>& moves, double enough);
+SurfaceDeviation deviation_of(const std::vector<SurfaceSample>& samples,
+                              const std::vector<double>& places, const std::vector<double>& moves,
+                              double enough);
 
 /// Whether the quantile of all samples is above that.
 bool is_above(const std::vector<SurfaceSample>& samples, const std::vector<double>& places,
@@ -30,19 +31,19 @@ bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
                   const std::vector<double>& moves);
 
 /// Every so many samples are asked whatever they show. Divides a block.
-inline constexpr size_t kEvery = 8;
+inline constexpr size_t kLookSampleStep = 8;
 
 /// One of two samples, for a rough answer, by no regular step: the corners of boxes are listed
 /// bottom, top, bottom, top.
-inline bool is_of_few(size_t i) {
+inline bool is_rough_sample(size_t i) {
     return static_cast<uint32_t>(i) * 0x9E3779B9u >= 0x80000000u;
 }
 
 /// 1 for the samples that are asked for looks: at least `wanted` of each look, evenly, or all.
-std::vector<uint8_t> asked_for_looks(const std::vector<SurfaceSample>& samples, size_t wanted);
+std::vector<uint8_t> look_samples(const std::vector<SurfaceSample>& samples, size_t wanted);
 
 /// Gives samples that were not asked what the one of their look before them has.
-void spread(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
-            std::vector<double>& moves);
+void spread_moves(const std::vector<SurfaceSample>& samples, const std::vector<uint8_t>& asked,
+                  std::vector<double>& moves);
 
 }  // namespace lodestone::measure

@@ -62,18 +62,19 @@ struct DeviationReference::Against {
     const LookScenes& other;
     const VisibleLooks& seen;  // of the finest
     const LookScenes& finest;
-    const Looks* palette;
+    const LookPalette* palette;
     double none;                    // the answer where there is nothing to find
     const Mesh& mesh;               // the other's
-    const ray::Skin* skin;          // likewise
+    const ray::MeshSkin* skin;      // likewise
     const lodestone::Solid* exact;  // the solid that the mesh is about; null: none
 
-    /// As ray::Scene::closest_point(), of the other.
-    ray::Closest closest_point(const glm::dvec3& point, uint32_t perhaps, double enough) const {
+    /// As ray::MeshScene::closest_point(), of the other.
+    ray::ClosestPoint closest_point(const glm::dvec3& point, uint32_t perhaps,
+                                    double enough) const {
         if (exact == nullptr)
             return other.whole().closest_point(point, std::numeric_limits<double>::infinity(),
                                                perhaps, enough);
-        ray::Closest out;
+        ray::ClosestPoint out;
         out.distance = exact->box ? distance_to_box(exact->primitive, point)
                                   : distance_to_ellipsoid(exact->primitive, point);
         out.triangle = 0;  // all are alike
@@ -81,16 +82,16 @@ struct DeviationReference::Against {
     }
     /// What the other shows at a point of its own; `varies`: elsewhere on the triangle other
     /// things.
-    glm::dvec3 color_at(const ray::Closest& at, bool& varies) const {
+    glm::dvec3 color_at(const ray::ClosestPoint& at, bool& varies) const {
         varies = skin != nullptr && skin->varies(mesh, mesh.slot(at.triangle));
-        return varies ? Looks::color_of(skin->at(mesh, at.triangle, at.u, at.v))
+        return varies ? LookPalette::color_of(skin->at(mesh, at.triangle, at.u, at.v))
                       : palette->color(other.look_of(at.triangle));
     }
     /// Whether what the other shows does not depend on where.
     bool shows_one_thing() const {
         if (palette == nullptr)
             return true;
-        if (other.several())
+        if (other.has_several_looks())
             return false;
         if (skin == nullptr)
             return true;
@@ -126,7 +127,8 @@ struct DeviationReference::Against {
     }
     /// How far the same texture slid along the surface at a sample where the other shows another
     /// color.
-    double slid_by(const Sample& sample, const ray::Closest& at, const glm::dvec3& color) const {
+    double slid_by(const Sample& sample, const ray::ClosestPoint& at,
+                   const glm::dvec3& color) const {
         double least = none;
         if (sample.metres_per_uv > 0 && !mesh.uvs.empty()) {
             const glm::dvec2 there = ray::uv_at(mesh, at.triangle, at.u, at.v);
@@ -136,7 +138,7 @@ struct DeviationReference::Against {
     }
     /// How far what a sample shows was moved on the other mesh, whose nearest point is `at`.
     double move_of(const std::vector<Sample>& samples, size_t number,
-                   const ray::Closest& at) const {
+                   const ray::ClosestPoint& at) const {
         const Sample& sample = samples[number];
         const uint16_t theirs = other.look_of(at.triangle);
         if (palette == nullptr)
@@ -146,7 +148,7 @@ struct DeviationReference::Against {
         bool varies = false;
         const glm::dvec3 color = color_at(at, varies);
         const bool lamp = theirs != sample.look && seen.glows(sample.look);
-        if ((varies || sample.varies) && !lamp && Looks::alike(color, sample.color))
+        if ((varies || sample.varies) && !lamp && LookPalette::alike(color, sample.color))
             return 0;
         return theirs == sample.look ? slid_by(sample, at, color)
                                      : moved_by(samples, number, theirs, color);
@@ -156,9 +158,10 @@ struct DeviationReference::Against {
 /// From the samples to the nearest points of the other mesh. What is not near the quantile is found
 /// out no further than that it is below, and looks are asked for at some samples for all. Numbers
 /// up to `least` may be too large, but not above it: the other way they are no less.
-Deviation DeviationReference::measure(const std::vector<Sample>& samples, const Against& against,
-                                      std::span<const ray::Closest> nearest, double least,
-                                      double useless, const Job& job) {
+SurfaceDeviation DeviationReference::measure(const std::vector<Sample>& samples,
+                                             const Against& against,
+                                             std::span<const ray::ClosestPoint> nearest,
+                                             double least, double useless, const Job& job) {
     constexpr size_t kFewSamples = 512;
     constexpr double kBelow = 0.97;  // a quantile of every eighth, below that of all
     std::vector<double> places(samples.size(), 0);
@@ -168,7 +171,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         nearest.size() == samples.size() && !against.other.whole().see_through();
     const bool one_thing = against.shows_one_thing();
     const std::vector<uint8_t> asked =
-        asked_for_looks(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
+        look_samples(samples, one_thing && against.is_mixed() ? kAskedOfMixed : kAsked);
     // `before`: what was near enough the last time, and has to be found out better.
     const auto visit = [&](size_t step, double enough, double before) {
         const bool again = before < std::numeric_limits<double>::infinity();
@@ -181,7 +184,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
                 const size_t i = k * step;
                 const Sample& sample = samples[i];
                 bool looks = asked[i] != 0;
-                if ((step == 1 && i % kEvery == 0) ||
+                if ((step == 1 && i % kLookSampleStep == 0) ||
                     (again && ((looks && !one_thing) || places[i] > before)))
                     continue;
                 looks = looks && !again;
@@ -197,7 +200,7 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
                 }
                 // Neighbors in the list are mostly neighbors in space. Where only the distance
                 // counts, any point that is near enough will do.
-                const ray::Closest closest =
+                const ray::ClosestPoint closest =
                     given ? nearest[i]
                           : against.closest_point(sample.point, last,
                                                   looks && !one_thing ? 0 : enough);
@@ -212,9 +215,9 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         });
     };
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    visit(kEvery, least, kNever);
+    visit(kLookSampleStep, least, kNever);
     std::vector<size_t> some;
-    for (size_t i = 0; i < samples.size(); i += kEvery)
+    for (size_t i = 0; i < samples.size(); i += kLookSampleStep)
         some.push_back(i);
     if (surely_above(useless, samples, some, places, moves))
         return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -232,14 +235,14 @@ Deviation DeviationReference::measure(const std::vector<Sample>& samples, const 
         enough = std::max(less * enough, least);
         visit(1, enough, before);
     }
-    spread(samples, asked, moves);
+    spread_moves(samples, asked, moves);
     return deviation_of(samples, places, moves, enough);
 }
 
 DeviationReference::DeviationReference(const Mesh& finest, const DeviationOptions& options,
-                                       const Surface& surface, const Job& job)
+                                       const SurfaceLooks& surface, const Job& job)
     : options_(options),
-      scenes_(finest, surface.looks, surface.skin, ray::Uses::Everything),
+      scenes_(finest, surface.looks, surface.skin, ray::SceneUse::Everything),
       sampler_(finest, scenes_.whole(), options.seed),
       palette_(surface.palette),
       diameter_(2 * radius_of(finest)) {
@@ -263,10 +266,10 @@ DeviationReference::DeviationReference(const Mesh& finest, const DeviationOption
 
 DeviationReference::~DeviationReference() = default;
 
-const DeviationReference::Seen& DeviationReference::few() const {
+const DeviationReference::SeenSamples& DeviationReference::few() const {
     std::call_once(once_, [&] {
         for (size_t i = 0; i < seen_.points.size(); ++i) {
-            if (is_of_few(i))
+            if (is_rough_sample(i))
                 few_.points.push_back(seen_.points[i]);
         }
         few_.looks = std::make_unique<const VisibleLooks>(few_.points, palette_);
@@ -274,16 +277,17 @@ const DeviationReference::Seen& DeviationReference::few() const {
     return few_;
 }
 
-Deviation DeviationReference::of(const Mesh& stand_in, const Surface& surface,
-                                 const Repainted& known, double useless, const Job& job) const {
+SurfaceDeviation DeviationReference::of(const Mesh& stand_in, const SurfaceLooks& surface,
+                                        const RepaintResult& known, double useless,
+                                        const Job& job) const {
     return compare(seen_,
                    {stand_in, surface, samples_for(stand_in, options_.samples, options_.samples),
                     std::max(options_.most_vertices, kLevelVertices)},
                    known, useless, job);
 }
 
-Deviation DeviationReference::of(const lodestone::Solid& stand_in, uint16_t look, double useless,
-                                 const Job& job) const {
+SurfaceDeviation DeviationReference::of(const lodestone::Solid& stand_in, uint16_t look,
+                                        double useless, const Job& job) const {
     const Mesh mesh = tessellated(stand_in);
     const std::vector<uint16_t> looks(mesh.triangles.size(), look);
     return compare(
@@ -291,12 +295,12 @@ Deviation DeviationReference::of(const lodestone::Solid& stand_in, uint16_t look
         {}, useless, job);
 }
 
-Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surface,
-                                      const Repainted& known, double useless,
-                                      const Job& job) const {
-    Repainted half{known.scene, {}, known.useless};
+SurfaceDeviation DeviationReference::roughly(const Mesh& stand_in, const SurfaceLooks& surface,
+                                             const RepaintResult& known, double useless,
+                                             const Job& job) const {
+    RepaintResult half{known.scene, {}, known.surely_useless};
     for (size_t i = 0; i < known.nearest.size(); ++i) {
-        if (is_of_few(i))
+        if (is_rough_sample(i))
             half.nearest.push_back(known.nearest[i]);
     }
     return compare(
@@ -306,19 +310,20 @@ Deviation DeviationReference::roughly(const Mesh& stand_in, const Surface& surfa
         half, useless, job);
 }
 
-Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
-                                      const Repainted& known, double useless,
-                                      const Job& job) const {
+SurfaceDeviation DeviationReference::compare(const SeenSamples& seen, const StandIn& stand_in,
+                                             const RepaintResult& known, double useless,
+                                             const Job& job) const {
     const Mesh& mesh = stand_in.mesh;
     const ray::SkinPtr& skin = stand_in.surface.skin;
-    const LookScenes scenes(mesh, stand_in.surface.looks, skin, ray::Uses::ClosestPoints,
+    const LookScenes scenes(mesh, stand_in.surface.looks, skin, ray::SceneUse::ClosestPoints,
                             known.scene);
     const double none = std::max(diameter_, 2 * radius_of(mesh));
     if (scenes.whole().triangles() == 0 || scenes_.whole().triangles() == 0)
         return {none, none};
     const Against to_stand_in{scenes, *seen.looks, scenes_,    palette_,
                               none,   mesh,        skin.get(), stand_in.exact};
-    const Deviation there = measure(seen.points, to_stand_in, known.nearest, 0, useless, job);
+    const SurfaceDeviation there =
+        measure(seen.points, to_stand_in, known.nearest, 0, useless, job);
     if (there.error > useless)
         return there;
     std::vector<Sample> samples;
@@ -330,7 +335,7 @@ Deviation DeviationReference::compare(const Seen& seen, const StandIn& stand_in,
     // What the stand-in shows where, the visible points have asked already.
     const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,
                             none,    mesh,        skin.get(), nullptr};
-    const Deviation back = measure(samples, to_finest, {}, there.error, useless, job);
+    const SurfaceDeviation back = measure(samples, to_finest, {}, there.error, useless, job);
     return {std::max(there.error, back.error), std::max(there.max, back.max)};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deviation: how far a solid stand-in is from the finest surface, as far as that can be seen.
+// SurfaceDeviation: how far a solid stand-in is from the finest surface, as far as that can be seen.
 #pragma once
 
 #include "measure/deviation/surface_samples.h"
@@ -22,7 +22,7 @@ class VisibleLooks;
 /// material shows another color there, it was moved by as much as its texture slid. Every look that
 /// at least .2 % of the area shows has its own quantile, so a lost road is wrong by half its width,
 /// however large the field around it is. Transparent points are neither sampled nor matched.
-struct Deviation {
+struct SurfaceDeviation {
     double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
     double max = 0;    // the largest distance that was seen
 };
@@ -47,13 +47,14 @@ public:
     /// Keeps what it needs of the mesh, of the looks and of the skin, and a reference to their
     /// palette. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
-                       const Surface& surface = {}, const Job& job = {});
+                       const SurfaceLooks& surface = {}, const Job& job = {});
     ~DeviationReference();
     /// What repaint() found on its way; empty where there was nothing to vote on.
-    struct Repainted {
-        std::shared_ptr<const ray::Scene> scene;  // of the level, opaque, for closest points
-        std::vector<ray::Closest> nearest;  // to each visible point; infinitely far: not searched
-        bool useless = false;
+    struct RepaintResult {
+        std::shared_ptr<const ray::MeshScene> scene;  // of the level, opaque, for closest points
+        std::vector<ray::ClosestPoint>
+            nearest;  // to each visible point; infinitely far: not searched
+        bool surely_useless = false;
     };
     DeviationReference(const DeviationReference&) = delete;
     DeviationReference& operator=(const DeviationReference&) = delete;
@@ -63,49 +64,49 @@ public:
     /// diameter of the other's bounding sphere; two empty meshes agree. Of an error larger than
     /// `useless` it may be told no more than that it is, which takes less time: by any number above
     /// `useless`, infinite where that is very sure.
-    Deviation of(const Mesh& stand_in, const Surface& surface = {}, const Job& job = {},
-                 double useless = std::numeric_limits<double>::infinity()) const {
+    SurfaceDeviation of(const Mesh& stand_in, const SurfaceLooks& surface = {}, const Job& job = {},
+                        double useless = std::numeric_limits<double>::infinity()) const {
         return of(stand_in, surface, {}, useless, job);
     }
     /// The same for a level after repaint(), whose result is `known`, or without it (empty). No
     /// triangle of the level may have moved since.
-    Deviation of(const Mesh& stand_in, const Surface& surface, const Repainted& known,
-                 double useless, const Job& job) const;
+    SurfaceDeviation of(const Mesh& stand_in, const SurfaceLooks& surface,
+                        const RepaintResult& known, double useless, const Job& job) const;
 
     /// The same of a box or an ellipsoid that shows one look everywhere. Distances to it are exact;
     /// it is asked at a quarter of the points, and at its corners or as many as tell an ellipsoid.
-    Deviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
-                 const Job& job) const;
+    SurfaceDeviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
+                        const Job& job) const;
 
     /// The same with half of all points: less exact, in half of the time.
-    Deviation roughly(const Mesh& stand_in, const Surface& surface, const Repainted& known,
-                      double useless, const Job& job) const;
+    SurfaceDeviation roughly(const Mesh& stand_in, const SurfaceLooks& surface,
+                             const RepaintResult& known, double useless, const Job& job) const;
 
     /// Gives each triangle of a level (with the finest's slots and skin) the slot that most of the
     /// visible points nearest to it show, if enough of them agree: boards look like the tiles that
     /// lay on them. A textured slot is given only with texture coordinates that show what those
     /// points show. A level whose error is surely above `useless` is left as it is; `rough`: that
     /// of roughly().
-    Repainted repaint(Mesh& level, const ray::Skin* skin = nullptr, const Job& job = {},
-                      bool rough = false,
-                      double useless = std::numeric_limits<double>::infinity()) const;
+    RepaintResult repaint(Mesh& level, const ray::MeshSkin* skin = nullptr, const Job& job = {},
+                          bool rough = false,
+                          double useless = std::numeric_limits<double>::infinity()) const;
 
     /// Of the finest, as it was made for this.
-    const ray::Scene& scene() const { return scenes_.whole(); }
+    const ray::MeshScene& scene() const { return scenes_.whole(); }
     /// Likewise; of the mesh it was made from, which must still be there.
     const VisibleSampler& sampler() const { return sampler_; }
     /// By triangle of the finest, 1 where it can be seen; empty where that was not asked for, or
     /// where the finest refracts.
     const std::vector<uint8_t>& seen_triangles() const { return seen_triangles_; }
     /// What the first rays of sampler() found, once.
-    std::vector<Cast> take_cast() { return std::move(cast_); }
+    std::vector<CastPoints> take_cast_points() { return std::move(cast_); }
 
     /// How many visible points and vertices of the finest there are.
     size_t visible_points() const { return seen_.points.size(); }
 
 private:
     /// Points of the finest.
-    struct Seen {
+    struct SeenSamples {
         std::vector<SurfaceSample> points;  // neighbors in the list are mostly neighbors in space
         std::unique_ptr<const VisibleLooks> looks;  // the same, to be searched
     };
@@ -113,26 +114,27 @@ private:
     /// Asked at so many points and vertices; `exact`: the solid that the mesh is about.
     struct StandIn {
         const Mesh& mesh;
-        const Surface& surface;
+        const SurfaceLooks& surface;
         uint32_t samples, vertices;
         const lodestone::Solid* exact = nullptr;
     };
-    static Deviation measure(const std::vector<SurfaceSample>& samples, const Against& against,
-                             std::span<const ray::Closest> nearest, double least, double useless,
-                             const Job& job);
-    const Seen& few() const;
-    Deviation compare(const Seen& seen, const StandIn& stand_in, const Repainted& known,
-                      double useless, const Job& job) const;
+    static SurfaceDeviation measure(const std::vector<SurfaceSample>& samples,
+                                    const Against& against,
+                                    std::span<const ray::ClosestPoint> nearest, double least,
+                                    double useless, const Job& job);
+    const SeenSamples& few() const;
+    SurfaceDeviation compare(const SeenSamples& seen, const StandIn& stand_in,
+                             const RepaintResult& known, double useless, const Job& job) const;
 
     DeviationOptions options_;
     LookScenes scenes_;
     VisibleSampler sampler_;
-    std::vector<Cast> cast_;
+    std::vector<CastPoints> cast_;
     std::vector<uint8_t> seen_triangles_;
-    const Looks* palette_;
-    Seen seen_;
+    const LookPalette* palette_;
+    SeenSamples seen_;
     mutable std::once_flag once_;  // of half of them: nobody may ask
-    mutable Seen few_;
+    mutable SeenSamples few_;
     double diameter_ = 0;
 };
 

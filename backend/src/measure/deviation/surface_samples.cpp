@@ -27,7 +27,7 @@ glm::dvec3 side_of(const Mesh& mesh, const VisiblePoint& point) {
 }
 
 /// Of a point that is seen.
-SurfaceSample shown_at(const Mesh& mesh, const Surface& surface, const VisiblePoint& point,
+SurfaceSample shown_at(const Mesh& mesh, const SurfaceLooks& surface, const VisiblePoint& point,
                        double weight) {
     SurfaceSample out{point.point, weight};
     out.look = surface.looks.empty() ? uint16_t{0} : surface.looks[point.triangle];
@@ -39,7 +39,7 @@ SurfaceSample shown_at(const Mesh& mesh, const Surface& surface, const VisiblePo
     if (!surface.skin || !surface.skin->varies(mesh, out.slot))
         return out;
     out.varies = true;
-    out.color = Looks::color_of(surface.skin->at(mesh, point.triangle, point.u, point.v));
+    out.color = LookPalette::color_of(surface.skin->at(mesh, point.triangle, point.u, point.v));
     if (mesh.uvs.empty())
         return out;
     out.uv = ray::uv_at(mesh, point.triangle, point.u, point.v);
@@ -79,7 +79,8 @@ private:
 };
 
 /// A little inside: at the very corner of a card a repeated picture shows its other side.
-bool shows_corner(const Mesh& mesh, const ray::Scene& scene, uint32_t triangle, uint32_t vertex) {
+bool shows_corner(const Mesh& mesh, const ray::MeshScene& scene, uint32_t triangle,
+                  uint32_t vertex) {
     constexpr double kInside = 0.05;
     const Triangle& t = mesh.triangles[triangle];
     const auto weight = [&](uint32_t corner) {
@@ -106,7 +107,7 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
     }
     if (corners.size() <= most)
         return corners;
-    Random random(scramble(seed), 1);
+    PcgRandom random(scramble(seed), 1);
     const double step = static_cast<double>(corners.size()) / most;
     double kept = 0;
     for (uint32_t i = 0; i < most; ++i) {
@@ -121,14 +122,14 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
     return corners;
 }
 
-void add_area_samples(const Mesh& mesh, const ray::Scene& scene, uint32_t count, uint64_t seed,
+void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out) {
     double all = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         all += area_of(mesh, i);
     if (!(all > 0) || count == 0)
         return;
-    Random random(scramble(seed), 2);
+    PcgRandom random(scramble(seed), 2);
     const double step = all / count;
     uint32_t taken = 0;
     double up_to = 0;
@@ -151,7 +152,7 @@ void add_area_samples(const Mesh& mesh, const ray::Scene& scene, uint32_t count,
     }
 }
 
-void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
+void add_vertex_samples(const Mesh& mesh, const ray::MeshScene& scene,
                         const std::vector<WeightedVertex>& vertices,
                         std::vector<SurfaceSample>& out) {
     std::vector<uint8_t> hidden(mesh.positions.size(), scene.see_through() ? 1 : 0);
@@ -168,18 +169,18 @@ void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
     }
 }
 
-std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
-                                     const Surface& surface, uint32_t count, const Job& job,
-                                     std::vector<SurfaceSample>& out) {
+std::vector<CastPoints> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
+                                           const SurfaceLooks& surface, uint32_t count,
+                                           const Job& job, std::vector<SurfaceSample>& out) {
     const uint64_t most = uint64_t{count} * kMostRaysPerSample;
-    std::vector<Cast> found;
-    std::vector<Cast> first;
+    std::vector<CastPoints> found;
+    std::vector<CastPoints> first;
     std::vector<VisiblePoint> points;
     uint64_t rays = 0;
     uint64_t hits = 0;
     // Behind glass everything can be seen.
     const bool through = surface.skin && surface.skin->transmits();
-    const auto cast = [&](uint32_t ray, Cast& out_of_ray) {
+    const auto cast = [&](uint32_t ray, CastPoints& out_of_ray) {
         if (!through) {
             out_of_ray.count = sampler.cast(ray, out_of_ray.points);
             return;
@@ -196,7 +197,7 @@ std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sam
             for (size_t i = block * kBlock; i < std::min(batch, (block + 1) * kBlock); ++i)
                 cast(static_cast<uint32_t>(rays + i), found[i]);
         });
-        for (const Cast& ray : found) {
+        for (const CastPoints& ray : found) {
             hits += ray.count > 0 ? 1 : 0;
             for (int i = 0; i < ray.count; ++i)
                 points.push_back(ray.points[static_cast<size_t>(i)]);
@@ -217,25 +218,25 @@ std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sam
         [](const VisiblePoint& a, const VisiblePoint& b) { return a.triangle < b.triangle; });
     const double weight = visible / static_cast<double>(points.size());
     // An open sheet is seen from two sides and there once.
-    const Sides& sides = sampler.sides();
+    const OutsideSides& sides = sampler.sides();
     for (const VisiblePoint& point : points)
         out.push_back(
             shown_at(mesh, surface, point, (sides.both(point.triangle) ? 0.5 : 1) * weight));
     return first;
 }
 
-void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
+void add_visible_vertices(const Mesh& mesh, const ray::MeshScene& scene, const OutsideSides& sides,
                           std::span<const uint8_t> seen,
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
                           const Job& job, std::vector<SurfaceSample>& out) {
     const TrianglesOf triangles_of(mesh);
-    const auto sees = [&](uint32_t vertex, ray::Blockers& blockers) {
+    const auto sees = [&](uint32_t vertex, ray::RecentBlockers& blockers) {
         const std::span<const uint32_t> around = triangles_of[vertex];
         if (!seen.empty() && std::none_of(around.begin(), around.end(),
                                           [&](uint32_t triangle) { return seen[triangle] != 0; }))
             return false;
         const glm::dvec3 point(mesh.positions[vertex]);
-        Random random(scramble(seed) + vertex, 3);
+        PcgRandom random(scramble(seed) + vertex, 3);
         for (int ray = 0; ray < kVertexRays; ++ray) {
             const uint32_t triangle = around[static_cast<uint32_t>(ray) % around.size()];
             const glm::dvec3 area = area_vector(mesh, triangle);
@@ -245,7 +246,7 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
             const bool coin = (random.next() & 1u) != 0;
             if (!(length > 0) || !shows_corner(mesh, scene, triangle, vertex))
                 continue;
-            const bool back = sides.both(triangle) ? coin : sides.of[triangle] == Side::Back;
+            const bool back = sides.both(triangle) ? coin : sides.of[triangle] == VisibleSide::Back;
             const glm::dvec3 outward = (back ? -area : area) / length;
             // A hundredth towards the middle: a ray from the corner itself could slip between the
             // surfaces that meet there.
@@ -263,8 +264,8 @@ void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides
     std::vector<uint8_t> visible(vertices.size(), 0);
     parallel_for((vertices.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
-        const ray::Burst burst;
-        ray::Blockers blockers;
+        const ray::FlushDenormals burst;
+        ray::RecentBlockers blockers;
         for (size_t i = block * kBlock; i < std::min(vertices.size(), (block + 1) * kBlock); ++i)
             visible[i] = sees(vertices[i].vertex, blockers) ? 1 : 0;
     });

@@ -29,9 +29,9 @@ struct SurfaceSample {
 
 /// What a mesh looks like: one look a triangle, its skin, and what looks mean. Empty looks: all
 /// alike. Without a skin everything is opaque and of its slot's mean color.
-struct Surface {
+struct SurfaceLooks {
     std::span<const uint16_t> looks;
-    const Looks* palette = nullptr;
+    const LookPalette* palette = nullptr;
     ray::SkinPtr skin;
 };
 
@@ -47,24 +47,24 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
 
 /// Points uniform in area, one in each of `count` equal steps along the list of triangles; only
 /// their places count. Where the scene shows nothing there is none.
-void add_area_samples(const Mesh& mesh, const ray::Scene& scene, uint32_t count, uint64_t seed,
+void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out);
 
 /// The vertices themselves, where the scene shows anything at them.
-void add_vertex_samples(const Mesh& mesh, const ray::Scene& scene,
+void add_vertex_samples(const Mesh& mesh, const ray::MeshScene& scene,
                         const std::vector<WeightedVertex>& vertices,
                         std::vector<SurfaceSample>& out);
 
 /// Points that rays from outside hit, sharing the visible area of one side equally. Of something
 /// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found,
 /// up to twice as many as points were wanted; with glass none.
-std::vector<Cast> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
-                                     const Surface& surface, uint32_t count, const Job& job,
-                                     std::vector<SurfaceSample>& out);
+std::vector<CastPoints> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
+                                           const SurfaceLooks& surface, uint32_t count,
+                                           const Job& job, std::vector<SurfaceSample>& out);
 
 /// Vertices from beside which some ray sees infinity. `seen`: the triangles that can be seen, if
 /// that is known (else empty); a vertex of none of them is not asked for.
-void add_visible_vertices(const Mesh& mesh, const ray::Scene& scene, const Sides& sides,
+void add_visible_vertices(const Mesh& mesh, const ray::MeshScene& scene, const OutsideSides& sides,
                           std::span<const uint8_t> seen,
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,
                           const Job& job, std::vector<SurfaceSample>& out);

@@ -23,23 +23,24 @@ bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
     return !is_sided(a) || !is_sided(b) || glm::dot(a, b) > 0;
 }
 
-/// Looks::light_of() of colors that are mostly those before.
+/// LookPalette::light_of() of colors that are mostly those before.
 class LightOf {
 public:
     const glm::dvec3& operator()(const glm::dvec3& color) {
         if (color != color_) {
             color_ = color;
-            light_ = Looks::light_of(color);
+            light_ = LookPalette::light_of(color);
         }
         return light_;
     }
 
 private:
     glm::dvec3 color_{0.0};
-    glm::dvec3 light_ = Looks::light_of(glm::dvec3(0.0));
+    glm::dvec3 light_ = LookPalette::light_of(glm::dvec3(0.0));
 };
 
-std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Looks* palette) {
+std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible,
+                             const LookPalette* palette) {
     constexpr double kMuch = 2;
     std::vector<uint8_t> out;
     if (palette == nullptr)
@@ -69,7 +70,7 @@ std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible, const Lo
 
 }  // namespace
 
-VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const Looks* palette)
+VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const LookPalette* palette)
     : visible_(visible), glowing_(glowing(visible, palette)) {
     // Every so many of the visible points are enough for a mean.
     constexpr size_t kMostPoints = 512;
@@ -115,7 +116,7 @@ double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec
     double square = most * most;
     for (const auto& [look, tree] : by_look()) {
         square = tree.nearest(from.point, square, [&](uint32_t i) {
-            return Looks::alike(visible_[i].color, color) &&
+            return LookPalette::alike(visible_[i].color, color) &&
                    face_alike(visible_[i].side, from.side);
         });
     }
@@ -131,7 +132,7 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
     size_t count = 0;
     float farthest = 0;
     for (uint32_t i = 0; i < mixed_.size(); ++i) {
-        const Mixed& next = mixed_[i];
+        const MixingSample& next = mixed_[i];
         const glm::dvec3 arm = next.point - from.point;
         const double square = glm::dot(arm, arm);
         const auto rounded = static_cast<float>(square);
@@ -157,14 +158,14 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
     std::vector<uint64_t> binned(count);
     for (const uint64_t key : near)
         binned[ends[bin_of(key)]++] = key;
-    const Looks::Lights wanted = Looks::lights_alike(color);
+    const LookPalette::LightRange wanted = LookPalette::lights_alike(color);
     glm::dvec3 sum(0.0);
     size_t begin = 0;
     for (size_t bin = 0; begin < count; begin = ends[bin++]) {
         const auto at = [&](size_t i) { return binned.begin() + static_cast<ptrdiff_t>(i); };
         std::sort(at(begin), at(ends[bin]));
         for (size_t i = begin; i < ends[bin]; ++i) {
-            const Mixed& next = mixed_[static_cast<uint32_t>(binned[i])];
+            const MixingSample& next = mixed_[static_cast<uint32_t>(binned[i])];
             sum += next.light;
             if (wanted.hold(sum / static_cast<double>(i + 1)))
                 return glm::length(next.point - from.point);
@@ -175,7 +176,7 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
 
 double VisibleLooks::mixing_radius_at(size_t number, const glm::dvec3& color) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    const std::shared_ptr<const Radii> radii = radii_of(color);
+    const std::shared_ptr<const MixingRadii> radii = radii_of(color);
     std::atomic<double>& known = radii->by_number[number];
     double radius = known.load(std::memory_order_relaxed);
     if (radius < 0) {
@@ -185,10 +186,11 @@ double VisibleLooks::mixing_radius_at(size_t number, const glm::dvec3& color) co
     return radius;
 }
 
-std::shared_ptr<const VisibleLooks::Radii> VisibleLooks::radii_of(const glm::dvec3& color) const {
+std::shared_ptr<const VisibleLooks::MixingRadii> VisibleLooks::radii_of(
+    const glm::dvec3& color) const {
     const std::lock_guard lock(mutex_);
     if (!radii_ || radii_->color != color) {
-        auto fresh = std::make_shared<Radii>();
+        auto fresh = std::make_shared<MixingRadii>();
         fresh->color = color;
         fresh->by_number = std::make_unique<std::atomic<double>[]>(visible_.size());
         for (size_t i = 0; i < visible_.size(); ++i)

@@ -17,7 +17,7 @@ namespace lodestone::measure {
 /// not the grass from above and the road from below. Any thread.
 class VisibleLooks {
 public:
-    VisibleLooks(const std::vector<SurfaceSample>& visible, const Looks* palette);
+    VisibleLooks(const std::vector<SurfaceSample>& visible, const LookPalette* palette);
 
     /// Whether a look is a lamp among the others: much brighter by itself than the whole is in the
     /// mean.
@@ -43,11 +43,11 @@ public:
 
 private:
     /// Mixing radii for one color, by visible point; negative where not asked for yet.
-    struct Radii {
+    struct MixingRadii {
         glm::dvec3 color;
         std::unique_ptr<std::atomic<double>[]> by_number;
     };
-    struct Mixed {
+    struct MixingSample {
         glm::dvec3 point;
         glm::dvec3 side;
         glm::dvec3 light;
@@ -55,15 +55,15 @@ private:
     };
 
     const std::map<uint16_t, PointTree>& by_look() const;
-    std::shared_ptr<const Radii> radii_of(const glm::dvec3& color) const;
+    std::shared_ptr<const MixingRadii> radii_of(const glm::dvec3& color) const;
 
     const std::vector<SurfaceSample>& visible_;
     std::vector<uint8_t> glowing_;  // by look
-    std::vector<Mixed> mixed_;
+    std::vector<MixingSample> mixed_;
     mutable std::once_flag once_;  // of the trees: most are never asked for
     mutable std::map<uint16_t, PointTree> by_look_;
     mutable std::mutex mutex_;
-    mutable std::shared_ptr<const Radii> radii_;
+    mutable std::shared_ptr<const MixingRadii> radii_;
 };
 
 }  // namespace lodestone::measure

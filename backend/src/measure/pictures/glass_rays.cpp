@@ -8,7 +8,7 @@
 
 namespace lodestone::measure {
 
-glm::dvec3 normal_at(const Mesh& mesh, const ray::Hit& hit, const glm::dvec3& viewer) {
+glm::dvec3 normal_at(const Mesh& mesh, const ray::RayHit& hit, const glm::dvec3& viewer) {
     const Triangle& t = mesh.triangles[hit.triangle];
     glm::dvec3 flat = area_vector(mesh, hit.triangle);
     if (glm::dot(flat, viewer) < 0)
@@ -24,7 +24,8 @@ glm::dvec3 normal_at(const Mesh& mesh, const ray::Hit& hit, const glm::dvec3& vi
     return length > 0 && std::isfinite(length) ? normal / length : viewer;
 }
 
-Glass::Glass(const Mesh& mesh, const ray::SkinPtr& skin, const ray::Scene& scene, double lift)
+GlassRays::GlassRays(const Mesh& mesh, const ray::SkinPtr& skin, const ray::MeshScene& scene,
+                     double lift)
     : mesh_(mesh), skin_(skin), scene_(scene), lift_(lift) {
     if (!skin || !skin->transmits())
         return;
@@ -35,9 +36,9 @@ Glass::Glass(const Mesh& mesh, const ray::SkinPtr& skin, const ray::Scene& scene
         rest_.emplace(subset(mesh, keep), skin);
 }
 
-ray::Hit Glass::first_hit(glm::dvec3 from, glm::dvec3& along) const {
+ray::RayHit GlassRays::first_hit(glm::dvec3 from, glm::dvec3& along) const {
     constexpr int kMostSurfaces = 8;
-    ray::Hit hit = scene_.first_hit(from, along);
+    ray::RayHit hit = scene_.first_hit(from, along);
     for (int i = 0; rest_ && hit.hit && clear(hit.triangle); ++i) {
         if (i == kMostSurfaces)
             return {};
@@ -48,13 +49,13 @@ ray::Hit Glass::first_hit(glm::dvec3 from, glm::dvec3& along) const {
     return hit;
 }
 
-bool Glass::clear(uint32_t triangle) const {
+bool GlassRays::clear(uint32_t triangle) const {
     constexpr double kClear = 0.5;
     return skin_->opacity(mesh_, triangle, 1.0 / 3, 1.0 / 3) < kClear &&
            skin_->material(mesh_.slot(triangle)).transmission > kClear;
 }
 
-void Glass::bend(const ray::Hit& hit, glm::dvec3& along) const {
+void GlassRays::bend(const ray::RayHit& hit, glm::dvec3& along) const {
     const bool enters = glm::dot(area_vector(mesh_, hit.triangle), along) < 0;
     const glm::dvec3 normal = normal_at(mesh_, hit, -along);
     const double ior = std::max(skin_->material(mesh_.slot(hit.triangle)).ior, 0.1);

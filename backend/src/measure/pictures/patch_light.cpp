@@ -20,7 +20,8 @@ constexpr int kHalvings = 10;
 // Of the colors seen, over their mean, the root of the mean square: less is one color.
 constexpr double kOneColor = 0.1;
 
-ray::Shown shown_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit) {
+ray::SurfaceAppearance shown_at(const Mesh& mesh, const ray::MeshSkin& skin,
+                                const ray::RayHit& hit) {
     const uint16_t slot = mesh.slot(hit.triangle);
     return skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
 }
@@ -30,9 +31,9 @@ double light_of(double facing) {
     return kAmbient + (1 - kAmbient) * facing;
 }
 
-glm::dvec3 light_at(const Mesh& mesh, const ray::Skin& skin, const ray::Hit& hit,
+glm::dvec3 light_at(const Mesh& mesh, const ray::MeshSkin& skin, const ray::RayHit& hit,
                     const glm::dvec3& towards) {
-    const ray::Shown shown = shown_at(mesh, skin, hit);
+    const ray::SurfaceAppearance shown = shown_at(mesh, skin, hit);
     const double facing = std::abs(glm::dot(normal_at(mesh, hit, towards), towards));
     return light_of(facing) * shown.color + shown.emission;
 }
@@ -69,11 +70,12 @@ uint64_t patch_of(const glm::dvec3& towards, const glm::dvec3& place) {
 
 }  // namespace
 
-Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::Skin& skin,
-                 std::span<const Cast> cast, uint64_t seed)
+LightPatches::LightPatches(const Mesh& finest, const VisibleSampler& sampler,
+                           const ray::MeshSkin& skin, std::span<const CastPoints> cast,
+                           uint64_t seed)
     : radius_(radius_of(finest)) {
     constexpr size_t kMost = 2048;
-    const Sobol numbers(seed);
+    const SobolPoints numbers(seed);
     glm::dvec3 low(std::numeric_limits<double>::infinity());
     for (size_t i = 0; i < cast.size() && seen_.size() < kMost; ++i) {
         for (int k = 0; k < cast[i].count; ++k) {
@@ -83,7 +85,7 @@ Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::S
                 const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
                 towards = cosine_direction(at.seen_from, u[2], u[3]);
             }
-            const ray::Hit hit{true, at.triangle, at.u, at.v, 0, at.point};
+            const ray::RayHit hit{true, at.triangle, at.u, at.v, 0, at.point};
             seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards),
                              shown_at(finest, skin, hit), light_at(finest, skin, hit, towards)});
             low = glm::min(low, at.point);
@@ -91,22 +93,23 @@ Patches::Patches(const Mesh& finest, const VisibleSampler& sampler, const ray::S
         }
     }
     glm::dvec3 color(0.0);
-    for (const Seen& seen : seen_)
+    for (const PatchSample& seen : seen_)
         color += seen.shown.color / static_cast<double>(seen_.size());
     double off = 0;
-    for (const Seen& seen : seen_) {
+    for (const PatchSample& seen : seen_) {
         const glm::dvec3 from_mean = seen.shown.color - color;
         off += glm::dot(from_mean, from_mean) / static_cast<double>(seen_.size());
     }
     colored_ = off > kOneColor * kOneColor * glm::dot(color, color);
-    for (Seen& seen : seen_)
+    for (PatchSample& seen : seen_)
         seen.patch = patch_of(seen.towards, (seen.point - low) / (2 * radius_));
     std::stable_sort(seen_.begin(), seen_.end(),
-                     [](const Seen& a, const Seen& b) { return a.patch < b.patch; });
+                     [](const PatchSample& a, const PatchSample& b) { return a.patch < b.patch; });
     mean_ /= static_cast<double>(std::max<size_t>(seen_.size(), 1));
 }
 
-Patches::Difference Patches::difference(const std::vector<glm::dvec3>& off, int halvings) const {
+LightPatches::PatchDifference LightPatches::difference(const std::vector<glm::dvec3>& off,
+                                                       int halvings) const {
     const int shift = 3 * (kHalvings - halvings);
     double squares = 0;
     double count = 0;
@@ -131,19 +134,20 @@ Patches::Difference Patches::difference(const std::vector<glm::dvec3>& off, int 
             count / static_cast<double>(seen_.size())};
 }
 
-double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, const ray::Skin& skin,
-                             bool matched, double least) const {
+double LightPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
+                                          const ray::MeshSkin& skin, bool matched,
+                                          double least) const {
     constexpr double kMostBrighter = 2;
     constexpr double kMostFarther = 2;  // as pictures that differ as a whole
     constexpr double kLeastKnown = 0.5;
     if (!(glm::length(mean_) > 0) || !(2 * radius_ > least))
         return 0;
-    const ray::Burst burst;
+    const ray::FlushDenormals burst;
     std::vector<glm::dvec3> off(seen_.size(), glm::dvec3(0.0));
     glm::dvec3 theirs(0.0);
     for (size_t i = 0; i < seen_.size(); ++i) {
-        const Seen& seen = seen_[i];
-        const ray::Hit hit =
+        const PatchSample& seen = seen_[i];
+        const ray::RayHit hit =
             scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
         if (hit.hit)
             off[i] = light_at(stand_in, skin, hit, seen.towards);
@@ -158,7 +162,7 @@ double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, cons
         off[i] = brighter * off[i] - seen_[i].light;
     double side = 2 * radius_;
     for (int halvings = 0; halvings <= kHalvings && side > least; ++halvings, side /= 2) {
-        const Difference found = difference(off, halvings);
+        const PatchDifference found = difference(off, halvings);
         if (found.known < kLeastKnown)
             break;
         if (found.off > kMostOff)
@@ -167,11 +171,12 @@ double Patches::unlike_up_to(const Mesh& stand_in, const ray::Scene& scene, cons
     return 0;
 }
 
-std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene& finest) const {
+std::vector<glm::dvec4> LightPatches::fitted_vertex_colors(const Mesh& stand_in,
+                                                           const ray::MeshScene& finest) const {
     // More would take steps (dark trousers under a bright shirt) for slopes that go on.
     constexpr int kRounds = 2;
     constexpr double kFromBelow = 0.125;  // how much eyes below the horizon count
-    struct Sample {
+    struct PaintSample {
         std::array<uint32_t, 3> vertices;  // of the stand-in
         glm::dvec3 near;                   // how near to each, 1 in all
         glm::dvec3 wanted;                 // light of the finest
@@ -181,14 +186,14 @@ std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene
     std::vector<glm::dvec4> out(stand_in.positions.size(), glm::dvec4(0.0));
     if (!colored_)
         return out;
-    const ray::Burst burst;
-    const ray::Scene scene(stand_in);
+    const ray::FlushDenormals burst;
+    const ray::MeshScene scene(stand_in);
     const double lift = ray_lift(radius_);
-    std::vector<Sample> samples;
+    std::vector<PaintSample> samples;
     glm::dvec4 all(0.0);
     glm::dvec4 both(0.0);  // where the stand-in is seen, too
     for (size_t i = 0; i < seen_.size(); ++i) {
-        const Seen& seen = seen_[i];
+        const PatchSample& seen = seen_[i];
         const glm::dvec3 sun = sun_beside(seen.towards, i);
         double facing = std::max(0.0, glm::dot(seen.normal, sun));
         if (facing > 0 && finest.occluded(seen.point + lift * seen.normal, sun))
@@ -196,7 +201,7 @@ std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene
         const glm::dvec3 wanted = light_of(facing) * seen.shown.color;
         const double weight = seen.towards.z >= 0 ? 1 : kFromBelow;
         all += glm::dvec4(weight * wanted, weight);
-        const ray::Hit hit =
+        const ray::RayHit hit =
             scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
         if (!hit.hit)
             continue;
@@ -220,7 +225,7 @@ std::vector<glm::dvec4> Patches::paint_of(const Mesh& stand_in, const ray::Scene
     std::fill(out.begin(), out.end(), glm::dvec4(1.0));
     for (int round = 0; round < kRounds; ++round) {
         std::vector<glm::dvec4> sums(out.size(), glm::dvec4(0.0));
-        for (const Sample& sample : samples) {
+        for (const PaintSample& sample : samples) {
             glm::dvec3 color(0.0);
             for (int k = 0; k < 3; ++k)
                 color += sample.near[k] * glm::dvec3(out[sample.vertices[k]]);

@@ -39,11 +39,11 @@ std::vector<glm::dvec3> directions() {
 }
 
 /// Where a picture is taken from. Columns of the frame: right, up, towards the viewer.
-struct View {
+struct PictureView {
     glm::dmat3 frame{1.0};
     glm::dvec3 sun{0.0};
 
-    View(const glm::dvec3& towards, size_t number) {
+    PictureView(const glm::dvec3& towards, size_t number) {
         const glm::dvec3 other =
             std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
         const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
@@ -66,11 +66,11 @@ std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
 }
 
 /// Around all that a mesh has in a view, in half sides of the picture from its middle.
-struct Frame {
+struct ViewExtent {
     glm::dvec2 low{std::numeric_limits<double>::infinity()};
     glm::dvec2 high{-std::numeric_limits<double>::infinity()};
 
-    Frame(const Mesh& mesh, const View& view, const glm::dvec3& center, double radius) {
+    ViewExtent(const Mesh& mesh, const PictureView& view, const glm::dvec3& center, double radius) {
         constexpr double kRounding = 1e-5;  // of what rays hit
         for (const glm::vec3& position : mesh.positions) {
             const glm::dvec3 arm = glm::dvec3(position) - center;
@@ -87,11 +87,11 @@ struct Frame {
 };
 
 /// What a slot shows where nothing is looked up, and whether something is.
-struct Shows {
-    ray::Shown mean;
+struct SlotAppearance {
+    ray::SurfaceAppearance mean;
     bool varies = false;
 
-    Shows(const Mesh& mesh, const ray::Skin* skin, size_t slot) {
+    SlotAppearance(const Mesh& mesh, const ray::MeshSkin* skin, size_t slot) {
         if (skin == nullptr)
             return;
         const auto number = static_cast<uint16_t>(slot);
@@ -100,7 +100,7 @@ struct Shows {
     }
 };
 
-glm::dvec4 light_of(const ray::Shown& shown, double light) {
+glm::dvec4 light_of(const ray::SurfaceAppearance& shown, double light) {
     return {light * shown.color + shown.emission, 1};
 }
 
@@ -108,9 +108,9 @@ glm::dvec4 light_of(const ray::Shown& shown, double light) {
 
 AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                                        int side, const Job& job)
-    : AgreementReference(finest, ray::Scene(finest, skin), skin, seed, side, job) {}
+    : AgreementReference(finest, ray::MeshScene(finest, skin), skin, seed, side, job) {}
 
-AgreementReference::AgreementReference(const Mesh& finest, const ray::Scene& scene,
+AgreementReference::AgreementReference(const Mesh& finest, const ray::MeshScene& scene,
                                        const ray::SkinPtr& skin, uint64_t seed, int side,
                                        const Job& job)
     : side_(side) {
@@ -134,40 +134,42 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::Scene& sce
         const auto line = static_cast<double>(number / row % row);
         places_[number] = {2 * (column + u[0]) / side_ - 1, 2 * (line + u[1]) / side_ - 1};
     }
-    const Traced traced = trace(finest, scene, skin, job);
+    const TracedPictures traced = trace(finest, scene, skin, job);
     finest_ = shown(traced, skin.get());
     finest_points_ = points_of(traced);
     finest_total_ = total(traced, skin.get());
 }
 
-AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::SkinPtr& skin,
-                                                     const Job& job) const {
-    return trace(mesh, ray::Scene(mesh, skin), skin, job);
+AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
+                                                             const ray::SkinPtr& skin,
+                                                             const Job& job) const {
+    return trace(mesh, ray::MeshScene(mesh, skin), skin, job);
 }
 
-AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray::Scene& scene,
-                                                     const ray::SkinPtr& skin,
-                                                     const Job& job) const {
-    Traced out(mesh);
+AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
+                                                             const ray::MeshScene& scene,
+                                                             const ray::SkinPtr& skin,
+                                                             const Job& job) const {
+    TracedPictures out(mesh);
     const auto row = static_cast<size_t>(side_);
     out.samples_.resize(kViews * row * row);
     if (mesh.empty() || !(radius_ > 0))
         return out;
     const std::vector<glm::dvec3> views = directions();
     const double lift = ray_lift(radius_);
-    const Glass glass(mesh, skin, scene, lift);
+    const GlassRays glass(mesh, skin, scene, lift);
     // Of most things nine of ten rays would miss: they are long and narrow, and their bound is
     // round.
-    std::vector<std::optional<Frame>> frames(kViews);
+    std::vector<std::optional<ViewExtent>> frames(kViews);
     parallel_for(kViews, [&](size_t number) {
-        frames[number].emplace(mesh, View(views[number], number), center_, radius_);
+        frames[number].emplace(mesh, PictureView(views[number], number), center_, radius_);
     });
     parallel_for(kViews * row, [&](size_t line) {
         job.check();
-        const ray::Burst burst;
-        ray::Blockers blockers;
-        const View view(views[line / row], line / row);
-        const Frame& frame = *frames[line / row];
+        const ray::FlushDenormals burst;
+        ray::RecentBlockers blockers;
+        const PictureView view(views[line / row], line / row);
+        const ViewExtent& frame = *frames[line / row];
         for (size_t column = 0; column < row; ++column) {
             const size_t number = line * row + column;
             const double x = places_[number].x;
@@ -175,7 +177,7 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
             if (x * x + y * y > 1 || !frame.has(x, y))
                 continue;
             glm::dvec3 along = -view.frame[2];
-            const ray::Hit hit =
+            const ray::RayHit hit =
                 glass.first_hit(center_ + radius_ * (view.frame * glm::dvec3(x, y, 2)), along);
             if (!hit.hit)
                 continue;
@@ -193,7 +195,7 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
                                     static_cast<float>(hit.v), static_cast<float>(light)};
         }
     });
-    for (const Traced::Sample& sample : out.samples_) {
+    for (const TracedPictures::TracedSample& sample : out.samples_) {
         if (sample.triangle == ray::kNoTriangle)
             continue;
         const uint16_t slot = mesh.slot(sample.triangle);
@@ -205,18 +207,18 @@ AgreementReference::Traced AgreementReference::trace(const Mesh& mesh, const ray
     return out;
 }
 
-AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
-                                                       const ray::Skin* skin) const {
+AgreementReference::Pictures AgreementReference::shown(const TracedPictures& traced,
+                                                       const ray::MeshSkin* skin) const {
     Pictures out(traced.samples_.size(), glm::vec4(0.0f));
     const Mesh& mesh = *traced.mesh_;
-    std::vector<Shows> slots;
+    std::vector<SlotAppearance> slots;
     for (size_t slot = 0; slot < traced.by_slot_.size(); ++slot)
         slots.emplace_back(mesh, skin, slot);
     for (size_t i = 0; i < out.size(); ++i) {
-        const Traced::Sample& sample = traced.samples_[i];
+        const TracedPictures::TracedSample& sample = traced.samples_[i];
         if (sample.triangle == ray::kNoTriangle)
             continue;
-        const Shows& slot = slots[mesh.slot(sample.triangle)];
+        const SlotAppearance& slot = slots[mesh.slot(sample.triangle)];
         out[i] = glm::vec4(
             light_of(slot.varies ? skin->at(mesh, sample.triangle, sample.u, sample.v) : slot.mean,
                      sample.light));
@@ -224,13 +226,13 @@ AgreementReference::Pictures AgreementReference::shown(const Traced& traced,
     return out;
 }
 
-glm::dvec4 AgreementReference::total(const Traced& traced, const ray::Skin* skin) {
+glm::dvec4 AgreementReference::total(const TracedPictures& traced, const ray::MeshSkin* skin) {
     const Mesh& mesh = *traced.mesh_;
     glm::dvec4 out(0.0);
     std::vector<uint8_t> varies;
     for (size_t number = 0; number < traced.by_slot_.size(); ++number) {
-        const Shows slot(mesh, skin, number);
-        const Traced::Sum& sum = traced.by_slot_[number];
+        const SlotAppearance slot(mesh, skin, number);
+        const TracedPictures::SlotLight& sum = traced.by_slot_[number];
         varies.push_back(slot.varies ? 1 : 0);
         if (!slot.varies)
             out +=
@@ -238,16 +240,16 @@ glm::dvec4 AgreementReference::total(const Traced& traced, const ray::Skin* skin
     }
     if (std::find(varies.begin(), varies.end(), 1) == varies.end())
         return out;
-    for (const Traced::Sample& sample : traced.samples_) {
+    for (const TracedPictures::TracedSample& sample : traced.samples_) {
         if (sample.triangle != ray::kNoTriangle && varies[mesh.slot(sample.triangle)] != 0)
             out += light_of(skin->at(mesh, sample.triangle, sample.u, sample.v), sample.light);
     }
     return out;
 }
 
-Agreement AgreementReference::brightness_of(const Traced& stand_in,
-                                            const ray::SkinPtr& skin) const {
-    Agreement out;
+PictureAgreement AgreementReference::brightness_of(const TracedPictures& stand_in,
+                                                   const ray::SkinPtr& skin) const {
+    PictureAgreement out;
     const glm::dvec4 theirs = total(stand_in, skin.get());
     out.coverage = finest_total_.w > 0 ? theirs.w / finest_total_.w : 1;
     for (int i = 0; i < 3; ++i)
@@ -255,30 +257,31 @@ Agreement AgreementReference::brightness_of(const Traced& stand_in,
     return out;
 }
 
-Agreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
-                                 const Job& job) const {
+PictureAgreement AgreementReference::of(const Mesh& stand_in, const ray::SkinPtr& skin,
+                                        const Job& job) const {
     return of(trace(stand_in, skin, job), skin);
 }
 
-Agreement AgreementReference::of(const Traced& stand_in, const ray::SkinPtr& skin) const {
-    Agreement out = brightness_of(stand_in, skin);
-    out.error = agree_from(shown(stand_in, skin.get())).error;
+PictureAgreement AgreementReference::of(const TracedPictures& stand_in,
+                                        const ray::SkinPtr& skin) const {
+    PictureAgreement out = brightness_of(stand_in, skin);
+    out.error = agreement_size(shown(stand_in, skin.get())).error;
     return out;
 }
 
-AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) const {
+AgreementReference::AgreementSize AgreementReference::agreement_size(const Pictures& other) const {
     const double sample = 2 * radius_ / side_;
-    const std::vector<Part> parts = parts_of(finest_, other, kViews, side_);
+    const std::vector<PictureRect> parts = picture_rects(finest_, other, kViews, side_);
     // From the largest pixels down, as long as they agree. Between two sizes the misses follow a
     // power of the size, nearly. Pictures of a pixel each are few: by chance they may differ alone.
     double last_misses = 0;
     int last = 0;
-    Sizes out{2 * radius_, false};
+    AgreementSize out{2 * radius_, false};
     for (size_t i = kPixelSides.size(); i-- > 0;) {
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
             continue;
-        const double misses = misses_of(finest_, other, parts, side_, pixel).worst();
+        const double misses = pixel_misses(finest_, other, parts, side_, pixel).worst();
         if (misses > 1) {
             if (last > 0) {
                 const double part =
@@ -300,12 +303,12 @@ AgreementReference::Sizes AgreementReference::agree_from(const Pictures& other) 
     return out;
 }
 
-std::vector<glm::vec3> AgreementReference::points_of(const Traced& traced) const {
+std::vector<glm::vec3> AgreementReference::points_of(const TracedPictures& traced) const {
     std::vector<glm::vec3> out(traced.samples_.size(),
                                glm::vec3(std::numeric_limits<float>::quiet_NaN()));
     const Mesh& mesh = *traced.mesh_;
     for (size_t i = 0; i < out.size(); ++i) {
-        const Traced::Sample& sample = traced.samples_[i];
+        const TracedPictures::TracedSample& sample = traced.samples_[i];
         if (sample.triangle == ray::kNoTriangle)
             continue;
         const Triangle& t = mesh.triangles[sample.triangle];
@@ -316,8 +319,8 @@ std::vector<glm::vec3> AgreementReference::points_of(const Traced& traced) const
     return out;
 }
 
-double AgreementReference::gaps_of(const Traced& stand_in, const ray::SkinPtr& skin,
-                                   double off) const {
+double AgreementReference::gap_error(const TracedPictures& stand_in, const ray::SkinPtr& skin,
+                                     double off) const {
     constexpr double kTimes = 2;
     constexpr int kMostAround = 6;  // samples
     if (!(radius_ > 0))
@@ -356,13 +359,13 @@ double AgreementReference::gaps_of(const Traced& stand_in, const ray::SkinPtr& s
     const Pictures all = shown(stand_in, skin.get());
     // Where much less is covered in all, what is gone was nowhere near.
     if (brightness_of(stand_in, skin).coverage < 1 - kMostCoverageOff)
-        return agree_from(all).error;
+        return agreement_size(all).error;
     if (gaps.empty())
         return 0;
     Pictures other = finest_;
     for (const size_t i : gaps)
         other[i] = all[i];
-    const Sizes sizes = agree_from(other);
+    const AgreementSize sizes = agreement_size(other);
     return sizes.smallest ? 0 : sizes.error;
 }
 

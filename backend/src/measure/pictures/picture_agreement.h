@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Agreement: from which pixel size on pictures of a stand-in and of the finest look the same.
+// PictureAgreement: from which pixel size on pictures of a stand-in and of the finest look the same.
 #pragma once
 
 #include "base/job.h"
@@ -16,7 +16,7 @@ inline constexpr double kMostCoverageOff = 0.10;
 /// ... and that of light, over the mean light of the finest's, at most this.
 inline constexpr double kMostLightOff = 0.20;
 
-struct Agreement {
+struct PictureAgreement {
     double error = 0;       // the smallest pixel size at which pictures agree, metres
     double coverage = 0;    // all covered area of the stand-in over that of the finest
     glm::dvec3 light{0.0};  // the finest's mean light where covered over the stand-in's, by color
@@ -45,48 +45,48 @@ public:
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                        int side = kSide, const Job& job = {});
     /// The same with a scene made from this mesh, and this skin, before.
-    AgreementReference(const Mesh& finest, const ray::Scene& scene, const ray::SkinPtr& skin,
+    AgreementReference(const Mesh& finest, const ray::MeshScene& scene, const ray::SkinPtr& skin,
                        uint64_t seed, int side, const Job& job);
 
     /// Same bits on any number of threads. Two meshes that show nothing agree at every size. If the
     /// pictures agree at no size, the error is one to two sides of the picture, the more they
     /// differ.
-    Agreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
+    PictureAgreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
 
     /// Which point of a stand-in each sample of the pictures shows, and how much light falls on it.
     /// This takes most of the time, and is the same for all skins with the same transparency.
-    class Traced;
+    class TracedPictures;
     /// Keeps a reference to the mesh. Same bits on any number of threads.
-    Traced trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
+    TracedPictures trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
     /// `skin` is the one it was traced in, or differs from that in colors and scales of textures
     /// alone.
-    Agreement of(const Traced& stand_in, const ray::SkinPtr& skin) const;
+    PictureAgreement of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
     /// The error of gaps alone. The pictures compared are the finest's and one that differs from it
     /// only where the finest shows a point that has no visible point of the stand-in within twice
     /// `off` (and the distance of samples). Returns the smallest pixel size at which they agree (0:
     /// all sizes), or the error of of() if the stand-in covers much less in all.
-    double gaps_of(const Traced& stand_in, const ray::SkinPtr& skin, double off) const;
+    double gap_error(const TracedPictures& stand_in, const ray::SkinPtr& skin, double off) const;
     /// As of(), without the error.
-    Agreement brightness_of(const Traced& stand_in, const ray::SkinPtr& skin) const;
+    PictureAgreement brightness_of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
 
 private:
     static constexpr size_t kViews = 13;
 
-    Traced trace(const Mesh& stand_in, const ray::Scene& scene, const ray::SkinPtr& skin,
-                 const Job& job) const;
+    TracedPictures trace(const Mesh& stand_in, const ray::MeshScene& scene,
+                         const ray::SkinPtr& skin, const Job& job) const;
 
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
-    Pictures shown(const Traced& traced, const ray::Skin* skin) const;
+    Pictures shown(const TracedPictures& traced, const ray::MeshSkin* skin) const;
     /// All of it.
-    static glm::dvec4 total(const Traced& traced, const ray::Skin* skin);
+    static glm::dvec4 total(const TracedPictures& traced, const ray::MeshSkin* skin);
     /// Of each sample, from the middle; not finite where there is nothing.
-    std::vector<glm::vec3> points_of(const Traced& traced) const;
-    struct Sizes {
-        double error = 0;      // as Agreement::error
+    std::vector<glm::vec3> points_of(const TracedPictures& traced) const;
+    struct AgreementSize {
+        double error = 0;      // as PictureAgreement::error
         bool smallest = true;  // they agree at the smallest size
     };
-    Sizes agree_from(const Pictures& other) const;
+    AgreementSize agreement_size(const Pictures& other) const;
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
@@ -98,25 +98,25 @@ private:
     glm::dvec4 finest_total_{0.0};
 };
 
-class AgreementReference::Traced {
+class AgreementReference::TracedPictures {
     friend AgreementReference;
 
-    struct Sample {
+    struct TracedSample {
         uint32_t triangle = ray::kNoTriangle;  // none: nothing is there
         float u = 0;
         float v = 0;
         float light = 0;
     };
     /// What the samples of a slot have together.
-    struct Sum {
+    struct SlotLight {
         double light = 0;
         double count = 0;
     };
-    explicit Traced(const Mesh& mesh) : mesh_(&mesh) {}
+    explicit TracedPictures(const Mesh& mesh) : mesh_(&mesh) {}
 
     const Mesh* mesh_;
-    std::vector<Sample> samples_;
-    std::vector<Sum> by_slot_;
+    std::vector<TracedSample> samples_;
+    std::vector<SlotLight> by_slot_;
 };
 
 }  // namespace lodestone::measure

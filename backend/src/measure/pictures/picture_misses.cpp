@@ -10,12 +10,12 @@ namespace lodestone::measure {
 namespace {
 
 /// A pixel: means over every other sample, and over those between.
-struct Pixel {
+struct HalvedPixel {
     std::array<glm::dvec4, 2> halves;
 
-    Pixel(const glm::vec4* corner, int stride, int side, bool odd) {
+    HalvedPixel(const glm::vec4* corner, int stride, int side, bool odd) {
         using Two = double __attribute__((vector_size(16)));
-        struct Sum {
+        struct HalfSum {
             Two low{};
             Two high{};
 
@@ -27,8 +27,8 @@ struct Pixel {
                 return glm::dvec4(low[0], low[1], high[0], high[1]) / static_cast<double>(count);
             }
         };
-        Sum first;  // of the half that the row begins with
-        Sum second;
+        HalfSum first;  // of the half that the row begins with
+        HalfSum second;
         for (int y = 0; y < side; ++y) {
             const glm::vec4* const row = corner + static_cast<ptrdiff_t>(y) * stride;
             for (int x = 0; x < side; x += 2)
@@ -47,11 +47,11 @@ struct Pixel {
 
 }  // namespace
 
-std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
-                           size_t views, int side) {
-    std::vector<Part> out(views, {glm::ivec2(side), glm::ivec2(0)});
+std::vector<PictureRect> picture_rects(const std::vector<glm::vec4>& a,
+                                       const std::vector<glm::vec4>& b, size_t views, int side) {
+    std::vector<PictureRect> out(views, {glm::ivec2(side), glm::ivec2(0)});
     size_t at = 0;
-    for (Part& part : out) {
+    for (PictureRect& part : out) {
         for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column, ++at) {
                 if (!(a[at].w > 0 || b[at].w > 0))
@@ -65,10 +65,10 @@ std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<gl
     return out;
 }
 
-Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
-                 const std::vector<Part>& parts, int side, int pixel) {
+PixelMisses pixel_misses(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                         const std::vector<PictureRect>& parts, int side, int pixel) {
     constexpr double kCovered = 1.0 / 255;
-    Misses out;
+    PixelMisses out;
     for (size_t view = 0; view < parts.size(); ++view) {
         const glm::ivec2 low = parts[view].low / pixel * pixel;
         for (int row = low.y; row < parts[view].high.y; row += pixel) {
@@ -77,8 +77,8 @@ Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& 
                                       static_cast<size_t>(side) +
                                   static_cast<size_t>(column);
                 const bool odd = (row / pixel + column / pixel) % 2 != 0;
-                const Pixel first(&a[at], side, pixel, odd);
-                const Pixel second(&b[at], side, pixel, odd);
+                const HalvedPixel first(&a[at], side, pixel, odd);
+                const HalvedPixel second(&b[at], side, pixel, odd);
                 if (std::max(first.halves[0].w + first.halves[1].w,
                              second.halves[0].w + second.halves[1].w) <= 2 * kCovered)
                     continue;

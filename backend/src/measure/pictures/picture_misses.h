@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Misses: how much two sets of pictures differ at one size of their pixels.
+// PixelMisses: how much two sets of pictures differ at one size of their pixels.
 #pragma once
 
 #include "measure/pictures/picture_agreement.h"
@@ -13,7 +13,7 @@
 namespace lodestone::measure {
 
 /// Differences between pixels of one size, with the noise of their samples and without.
-struct Difference {
+struct PixelDifference {
     double sum = 0;       // of magnitudes
     double squares = 0;   // likewise
     double products = 0;  // of the differences of both halves of the samples
@@ -33,10 +33,10 @@ struct Difference {
 };
 
 /// What pixels of one size tell.
-struct Misses {
+struct PixelMisses {
     size_t covered = 0;  // pixels that either picture covers
-    Difference coverage;
-    Difference light;         // of three colors
+    PixelDifference coverage;
+    PixelDifference light;    // of three colors
     double finest_light = 0;  // sum
 
     /// Over what may be missed.
@@ -51,18 +51,18 @@ struct Misses {
 };
 
 /// The part of a picture where either shows something: from `low` to below `high` (column, row).
-struct Part {
+struct PictureRect {
     glm::ivec2 low{0};
     glm::ivec2 high{0};
 };
 
 /// Of each view of pictures of `side` by `side` samples (light, coverage), one a view.
-std::vector<Part> parts_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
-                           size_t views, int side);
+std::vector<PictureRect> picture_rects(const std::vector<glm::vec4>& a,
+                                       const std::vector<glm::vec4>& b, size_t views, int side);
 
 /// Of such pictures, in pixels of `pixel` by `pixel` samples, which divides the side. `a` is the
 /// finest's; `parts` are theirs.
-Misses misses_of(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
-                 const std::vector<Part>& parts, int side, int pixel);
+PixelMisses pixel_misses(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
+                         const std::vector<PictureRect>& parts, int side, int pixel);
 
 }  // namespace lodestone::measure

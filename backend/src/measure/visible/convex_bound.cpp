@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kSlabs = 13;
 
-struct Plane {
+struct SlabPlane {
     glm::dvec3 normal;  // outward, unit
     double offset;      // normal . x = offset
 };
@@ -39,7 +39,8 @@ void tangents(const glm::dvec3& normal, glm::dvec3& side, glm::dvec3& other) {
 }
 
 /// The part of a convex polygon behind a plane.
-void clip(std::vector<glm::dvec3>& polygon, const Plane& plane, std::vector<glm::dvec3>& spare) {
+void clip(std::vector<glm::dvec3>& polygon, const SlabPlane& plane,
+          std::vector<glm::dvec3>& spare) {
     spare.clear();
     for (size_t i = 0; i < polygon.size(); ++i) {
         const glm::dvec3& from = polygon[i];
@@ -80,7 +81,7 @@ ConvexBound::ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& a
             high[i] = std::max(high[i], along);
         }
     }
-    std::vector<Plane> planes;
+    std::vector<SlabPlane> planes;
     for (size_t i = 0; i < kSlabs; ++i) {
         planes.push_back({directions[i], high[i] + lift});
         planes.push_back({-directions[i], lift - low[i]});
@@ -90,7 +91,7 @@ ConvexBound::ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& a
     std::vector<glm::dvec3> polygon;
     std::vector<glm::dvec3> spare;
     for (size_t i = 0; i < planes.size(); ++i) {
-        const Plane& plane = planes[i];
+        const SlabPlane& plane = planes[i];
         glm::dvec3 side;
         glm::dvec3 other;
         tangents(plane.normal, side, other);
@@ -113,11 +114,11 @@ ConvexBound::ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& a
     }
 }
 
-Ray ConvexBound::enter(const std::array<double, 4>& u) const {
+BoundRay ConvexBound::entering_ray(const std::array<double, 4>& u) const {
     const double target = u[0] * area();
     auto face = std::upper_bound(
         faces_.begin(), faces_.end(), target,
-        [](double value, const Face& candidate) { return value < candidate.area_up_to; });
+        [](double value, const BoundFace& candidate) { return value < candidate.area_up_to; });
     if (face == faces_.end())
         --face;
     // What is left of the first number after the choice of the face is uniform again.

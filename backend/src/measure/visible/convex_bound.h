@@ -11,7 +11,7 @@
 namespace lodestone::measure {
 
 /// A ray and the face it leaves from: origin on the face, direction of unit length.
-struct Ray {
+struct BoundRay {
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0};
 };
@@ -28,15 +28,15 @@ public:
     double area() const { return faces_.empty() ? 0 : faces_.back().area_up_to; }
 
     /// The inward ray of four numbers in [0, 1). Needs area() > 0.
-    Ray enter(const std::array<double, 4>& u) const;
+    BoundRay entering_ray(const std::array<double, 4>& u) const;
 
 private:
-    struct Face {
+    struct BoundFace {
         glm::dvec3 corner, side, other;  // a triangle of the polytope's surface
         glm::dvec3 inward;
         double area_up_to;  // of this one and all before
     };
-    std::vector<Face> faces_;
+    std::vector<BoundFace> faces_;
 };
 
 /// A direction over the hemisphere of a unit normal with density cosine / pi, from two numbers.

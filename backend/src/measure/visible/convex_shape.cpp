@@ -43,9 +43,9 @@ std::vector<glm::dvec3> corners_from(const Mesh& mesh, const glm::dvec3& center)
 }
 
 /// How far points reach along a direction; asked often.
-class Reach {
+class SupportTree {
 public:
-    explicit Reach(std::vector<glm::dvec3> points) : points_(std::move(points)) {
+    explicit SupportTree(std::vector<glm::dvec3> points) : points_(std::move(points)) {
         if (!points_.empty())
             build(0, points_.size());
     }
@@ -58,7 +58,7 @@ public:
     }
 
 private:
-    struct Part {
+    struct SupportNode {
         Box3 box;
         size_t first = 0;
         size_t count = 0;  // 0: inner
@@ -67,7 +67,7 @@ private:
 
     size_t build(size_t first, size_t count) {
         const size_t index = parts_.size();
-        Part part{{}, first, count, {}};
+        SupportNode part{{}, first, count, {}};
         for (size_t i = first; i < first + count; ++i)
             part.box.add(points_[i]);
         parts_.push_back(part);
@@ -92,7 +92,7 @@ private:
     }
 
     void look(size_t index, const glm::dvec3& direction, double& most) const {
-        const Part& part = parts_[index];
+        const SupportNode& part = parts_[index];
         for (size_t i = part.first; i < part.first + part.count; ++i)
             most = std::max(most, glm::dot(points_[i], direction));
         if (part.count > 0)
@@ -111,23 +111,23 @@ private:
     }
 
     std::vector<glm::dvec3> points_;
-    std::vector<Part> parts_;
+    std::vector<SupportNode> parts_;
 };
 
 /// A directed edge of a triangle between welded vertices.
-struct Edge {
+struct WeldedEdge {
     uint32_t low, high;
     uint32_t triangle;
     bool forward;  // runs from low to high
 
-    bool operator<(const Edge& other) const {
+    bool operator<(const WeldedEdge& other) const {
         return low != other.low ? low < other.low : high < other.high;
     }
 };
 
-class Folds {
+class ConvexityTest {
 public:
-    explicit Folds(const Mesh& mesh) : mesh_(mesh), welded_(weld(mesh)) {
+    explicit ConvexityTest(const Mesh& mesh) : mesh_(mesh), welded_(weld(mesh)) {
         Box3 box;
         for (const Triangle& t : mesh.triangles) {
             for (int corner = 0; corner < 3; ++corner)
@@ -154,7 +154,7 @@ public:
     /// Euler: a sphere has two corners more than half its faces. Two spheres have four more.
     bool sphere() const {
         std::vector<uint8_t> used(welded_.size(), 0);
-        for (const Edge& edge : edges_)
+        for (const WeldedEdge& edge : edges_)
             used[edge.low] = used[edge.high] = 1;
         const auto corners = static_cast<size_t>(std::count(used.begin(), used.end(), 1));
         return 2 * corners == faces_ + 4;
@@ -185,7 +185,7 @@ public:
             for (const uint32_t corner : {t.x, t.y, t.z})
                 normals[welded_[corner]] += area;
         }
-        const Reach reach(corners_from(mesh_, middle_));
+        const SupportTree reach(corners_from(mesh_, middle_));
         double most = 0;
         for (uint32_t i = 0; i < normals.size(); ++i) {
             const double length = glm::length(normals[i]);
@@ -251,7 +251,7 @@ private:
     }
 
     /// Whether the other triangle's far corner is above this one's plane.
-    bool rises(const Edge& from, const Edge& to) const {
+    bool rises(const WeldedEdge& from, const WeldedEdge& to) const {
         const glm::dvec3 area = area_vector(mesh_, from.triangle);
         const double length = glm::length(area);
         if (!(length > 0))
@@ -271,14 +271,14 @@ private:
 
     const Mesh& mesh_;
     std::vector<uint32_t> welded_;
-    std::vector<Edge> edges_;
+    std::vector<WeldedEdge> edges_;
     size_t faces_ = 0;
     glm::dvec3 middle_{0.0};
     double size_ = 0;
 };
 
 /// A box or ellipsoid in its own frame.
-struct Solid {
+struct FramedSolid {
     const Primitive& primitive;
     bool box;
 
@@ -306,10 +306,10 @@ glm::dvec3 direction(int i) {
 }
 
 /// The largest difference of what both reach.
-double gap(const Mesh& mesh, const Solid& solid, double scale) {
+double gap(const Mesh& mesh, const FramedSolid& solid, double scale) {
     const glm::dvec3& center = solid.primitive.center;
     const std::vector<glm::dvec3> corners = corners_from(mesh, center);
-    const Reach reach(corners);
+    const SupportTree reach(corners);
     double most = 0;
     for (int i = 0; i < kDirections; ++i) {
         const glm::dvec3 along = direction(i);
@@ -334,11 +334,11 @@ double gap(const Mesh& mesh, const Solid& solid, double scale) {
 
 }  // namespace
 
-Convexity convexity_of(const Mesh& mesh) {
+ShapeConvexity convexity_of(const Mesh& mesh) {
     if (!usable(mesh))
         return {};
-    const Folds folds(mesh);
-    Convexity out;
+    const ConvexityTest folds(mesh);
+    ShapeConvexity out;
     out.convex = folds.closed() && folds.sphere() && folds.volume() > 0 && folds.convex();
     if (out.convex)
         out.hollow = folds.hollow();
@@ -347,8 +347,8 @@ Convexity convexity_of(const Mesh& mesh) {
     return out;
 }
 
-std::optional<Scaled> inside(const Mesh& convex, const Primitive& primitive, bool box) {
-    const Solid solid{primitive, box};
+std::optional<ScaledSolid> inside(const Mesh& convex, const Primitive& primitive, bool box) {
+    const FramedSolid solid{primitive, box};
     if (!usable(convex) || !solid.sound())
         return std::nullopt;
     double scale = std::numeric_limits<double>::infinity();
@@ -365,11 +365,11 @@ std::optional<Scaled> inside(const Mesh& convex, const Primitive& primitive, boo
     if (!(scale > 0) || !std::isfinite(scale))
         return std::nullopt;
     scale *= 1 - 1e-6;
-    return Scaled{scale, gap(convex, solid, scale)};
+    return ScaledSolid{scale, gap(convex, solid, scale)};
 }
 
-std::optional<Scaled> around(const Mesh& mesh, const Primitive& primitive, bool box) {
-    const Solid solid{primitive, box};
+std::optional<ScaledSolid> around(const Mesh& mesh, const Primitive& primitive, bool box) {
+    const FramedSolid solid{primitive, box};
     if (!usable(mesh) || !solid.sound())
         return std::nullopt;
     double scale = 0;
@@ -381,7 +381,7 @@ std::optional<Scaled> around(const Mesh& mesh, const Primitive& primitive, bool 
     if (!(scale > 0) || !std::isfinite(scale))
         return std::nullopt;
     scale *= 1 + 1e-6;
-    return Scaled{scale, gap(mesh, solid, scale)};
+    return ScaledSolid{scale, gap(mesh, solid, scale)};
 }
 
 }  // namespace lodestone::measure

@@ -43,15 +43,15 @@ Mesh snapped(const Mesh& mesh) {
 }
 
 /// One use of an edge by a triangle.
-struct Use {
+struct EdgeUse {
     uint32_t to;        // the higher of its welded ends; the lower is the list it is in
     uint32_t triangle;  // times two, plus one where the triangle runs from the higher end
 };
 
 /// Parts of the mesh, and what their edges say.
-class Parts {
+class ConnectedParts {
 public:
-    explicit Parts(const Mesh& mesh)
+    explicit ConnectedParts(const Mesh& mesh)
         : mesh_(mesh), welded_(weld(snapped(mesh))), parent_(mesh.positions.size()) {
         for (size_t i = 0; i < parent_.size(); ++i)
             parent_[i] = static_cast<uint32_t>(i);
@@ -151,15 +151,15 @@ private:
     /// opposite directions, is open.
     void list_edges() {
         first_.resize(welded_.size() + 2, 0);
-        for_all_uses([&](uint32_t low, Use) { ++first_[low + 2]; });
+        for_all_uses([&](uint32_t low, EdgeUse) { ++first_[low + 2]; });
         for (size_t i = 2; i < first_.size(); ++i)
             first_[i] += first_[i - 1];
         uses_.resize(first_.back());
-        for_all_uses([&](uint32_t low, Use use) { uses_[first_[low + 1]++] = use; });
+        for_all_uses([&](uint32_t low, EdgeUse use) { uses_[first_[low + 1]++] = use; });
         for (size_t low = 0; low < welded_.size(); ++low) {
             const auto begin = uses_.begin() + first_[low];
             const auto end = uses_.begin() + first_[low + 1];
-            std::sort(begin, end, [](const Use& a, const Use& b) {
+            std::sort(begin, end, [](const EdgeUse& a, const EdgeUse& b) {
                 return a.to != b.to ? a.to < b.to : a.triangle < b.triangle;
             });
             for (auto use = begin; use != end;) {
@@ -182,7 +182,8 @@ private:
             for (int corner = 0; counted_[i] != 0 && corner < 3; ++corner) {
                 const uint32_t from = welded_[mesh_.triangles[i][corner]];
                 const uint32_t to = welded_[mesh_.triangles[i][(corner + 1) % 3]];
-                function(std::min(from, to), Use{std::max(from, to), 2 * i + (from > to ? 1 : 0)});
+                function(std::min(from, to),
+                         EdgeUse{std::max(from, to), 2 * i + (from > to ? 1 : 0)});
             }
         }
     }
@@ -216,8 +217,8 @@ private:
         };
         for (size_t low = 0; low < welded_.size(); ++low) {
             for (uint32_t i = first_[low]; i + 1 < first_[low + 1]; ++i) {
-                const Use& a = uses_[i];
-                const Use& b = uses_[i + 1];
+                const EdgeUse& a = uses_[i];
+                const EdgeUse& b = uses_[i + 1];
                 if (a.to == b.to && (!fold(a.triangle / 2, b.triangle / 2, low, a.to) ||
                                      !fold(b.triangle / 2, a.triangle / 2, low, a.to)))
                     return false;
@@ -235,19 +236,19 @@ private:
     std::vector<uint8_t> open_;     // by part
     std::vector<double> volume_;
     std::vector<uint32_t> first_;  // of uses_, by lower end
-    std::vector<Use> uses_;
+    std::vector<EdgeUse> uses_;
     double rounding_ = 0;
     bool tangled_ = false;  // some edge is used three times, or twice in one direction
 };
 
 }  // namespace
 
-Sides sides_of(const Mesh& mesh, const ray::Scene& scene) {
-    Sides out;
-    out.of.resize(mesh.triangles.size(), Side::Both);
+OutsideSides sides_of(const Mesh& mesh, const ray::MeshScene& scene) {
+    OutsideSides out;
+    out.of.resize(mesh.triangles.size(), VisibleSide::Both);
     if (mesh.empty())
         return out;
-    const Parts parts(mesh);
+    const ConnectedParts parts(mesh);
     out.parts = parts.count();
     out.may_coincide = out.parts > 1 || parts.tangled();
     if (scene.see_through())
@@ -255,7 +256,7 @@ Sides sides_of(const Mesh& mesh, const ray::Scene& scene) {
     for (size_t i = 0; i < out.of.size(); ++i) {
         const uint32_t part = parts.part(i);
         if (!parts.open(part))
-            out.of[i] = parts.turned(part) ? Side::Back : Side::Front;
+            out.of[i] = parts.turned(part) ? VisibleSide::Back : VisibleSide::Front;
     }
     if (out.parts == 1)
         out.hides_nothing =

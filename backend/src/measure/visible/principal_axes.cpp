@@ -12,26 +12,26 @@ namespace {
 constexpr double kNearlyEqual = 0.93;
 constexpr double kWorthTurning = 0.05;
 
-struct Power {
+struct QuarticTerm {
     int x, y, z;
     double count;  // how often x^i y^j z^k occurs in (x + y + z)^4
 };
 
-constexpr std::array<Power, 15> kPowers{{{4, 0, 0, 1},
-                                         {0, 4, 0, 1},
-                                         {0, 0, 4, 1},
-                                         {3, 1, 0, 4},
-                                         {3, 0, 1, 4},
-                                         {1, 3, 0, 4},
-                                         {0, 3, 1, 4},
-                                         {1, 0, 3, 4},
-                                         {0, 1, 3, 4},
-                                         {2, 2, 0, 6},
-                                         {2, 0, 2, 6},
-                                         {0, 2, 2, 6},
-                                         {2, 1, 1, 12},
-                                         {1, 2, 1, 12},
-                                         {1, 1, 2, 12}}};
+constexpr std::array<QuarticTerm, 15> kPowers{{{4, 0, 0, 1},
+                                               {0, 4, 0, 1},
+                                               {0, 0, 4, 1},
+                                               {3, 1, 0, 4},
+                                               {3, 0, 1, 4},
+                                               {1, 3, 0, 4},
+                                               {0, 3, 1, 4},
+                                               {1, 0, 3, 4},
+                                               {0, 1, 3, 4},
+                                               {2, 2, 0, 6},
+                                               {2, 0, 2, 6},
+                                               {0, 2, 2, 6},
+                                               {2, 1, 1, 12},
+                                               {1, 2, 1, 12},
+                                               {1, 1, 2, 12}}};
 
 std::array<std::array<double, 5>, 3> powers_of(const glm::dvec3& v) {
     std::array<std::array<double, 5>, 3> out{};
@@ -44,7 +44,7 @@ std::array<std::array<double, 5>, 3> powers_of(const glm::dvec3& v) {
     return out;
 }
 
-double product(const std::array<std::array<double, 5>, 3>& powers, const Power& power) {
+double product(const std::array<std::array<double, 5>, 3>& powers, const QuarticTerm& power) {
     return powers[0][static_cast<size_t>(power.x)] * powers[1][static_cast<size_t>(power.y)] *
            powers[2][static_cast<size_t>(power.z)];
 }
@@ -126,8 +126,8 @@ double NormalMoments::in_frame(const glm::dmat3& axes) const {
 glm::dmat3 principal_axes(const glm::dmat3& moments, const NormalMoments& normals) {
     const double total = trace(moments);
     // A point has no axes; a scale without units keeps the solver away from underflow.
-    const Eigen eigen =
-        total > 0 && std::isfinite(total) ? eigen_symmetric(moments / total) : Eigen{};
+    const SymmetricEigen eigen =
+        total > 0 && std::isfinite(total) ? eigen_symmetric(moments / total) : SymmetricEigen{};
     const glm::dvec3 values = glm::max(eigen.values, glm::dvec3(1e-12));
     const double first = values.y / values.x;
     const double second = values.z / values.y;

@@ -18,14 +18,14 @@ constexpr double kMostRaysTimes = 64;
 
 }  // namespace
 
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job) {
     return seen_from_outside(mesh, scene, sides_of(mesh, scene), rays_per_triangle, seed, job);
 }
 
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
-                                       const Sides& sides, int rays_per_triangle, uint64_t seed,
-                                       const Job& job) {
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
+                                       const OutsideSides& sides, int rays_per_triangle,
+                                       uint64_t seed, const Job& job) {
     if (scene.triangles() != mesh.triangles.size())
         fail(Status::InvalidArgument, "a scene of ", scene.triangles(),
              " triangles does not hold a mesh of ", mesh.triangles.size());
@@ -41,7 +41,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const double share = area > mean ? std::min(area / mean, kMostRaysTimes) : 1;
         return static_cast<int>(std::ceil(share * rays_per_triangle));
     };
-    const auto see = [&](size_t index, int first, int end, ray::Blockers& blockers) {
+    const auto see = [&](size_t index, int first, int end, ray::RecentBlockers& blockers) {
         const glm::dvec3 area = area_vector(mesh, index);
         const double length = glm::length(area);
         if (!(length > 0))
@@ -51,9 +51,10 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
         const glm::dvec3 a(mesh.positions[t.x]);
         const glm::dvec3 ab = glm::dvec3(mesh.positions[t.y]) - a;
         const glm::dvec3 ac = glm::dvec3(mesh.positions[t.z]) - a;
-        Random random(scramble(seed + static_cast<uint64_t>(first)) + index, index);
+        PcgRandom random(scramble(seed + static_cast<uint64_t>(first)) + index, index);
         for (int i = first; i < end; ++i) {
-            const bool back = sides.both(index) ? (i & 1) != 0 : sides.of[index] == Side::Back;
+            const bool back =
+                sides.both(index) ? (i & 1) != 0 : sides.of[index] == VisibleSide::Back;
             const glm::dvec3 outward = back ? -normal : normal;
             const double u[4] = {random.uniform(), random.uniform(), random.uniform(),
                                  random.uniform()};
@@ -80,8 +81,8 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene
     const auto visit = [&](bool again) {
         parallel_for((seen.size() + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
-            const ray::Burst burst;
-            ray::Blockers blockers;
+            const ray::FlushDenormals burst;
+            ray::RecentBlockers blockers;
             const size_t end = std::min<size_t>(seen.size(), (block + 1) * kBlock);
             for (size_t i = block * kBlock; i < end; ++i) {
                 const int rays = rays_of(glm::length(area_vector(mesh, i)));

@@ -15,11 +15,11 @@ namespace lodestone::measure {
 /// is seen. Each gets half of its rays first, and the rest only if a triangle that shares a corner
 /// with it was seen. Triangles without area count as seen.
 /// Same bits on any number of threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});
 /// The same where the sides are known.
-std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::Scene& scene,
-                                       const Sides& sides, int rays_per_triangle, uint64_t seed,
-                                       const Job& job = {});
+std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
+                                       const OutsideSides& sides, int rays_per_triangle,
+                                       uint64_t seed, const Job& job = {});
 
 }  // namespace lodestone::measure

@@ -50,9 +50,9 @@ constexpr SobolDirections sobol_directions() {
 inline constexpr SobolDirections kSobolDirections = sobol_directions();
 
 /// Points of [0, 1)^4. Each is uniform over the seeds; together they fill the space evenly.
-class Sobol {
+class SobolPoints {
 public:
-    explicit Sobol(uint64_t seed) {
+    explicit SobolPoints(uint64_t seed) {
         for (size_t i = 0; i < shift_.size(); ++i)
             shift_[i] = static_cast<uint32_t>(scramble(scramble(seed) + i) >> 32u);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strata: random points of [0, 1)^4 in pairs, each pair in a cell of its own. The two of a pair
+// StratifiedPoints: random points of [0, 1)^4 in pairs, each pair in a cell of its own. The two of a pair
 // differ only by what happens inside of their cell, which is all the variance there is.
 #pragma once
 
@@ -7,13 +7,14 @@
 
 namespace lodestone::measure {
 
-class Strata {
+class StratifiedPoints {
 public:
     /// Points come in multiples of so many.
     static constexpr uint32_t kStep = 64;
 
     /// `count` points, a multiple of kStep. Each is uniform over the seeds.
-    Strata(uint64_t seed, uint32_t count) : seed_(scramble(seed)), layers_(count / kStep) {}
+    StratifiedPoints(uint64_t seed, uint32_t count)
+        : seed_(scramble(seed)), layers_(count / kStep) {}
 
     /// Points 2 i and 2 i + 1 share a cell. Layers of the first coordinate, which runs along a
     /// whole surface, are finer the more points there are.

@@ -9,7 +9,7 @@ glm::dmat3 SurfaceInertia::inertia() const {
     return glm::dmat3(trace(moments)) - moments;
 }
 
-SurfaceInertia of_mesh(const Mesh& mesh, bool both_sides_of_open) {
+SurfaceInertia inertia_of_mesh(const Mesh& mesh, bool both_sides_of_open) {
     SurfaceInertia out;
     if (mesh.empty())
         return out;
@@ -103,8 +103,8 @@ Attributes transformed(const Attributes& attributes, const Affine& similarity) {
     return out;
 }
 
-Eigen principal_variances(const SurfaceInertia& inertia) {
-    Eigen out;
+SymmetricEigen principal_variances(const SurfaceInertia& inertia) {
+    SymmetricEigen out;
     const double size = trace(inertia.moments);
     if (inertia.empty() || !(size > 0))
         return out;

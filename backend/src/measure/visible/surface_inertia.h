@@ -22,7 +22,7 @@ struct SurfaceInertia {
 /// By traversal, every triangle as four point masses (A.1.1); hidden surface counts in full.
 /// Triangles without area or with non-finite vertices count nothing. With `both_sides_of_open` a
 /// mesh that is not closed() counts twice, as it can be seen from both sides.
-SurfaceInertia of_mesh(const Mesh& mesh, bool both_sides_of_open = false);
+SurfaceInertia inertia_of_mesh(const Mesh& mesh, bool both_sides_of_open = false);
 
 /// Both surfaces together (4.28-4.30).
 SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b);
@@ -34,6 +34,6 @@ SurfaceInertia transformed(const SurfaceInertia& inertia, const Affine& similari
 Attributes transformed(const Attributes& attributes, const Affine& similarity);
 
 /// Variances along the principal axes (moments / area, m^2, descending) and the axes.
-Eigen principal_variances(const SurfaceInertia& inertia);
+SymmetricEigen principal_variances(const SurfaceInertia& inertia);
 
 }  // namespace lodestone::measure

@@ -9,7 +9,7 @@
 
 namespace lodestone::measure {
 
-double mean_opacity(const Mesh& mesh, const ray::Skin& skin, uint64_t seed) {
+double mean_opacity(const Mesh& mesh, const ray::MeshSkin& skin, uint64_t seed) {
     constexpr int kPoints = 4096;
     if (!skin.transmits() && !skin.see_through(mesh))
         return 1;
@@ -21,7 +21,7 @@ double mean_opacity(const Mesh& mesh, const ray::Skin& skin, uint64_t seed) {
         all += areas[i];
     }
     // One point in the middle of each of equal steps along the list of triangles.
-    Random random(scramble(seed), 5);
+    PcgRandom random(scramble(seed), 5);
     double up_to = 0;
     double sum = 0;
     int taken = 0;

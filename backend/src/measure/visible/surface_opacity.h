@@ -8,6 +8,6 @@ namespace lodestone::measure {
 
 /// Mean over the surface: alpha, and of it what is not transmitted. 1 for everything opaque, and
 /// for a mesh without area.
-double mean_opacity(const Mesh& mesh, const ray::Skin& skin, uint64_t seed);
+double mean_opacity(const Mesh& mesh, const ray::MeshSkin& skin, uint64_t seed);
 
 }  // namespace lodestone::measure

@@ -32,7 +32,7 @@ struct ShownSums {
     double metallic = 0;
     double specular = 0;
 
-    void add(const ray::Shown& shown, double weight) {
+    void add(const ray::SurfaceAppearance& shown, double weight) {
         color += weight * shown.color;
         emission += weight * shown.emission;
         roughness += weight * shown.roughness;
@@ -42,9 +42,9 @@ struct ShownSums {
 };
 
 /// A mesh's skin where triangles show more than one thing.
-class Varied {
+class VaryingSkin {
 public:
-    Varied(const Mesh& mesh, const ray::Skin* skin) : mesh_(mesh), skin_(skin) {
+    VaryingSkin(const Mesh& mesh, const ray::MeshSkin* skin) : mesh_(mesh), skin_(skin) {
         uint16_t most = 0;
         for (const uint16_t slot : mesh.slots)
             most = std::max(most, slot);
@@ -61,12 +61,12 @@ public:
 
 private:
     const Mesh& mesh_;
-    const ray::Skin* skin_;
+    const ray::MeshSkin* skin_;
     std::vector<uint8_t> varies_;  // by slot
 };
 
 /// Sums over visible points, about a fixed point near them.
-struct Tally {
+struct VisiblePointSums {
     glm::dvec3 origin{0.0};
     uint64_t rays = 0;
     uint64_t hits = 0;    // rays with a point
@@ -104,14 +104,14 @@ struct Tally {
 /// Casts rays 0 ... count - 1 of a sequence on all threads and adds what they found in their order.
 /// The first of them are `known`.
 template <typename Numbers>
-void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& numbers,
-          uint64_t count, bool with_points, std::span<const Cast> known, Tally& tally,
-          const Job& job) {
-    std::vector<Cast> found(with_points ? count : 0);
+void cast(const VisibleSampler& sampler, const VaryingSkin& varied, const Numbers& numbers,
+          uint64_t count, bool with_points, std::span<const CastPoints> known,
+          VisiblePointSums& tally, const Job& job) {
+    std::vector<CastPoints> found(with_points ? count : 0);
     std::vector<uint8_t> hit(count, 0);
     parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
-        const ray::Burst burst;
+        const ray::FlushDenormals burst;
         const uint64_t end = std::min<uint64_t>(count, (block + 1) * kBlock);
         for (uint64_t i = block * kBlock; i < end; ++i) {
             if (!with_points) {
@@ -125,7 +125,7 @@ void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& nu
             hit[i] = found[i].count > 0 ? 1 : 0;
         }
     });
-    for (const Cast& ray : found) {
+    for (const CastPoints& ray : found) {
         for (int i = 0; i < ray.count; ++i) {
             tally.add(ray.points[static_cast<size_t>(i)]);
             varied.add(ray.points[static_cast<size_t>(i)], tally.varied);
@@ -140,7 +140,7 @@ void cast(const VisibleSampler& sampler, const Varied& varied, const Numbers& nu
 
 /// Whether twice the rays changed little. The halves of an even sequence make up for each other:
 /// what the second one moves is mostly more than both together are off.
-bool is_settled(const Tally& before, const Tally& now, double share) {
+bool is_settled(const VisiblePointSums& before, const VisiblePointSums& now, double share) {
     constexpr double kArea = 5;
     if (before.hits < kFewestHits)
         return false;
@@ -155,12 +155,12 @@ bool is_settled(const Tally& before, const Tally& now, double share) {
 }
 
 /// A fixed number of rays, as even as can be.
-void sample_evenly(const VisibleSampler& sampler, const Varied& varied,
-                   const VisibleOptions& options, std::span<const Cast> known, Tally& tally,
-                   const Job& job) {
-    const Sobol sobol(options.seed);
+void sample_evenly(const VisibleSampler& sampler, const VaryingSkin& varied,
+                   const VisibleOptions& options, std::span<const CastPoints> known,
+                   VisiblePointSums& tally, const Job& job) {
+    const SobolPoints sobol(options.seed);
     const uint64_t most = std::min<uint64_t>(options.rays, ~0u);
-    Tally half;
+    VisiblePointSums half;
     while (tally.rays < most) {
         const auto first = static_cast<uint32_t>(tally.rays);
         const auto numbers = [&](uint32_t i) { return sobol.point(first + i); };
@@ -176,14 +176,14 @@ void sample_evenly(const VisibleSampler& sampler, const Varied& varied,
 }
 
 /// Rays until the area is known well enough.
-void sample_until_sure(const VisibleSampler& sampler, const Varied& varied,
-                       const VisibleOptions& options, Tally& tally, const Job& job) {
-    const uint64_t most =
-        std::min<uint64_t>(options.most_rays, ~0u) / Strata::kStep * Strata::kStep;
+void sample_until_sure(const VisibleSampler& sampler, const VaryingSkin& varied,
+                       const VisibleOptions& options, VisiblePointSums& tally, const Job& job) {
+    const uint64_t most = std::min<uint64_t>(options.most_rays, ~0u) / StratifiedPoints::kStep *
+                          StratifiedPoints::kStep;
     uint64_t next = kFirstBatch;
     for (uint64_t batch = 0; tally.rays < most; ++batch) {
         next = std::min({next, kBatch, most - tally.rays});
-        const Strata strata(scramble(options.seed) + batch, static_cast<uint32_t>(next));
+        const StratifiedPoints strata(scramble(options.seed) + batch, static_cast<uint32_t>(next));
         const auto numbers = [&](uint32_t i) { return strata.point(i); };
         const bool with_points = sampler.from_surface() || tally.rays < kMostLinesWithPoints;
         cast(sampler, varied, numbers, next, with_points, {}, tally, job);
@@ -195,13 +195,14 @@ void sample_until_sure(const VisibleSampler& sampler, const Varied& varied,
         const double wanted = static_cast<double>(tally.rays) * (off * off - 1);
         next = static_cast<uint64_t>(
             std::clamp(wanted, static_cast<double>(kLeastBatch), static_cast<double>(tally.rays)));
-        next = (next + Strata::kStep - 1) / Strata::kStep * Strata::kStep;
+        next = (next + StratifiedPoints::kStep - 1) / StratifiedPoints::kStep *
+               StratifiedPoints::kStep;
     }
 }
 
 /// All of the surface, by traversal.
-void traverse(const Mesh& mesh, const VisibleSampler& sampler, const Varied& varied,
-              const VisibleOptions& options, Tally& tally) {
+void traverse(const Mesh& mesh, const VisibleSampler& sampler, const VaryingSkin& varied,
+              const VisibleOptions& options, VisiblePointSums& tally) {
     const SurfaceInertia& inertia = sampler.inertia();
     const glm::dvec3 arm = inertia.center - tally.origin;
     tally.weight = inertia.area;
@@ -213,14 +214,14 @@ void traverse(const Mesh& mesh, const VisibleSampler& sampler, const Varied& var
         tally.by_triangle[i] = area > 0 && std::isfinite(area) ? area : 0;
         varies = varies || varied.slot(mesh.slot(i));
     }
-    const Sobol sobol(options.seed);
+    const SobolPoints sobol(options.seed);
     for (uint32_t i = 0; varies && i < kTextureSamples; ++i)
         varied.add(sampler.on_surface(sobol.point(i)), tally.varied,
                    inertia.area / kTextureSamples);
 }
 
-void add_surface(const Mesh& mesh, const ray::Skin* skin, const Varied& varied, const Tally& tally,
-                 Attributes& out) {
+void add_surface(const Mesh& mesh, const ray::MeshSkin* skin, const VaryingSkin& varied,
+                 const VisiblePointSums& tally, Attributes& out) {
     std::vector<double> by_slot;
     for (size_t i = 0; i < tally.by_triangle.size(); ++i) {
         const size_t slot = mesh.slot(i);
@@ -233,7 +234,9 @@ void add_surface(const Mesh& mesh, const ray::Skin* skin, const Varied& varied, 
         if (by_slot[slot] == 0 || varied.slot(slot))
             continue;
         const double share = by_slot[slot] / tally.weight;
-        sums.add(skin != nullptr ? skin->mean(static_cast<uint16_t>(slot)) : ray::Shown{}, share);
+        sums.add(
+            skin != nullptr ? skin->mean(static_cast<uint16_t>(slot)) : ray::SurfaceAppearance{},
+            share);
     }
     out.color = sums.color + tally.varied.color / tally.weight;
     out.emission = sums.emission + tally.varied.emission / tally.weight;
@@ -244,29 +247,30 @@ void add_surface(const Mesh& mesh, const ray::Skin* skin, const Varied& varied, 
 
 }  // namespace
 
-Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
-                        const VisibleOptions& options, std::span<const uint32_t> tags,
-                        const Job& job) {
+VisibleAttributes measure_visible(const Mesh& mesh, std::span<const Material> materials,
+                                  const VisibleOptions& options, std::span<const uint32_t> tags,
+                                  const Job& job) {
     image::TexelCache texels;
-    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
-    return measure_visible(mesh, ray::Scene(mesh, skin), skin, options, tags, job);
+    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
+    return measure_visible(mesh, ray::MeshScene(mesh, skin), skin, options, tags, job);
 }
 
-Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
-                        const VisibleOptions& options, std::span<const uint32_t> tags,
-                        const Job& job) {
+VisibleAttributes measure_visible(const Mesh& mesh, const ray::MeshScene& scene,
+                                  const ray::SkinPtr& skin, const VisibleOptions& options,
+                                  std::span<const uint32_t> tags, const Job& job) {
     return measure_visible(
         mesh, VisibleSampler(mesh, scene, options.seed, options.casting, options.relative_error),
         skin, options, tags, {}, job);
 }
 
-Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
-                        const VisibleOptions& options, std::span<const uint32_t> tags,
-                        std::span<const Cast> known, const Job& job) {
+VisibleAttributes measure_visible(const Mesh& mesh, const VisibleSampler& sampler,
+                                  const ray::SkinPtr& skin, const VisibleOptions& options,
+                                  std::span<const uint32_t> tags, std::span<const CastPoints> known,
+                                  const Job& job) {
     if (!tags.empty() && tags.size() != mesh.triangles.size())
         fail(Status::InvalidArgument, tags.size(), " tags for ", mesh.triangles.size(),
              " triangles");
-    Visible out;
+    VisibleAttributes out;
     for (const uint32_t tag : tags) {
         if (tag >= kMostTags)
             fail(Status::InvalidArgument, "tag ", tag, " is not below ", kMostTags);
@@ -277,9 +281,9 @@ Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const r
     attributes.surface_area = sampler.possible_area();
     if (sampler.empty())
         return out;
-    const Varied varied(mesh, skin.get());
+    const VaryingSkin varied(mesh, skin.get());
     const bool until_sure = options.relative_error > 0;
-    Tally tally;
+    VisiblePointSums tally;
     tally.origin = glm::dvec3(mesh.positions[mesh.triangles[0].x]);
     tally.by_triangle.resize(mesh.triangles.size(), 0);
     job.check();
@@ -332,7 +336,7 @@ double visible_area(const VisibleSampler& sampler, uint64_t rays, const Job& job
     std::atomic<uint64_t> hits{0};
     parallel_for((count + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
-        const ray::Burst burst;
+        const ray::FlushDenormals burst;
         const uint64_t end = std::min<uint64_t>(count, (block + 1) * kBlock);
         uint64_t own = 0;
         for (uint64_t i = block * kBlock; i < end; ++i)

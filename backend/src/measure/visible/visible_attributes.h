@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visible: attributes of what can be seen of a mesh, by rays (dissertation 4.2.4).
+// VisibleAttributes: attributes of what can be seen of a mesh, by rays (dissertation 4.2.4).
 #pragma once
 
 #include "base/job.h"
@@ -20,10 +20,10 @@ struct VisibleOptions {
     double relative_error = 0;  // else: rays until visible_area is known this well, 95 % confidence
     uint64_t most_rays = uint64_t{1} << 20u;  // ... but never more than these; at most 2^32 - 1
     uint64_t seed = 1;
-    Casting casting = Casting::Best;
+    CastMethod casting = CastMethod::Best;
 };
 
-struct Visible {
+struct VisibleAttributes {
     Attributes attributes;
     std::vector<uint64_t> hits_by_tag;  // visible points found on each tag; empty without tags
     std::vector<double> share_by_tag;   // of the visible area; empty also where nothing is visible
@@ -38,20 +38,21 @@ struct Visible {
 /// body, one flat sheet) is measured exactly by traversal, after a pilot of rays has agreed. Same
 /// bits on any number of threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled,
 /// BadFile (a picture).
-Visible measure_visible(const Mesh& mesh, std::span<const Material> materials,
-                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
-                        const Job& job = {});
+VisibleAttributes measure_visible(const Mesh& mesh, std::span<const Material> materials,
+                                  const VisibleOptions& options,
+                                  std::span<const uint32_t> tags = {}, const Job& job = {});
 
 /// The same with a scene made from this mesh, and this skin, before; null: all like Material{}.
-Visible measure_visible(const Mesh& mesh, const ray::Scene& scene, const ray::SkinPtr& skin,
-                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
-                        const Job& job = {});
+VisibleAttributes measure_visible(const Mesh& mesh, const ray::MeshScene& scene,
+                                  const ray::SkinPtr& skin, const VisibleOptions& options,
+                                  std::span<const uint32_t> tags = {}, const Job& job = {});
 
 /// The same with a sampler made before for this mesh, seed, casting and relative error. `known`:
 /// what its first rays found, if they have been cast already.
-Visible measure_visible(const Mesh& mesh, const VisibleSampler& sampler, const ray::SkinPtr& skin,
-                        const VisibleOptions& options, std::span<const uint32_t> tags = {},
-                        std::span<const Cast> known = {}, const Job& job = {});
+VisibleAttributes measure_visible(const Mesh& mesh, const VisibleSampler& sampler,
+                                  const ray::SkinPtr& skin, const VisibleOptions& options,
+                                  std::span<const uint32_t> tags = {},
+                                  std::span<const CastPoints> known = {}, const Job& job = {});
 
 /// The visible area alone, by a fixed number of rays: that of measure_visible(), in less time.
 double visible_area(const VisibleSampler& sampler, uint64_t rays, const Job& job = {});

@@ -51,13 +51,13 @@ double radius_of(const Mesh& mesh) {
     return radius_around(used_points(mesh));
 }
 
-VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed,
-                               Casting casting, double relative_error)
+VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::MeshScene& scene, uint64_t seed,
+                               CastMethod casting, double relative_error)
     : mesh_(&mesh), scene_(&scene), bound_({}, glm::dmat3(1.0), 0), numbers_(seed) {
     if (scene.triangles() != mesh.triangles.size())
         fail(Status::InvalidArgument, "a scene of ", scene.triangles(),
              " triangles does not hold a mesh of ", mesh.triangles.size());
-    inertia_ = of_mesh(mesh);
+    inertia_ = inertia_of_mesh(mesh);
     if (inertia_.empty())
         return;
     sides_ = sides_of(mesh, scene);
@@ -71,35 +71,35 @@ VisibleSampler::VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64
         up_to[i] = possible_area_;
         if (covered_up_to.empty())
             continue;
-        covered += part * scene.even_alpha(static_cast<uint32_t>(i)).value_or(1);
+        covered += part * scene.uniform_alpha(static_cast<uint32_t>(i)).value_or(1);
         covered_up_to[i] = covered;
     }
-    sides_area_ = Draw(std::move(up_to));
+    sides_area_ = AreaDraw(std::move(up_to));
     if (covered > 0 && covered < possible_area_)
         covers_.emplace(std::move(covered_up_to));
     const std::vector<glm::dvec3> points = used_points(mesh);
     lift_ = ray_lift(radius_around(points));
-    from_surface_ = casting != Casting::FromBound;
-    if (casting == Casting::FromSurface)
+    from_surface_ = casting != CastMethod::FromBound;
+    if (casting == CastMethod::FromSurface)
         return;
-    Pilot surface;
-    if (casting == Casting::Best) {
+    PilotRays surface;
+    if (casting == CastMethod::Best) {
         surface = pilot(seed);
         shows_all_ = sides_.hides_nothing && !covers_ && surface.hits == kPilotRays;
         if (surface.hits + kFewMisses >= kPilotRays)
             return;  // lines could hardly be surer
     }
     bound_ = ConvexBound(points, principal_variances(inertia_).axes, lift_);
-    if (casting == Casting::Best && bound_.area() > 0) {
+    if (casting == CastMethod::Best && bound_.area() > 0) {
         from_surface_ = false;
-        const Pilot line = pilot(seed + 1);
+        const PilotRays line = pilot(seed + 1);
         from_surface_ = is_surface_better(surface, line, relative_error);
     } else {
         from_surface_ = !(bound_.area() > 0);
     }
 }
 
-VisibleSampler::Draw::Draw(std::vector<double> area_up_to) : up_to_(std::move(area_up_to)) {
+VisibleSampler::AreaDraw::AreaDraw(std::vector<double> area_up_to) : up_to_(std::move(area_up_to)) {
     const size_t count = up_to_.size();
     steps_.assign(count + 1, static_cast<std::ptrdiff_t>(count));
     size_t i = 0;
@@ -111,7 +111,7 @@ VisibleSampler::Draw::Draw(std::vector<double> area_up_to) : up_to_(std::move(ar
     }
 }
 
-size_t VisibleSampler::Draw::at(double share, double& rest) const {
+size_t VisibleSampler::AreaDraw::at(double share, double& rest) const {
     const double target = share * up_to_.back();
     // Only near the step that it lies in: a step more on both sides, as rounding may have it.
     const size_t last = steps_.size() - 1;
@@ -126,10 +126,10 @@ size_t VisibleSampler::Draw::at(double share, double& rest) const {
     return index;
 }
 
-VisibleSampler::Pilot VisibleSampler::pilot(uint64_t seed) {
+VisibleSampler::PilotRays VisibleSampler::pilot(uint64_t seed) {
     // Other numbers than those of the measurement, which the choice must not depend on.
-    const Strata numbers(~seed, kPilotRays);
-    Pilot out;
+    const StratifiedPoints numbers(~seed, kPilotRays);
+    PilotRays out;
     for (uint32_t i = 0; i < kPilotRays; i += 2) {
         const bool one = hits(numbers.point(i));
         const bool other = hits(numbers.point(i + 1));
@@ -140,12 +140,12 @@ VisibleSampler::Pilot VisibleSampler::pilot(uint64_t seed) {
     return out;
 }
 
-double VisibleSampler::Pilot::rays_for(double relative_error) const {
+double VisibleSampler::PilotRays::rays_for(double relative_error) const {
     const double deviation = relative_error / 1.96;  // of a 95 % interval
     return kPilotRays * relative_variance() / (deviation * deviation);
 }
 
-bool VisibleSampler::is_surface_better(const Pilot& surface, const Pilot& line,
+bool VisibleSampler::is_surface_better(const PilotRays& surface, const PilotRays& line,
                                        double relative_error) {
     if (!(relative_error > 0))
         return kCostOfSurfaceRay * kPointsOfLine * surface.relative_variance() <
@@ -158,8 +158,8 @@ bool VisibleSampler::is_surface_better(const Pilot& surface, const Pilot& line,
 
 bool VisibleSampler::hits(const std::array<double, 4>& u) const {
     if (from_surface_)
-        return sees_out(drawn(starts(), u), u);
-    const Ray line = bound_.enter(u);
+        return reaches_infinity(drawn(starts(), u), u);
+    const BoundRay line = bound_.entering_ray(u);
     return scene_->occluded(line.origin, line.direction);
 }
 
@@ -168,20 +168,21 @@ int VisibleSampler::cast(const std::array<double, 4>& u,
     if (!from_surface_)
         return cast_line(u, points);
     points[0] = drawn(starts(), u);
-    return sees_out(points[0], u) ? 1 : 0;
+    return reaches_infinity(points[0], u) ? 1 : 0;
 }
 
 int VisibleSampler::cast_line(const std::array<double, 4>& u,
                               std::array<VisiblePoint, 2>& points) const {
-    const Ray line = bound_.enter(u);
-    const ray::Hit near = scene_->first_hit(line.origin, line.direction);
+    const BoundRay line = bound_.entering_ray(u);
+    const ray::RayHit near = scene_->first_hit(line.origin, line.direction);
     if (!near.hit)
         return 0;
     points[0] = {near.point, near.triangle, -line.direction, near.u, near.v};
     // The same line from its other end: past everything, looking back.
     const glm::dvec3 arm = near.point - line.origin;
     const double beyond = std::abs(glm::dot(arm, line.direction)) + 4e5 * lift_;
-    const ray::Hit far = scene_->first_hit(line.origin + beyond * line.direction, -line.direction);
+    const ray::RayHit far =
+        scene_->first_hit(line.origin + beyond * line.direction, -line.direction);
     if (!far.hit)
         return 1;
     points[1] = {far.point, far.triangle, line.direction, far.u, far.v};
@@ -192,17 +193,17 @@ VisiblePoint VisibleSampler::on_surface(const std::array<double, 4>& u) const {
     return drawn(sides_area_, u);
 }
 
-VisiblePoint VisibleSampler::drawn(const Draw& from, const std::array<double, 4>& u) const {
+VisiblePoint VisibleSampler::drawn(const AreaDraw& from, const std::array<double, 4>& u) const {
     double rest = 0;
     const size_t index = from.at(u[0], rest);
     glm::dvec3 normal = glm::normalize(area_vector(*mesh_, index));
     double across = u[1];
-    if (sides_.of[index] == Side::Both) {
+    if (sides_.of[index] == VisibleSide::Both) {
         // The choice of the side takes one bit, not of the number that runs along the triangles:
         // there the first points on each would all be on one side.
         normal = across < 0.5 ? normal : -normal;
         across = 2 * across - (across < 0.5 ? 0 : 1);
-    } else if (sides_.of[index] == Side::Back) {
+    } else if (sides_.of[index] == VisibleSide::Back) {
         normal = -normal;
     }
     const Triangle& t = mesh_->triangles[index];
@@ -213,10 +214,11 @@ VisiblePoint VisibleSampler::drawn(const Draw& from, const std::array<double, 4>
     return {point, static_cast<uint32_t>(index), normal, weights.x, weights.y};
 }
 
-bool VisibleSampler::sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const {
+bool VisibleSampler::reaches_infinity(const VisiblePoint& from,
+                                      const std::array<double, 4>& u) const {
     // What is drawn as often as it covers is there.
-    return ((covers_ && scene_->even_alpha(from.triangle)) ||
-            scene_->stops(from.triangle, from.u, from.v)) &&
+    return ((covers_ && scene_->uniform_alpha(from.triangle)) ||
+            scene_->ends_ray(from.triangle, from.u, from.v)) &&
            !scene_->occluded(from.point + lift_ * from.seen_from,
                              cosine_direction(from.seen_from, u[2], u[3])) &&
            (!sides_.may_coincide || is_first(from));
@@ -224,14 +226,14 @@ bool VisibleSampler::sees_out(const VisiblePoint& from, const std::array<double,
 
 bool VisibleSampler::is_first(const VisiblePoint& point) const {
     std::array<uint32_t, kMostInOnePlace> others;
-    const size_t count =
-        scene_->crossed(point.point + lift_ * point.seen_from, -point.seen_from, 2 * lift_, others);
+    const size_t count = scene_->list_crossed(point.point + lift_ * point.seen_from,
+                                              -point.seen_from, 2 * lift_, others);
     for (size_t i = 0; i < count; ++i) {
         if (others[i] >= point.triangle)
             continue;
         const double along = glm::dot(area_vector(*mesh_, others[i]), point.seen_from);
-        const Side side = sides_.of[others[i]];
-        if (side == Side::Both || (side == Side::Front ? along > 0 : along < 0))
+        const VisibleSide side = sides_.of[others[i]];
+        if (side == VisibleSide::Both || (side == VisibleSide::Front ? along > 0 : along < 0))
             return false;
     }
     return true;

@@ -18,19 +18,19 @@ struct VisiblePoint {
     glm::dvec3 point{0.0};
     uint32_t triangle = 0;
     glm::dvec3 seen_from{0.0};  // direction towards whoever sees it, unit length
-    double u = 0;               // where on the triangle, as ray::Hit
+    double u = 0;               // where on the triangle, as ray::RayHit
     double v = 0;
 };
 
 /// What one ray found: 0...2 points, all with equal weight.
-struct Cast {
+struct CastPoints {
     std::array<VisiblePoint, 2> points;
     int count = 0;
 };
 
 /// Which rays a VisibleSampler casts: those that a pilot of both found to be surer for their cost,
 /// or for checks always the same ones.
-enum class Casting : uint8_t { Best, FromBound, FromSurface };
+enum class CastMethod : uint8_t { Best, FromBound, FromSurface };
 
 /// Draws visible points by one of two kinds of rays: lines that cross a tight convex bound (dense
 /// things: a book), or rays that leave the surface (sparse things: a flock). Where surfaces of
@@ -42,8 +42,8 @@ class VisibleSampler {
 public:
     /// `scene` must hold `mesh`, else Error(InvalidArgument). The better casting is chosen for an
     /// area that is to be known to `relative_error`; 0: for a number of rays, all with points.
-    VisibleSampler(const Mesh& mesh, const ray::Scene& scene, uint64_t seed,
-                   Casting casting = Casting::Best, double relative_error = 0);
+    VisibleSampler(const Mesh& mesh, const ray::MeshScene& scene, uint64_t seed,
+                   CastMethod casting = CastMethod::Best, double relative_error = 0);
 
     /// True when the mesh has no area: then nothing may be cast.
     bool empty() const { return !(possible_area_ > 0); }
@@ -56,7 +56,7 @@ public:
     bool from_surface() const { return from_surface_; }
     /// Whether nothing hides anything, so that all of possible_area() is visible.
     bool shows_all() const { return shows_all_; }
-    const Sides& sides() const { return sides_; }
+    const OutsideSides& sides() const { return sides_; }
     /// By traversal, one side of everything.
     const SurfaceInertia& inertia() const { return inertia_; }
     /// What the choice between the two kinds has cost.
@@ -77,10 +77,10 @@ public:
 
 private:
     /// Triangles, drawn in proportion to what each has of some area.
-    class Draw {
+    class AreaDraw {
     public:
-        Draw() = default;
-        explicit Draw(std::vector<double> area_up_to);
+        AreaDraw() = default;
+        explicit AreaDraw(std::vector<double> area_up_to);
         double area() const { return up_to_.empty() ? 0 : up_to_.back(); }
         /// The triangle at that share of all area; `rest`: how far in it, 0...1.
         size_t at(double share, double& rest) const;
@@ -91,13 +91,13 @@ private:
     };
 
     /// What rays from the surface leave.
-    const Draw& starts() const { return covers_ ? *covers_ : sides_area_; }
-    VisiblePoint drawn(const Draw& from, const std::array<double, 4>& u) const;
+    const AreaDraw& starts() const { return covers_ ? *covers_ : sides_area_; }
+    VisiblePoint drawn(const AreaDraw& from, const std::array<double, 4>& u) const;
     int cast_line(const std::array<double, 4>& u, std::array<VisiblePoint, 2>& points) const;
-    bool sees_out(const VisiblePoint& from, const std::array<double, 4>& u) const;
+    bool reaches_infinity(const VisiblePoint& from, const std::array<double, 4>& u) const;
     bool is_first(const VisiblePoint& point) const;
 
-    struct Pilot {
+    struct PilotRays {
         uint32_t hits = 0;
         uint32_t differ = 0;  // pairs of which one ray hits
         /// Of the estimate, over its square. Two are added: a pilot in which no pair differs does
@@ -109,22 +109,23 @@ private:
         /// How many rays make the estimate as sure as that, about.
         double rays_for(double relative_error) const;
     };
-    Pilot pilot(uint64_t seed);
-    static bool is_surface_better(const Pilot& surface, const Pilot& line, double relative_error);
+    PilotRays pilot(uint64_t seed);
+    static bool is_surface_better(const PilotRays& surface, const PilotRays& line,
+                                  double relative_error);
 
     const Mesh* mesh_;
-    const ray::Scene* scene_;
+    const ray::MeshScene* scene_;
     SurfaceInertia inertia_;
-    Sides sides_;
+    OutsideSides sides_;
     double possible_area_ = 0;
     double lift_ = 0;
     ConvexBound bound_;
-    Draw sides_area_;             // sides that could be seen
-    std::optional<Draw> covers_;  // the same times the alpha, where some of it is clear
+    AreaDraw sides_area_;             // sides that could be seen
+    std::optional<AreaDraw> covers_;  // the same times the alpha, where some of it is clear
     bool from_surface_ = false;
     bool shows_all_ = false;
     uint64_t pilot_rays_ = 0;
-    Sobol numbers_;
+    SobolPoints numbers_;
 };
 
 /// Radius of the mesh's bounding sphere, of finite vertices that a triangle uses; 0 without any.

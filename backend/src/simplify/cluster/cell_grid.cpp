@@ -44,7 +44,7 @@ struct alignas(32) CellVertex {
 };
 
 /// A cell's quadric has its origin where its first vertex is.
-ScratchVector<CellVertex> vertices_of(Cells& cells, const Mesh& mesh, const CellFrame& frame) {
+ScratchVector<CellVertex> vertices_of(GridCells& cells, const Mesh& mesh, const CellFrame& frame) {
     constexpr float kUnset = -1;
     cells.quadrics.assign(cells.split.size(),
                           CellQuadric{kNothing, kNothing, kNothing, {kUnset, 0, 0, 0}});
@@ -62,7 +62,7 @@ ScratchVector<CellVertex> vertices_of(Cells& cells, const Mesh& mesh, const Cell
 
 /// The planes of all triangles to the cells of their corners, what lies around each vertex, and the
 /// cells' triangles between three of them.
-void add_triangles(Cells& cells, const Mesh& mesh, ScratchVector<CellVertex>& vertices,
+void add_triangles(GridCells& cells, const Mesh& mesh, ScratchVector<CellVertex>& vertices,
                    const Job& job) {
     constexpr size_t kAhead = 12;  // triangles whose vertices are asked for
     constexpr size_t kBlock = 4096;
@@ -169,7 +169,7 @@ void join_open(ScratchVector<CellVertex>& vertices, const ScratchVector<uint32_t
 }
 
 /// All vertices are held a little, and borders at the lines along them.
-void add_vertices(Cells& cells, ScratchVector<CellVertex>& vertices) {
+void add_vertices(GridCells& cells, ScratchVector<CellVertex>& vertices) {
     ScratchVector<uint32_t> open;
     open.reserve(vertices.size());
     for (CellQuadric& quadric : cells.quadrics) {
@@ -206,7 +206,7 @@ void add_vertices(Cells& cells, ScratchVector<CellVertex>& vertices) {
 
 }  // namespace
 
-Extent extent_of(std::span<const glm::vec3> points) {
+PointExtent extent_of(std::span<const glm::vec3> points) {
     if (points.empty())
         return {};
     Four low = four(points[0]);
@@ -221,8 +221,9 @@ Extent extent_of(std::span<const glm::vec3> points) {
     return {first_three(low), first_three(high), first_three(sum) == glm::vec3(0.0f)};
 }
 
-Cells divide(const Mesh& mesh, const Extent& extent, size_t least, const Job& job) {
-    Cells cells;
+GridCells divide_into_cells(const Mesh& mesh, const PointExtent& extent, size_t least,
+                            const Job& job) {
+    GridCells cells;
     if (mesh.triangles.empty())
         return cells;
     cells.low = glm::dvec3(extent.low);

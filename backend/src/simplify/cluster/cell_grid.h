@@ -18,7 +18,7 @@ constexpr uint32_t kNoCell = ~uint32_t{0};
 
 /// The cells that hold vertices, in the order of a space-filling curve (Morton's). Positions are in
 /// a frame whose unit is the mesh's largest extent.
-struct Cells {
+struct GridCells {
     glm::dvec3 low{0.0};           // origin of the frame, metres
     double unit = 0;               // metres; 0: the mesh has no extent, and there are no cells
     float step = 0;                // the longest side of a cell's box, in the frame
@@ -36,16 +36,17 @@ struct Cells {
 };
 
 /// Where points lie, in metres, if all are finite.
-struct Extent {
+struct PointExtent {
     glm::vec3 low{0.0f}, high{0.0f};
     bool finite = true;
 };
 
-Extent extent_of(std::span<const glm::vec3> points);
+PointExtent extent_of(std::span<const glm::vec3> points);
 
 /// At least `least` cells, if there are as many vertices and the grid can tell them apart: it has
 /// 2^10 steps a side, 2^20 for more than a million vertices. `extent` is that of the
 /// vertices, which must be finite.
-Cells divide(const Mesh& mesh, const Extent& extent, size_t least, const Job& job);
+GridCells divide_into_cells(const Mesh& mesh, const PointExtent& extent, size_t least,
+                            const Job& job);
 
 }  // namespace lodestone::simplify

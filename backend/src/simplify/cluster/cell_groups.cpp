@@ -34,9 +34,9 @@ size_t count_of(std::span<const Triangle> triangles, std::span<const uint32_t> n
 }
 
 /// Which of a growing list of triangles are there already, however they are turned.
-class Once {
+class TriangleSet {
 public:
-    explicit Once(size_t most) {
+    explicit TriangleSet(size_t most) {
         while (size_ < most)
             size_ *= 2;
         heads_.assign(size_, kNoCell);
@@ -50,7 +50,7 @@ public:
         const uint32_t spot = (middle * 0x85ebca6bu ^ high * 0xc2b2ae35u) >> (32u - kSpots);
         uint32_t& head = heads_[(2 * low + spot) & (size_ - 1)];
         for (uint32_t i = head; i != kNoCell; i = entries_[i].next) {
-            const Entry& entry = entries_[i];
+            const TriangleEntry& entry = entries_[i];
             if (entry.low == low && entry.middle == middle && entry.high == high)
                 return false;
         }
@@ -61,17 +61,17 @@ public:
 
 private:
     static constexpr unsigned kSpots = 12;  // bits
-    struct Entry {
+    struct TriangleEntry {
         uint32_t low, middle, high;
         uint32_t next;
     };
     size_t size_ = 64;
     ScratchVector<uint32_t> heads_;
-    ScratchVector<Entry> entries_;
+    ScratchVector<TriangleEntry> entries_;
 };
 
-Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group) {
-    Grouped out;
+CellGroups grouped(const GridCells& cells, ScratchVector<uint32_t> group) {
+    CellGroups out;
     out.group = std::move(group);
     out.triangles.resize(cells.triangles.size() + 1);
     out.sources.resize(cells.triangles.size() + 1);
@@ -83,7 +83,7 @@ Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group) {
         out.sources[count] = cells.sources[i];
         count += differ(of) ? 1 : 0;
     }
-    Once once(count);
+    TriangleSet once(count);
     size_t kept = 0;
     for (size_t i = 0; i < count; ++i) {
         const Triangle of = out.triangles[i];
@@ -101,7 +101,7 @@ Grouped grouped(const Cells& cells, ScratchVector<uint32_t> group) {
 /// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when
 /// none is, one above. `left` is how many cells to try first (0: unknown), and becomes how many it
 /// has.
-ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted, double near,
+ScratchVector<uint32_t> joined(const GridCells& cells, CellTree& tree, double wanted, double near,
                                size_t& count, size_t& left) {
     size_t few = 1;  // cells that give too few triangles, and how many
     size_t few_triangles = 0;
@@ -155,8 +155,8 @@ ScratchVector<uint32_t> joined(const Cells& cells, CellTree& tree, double wanted
 }
 
 /// Merges groups until at most `wanted` triangles are left.
-Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wanted,
-               const Job& job) {
+CellGroups merged(const GridCells& cells, const CellGroups& start, size_t nodes, size_t wanted,
+                  const Job& job) {
     // Numbers without gaps for what triangles use; the last one is for all other cells.
     ScratchVector<uint32_t> number(nodes, kNoCell);
     uint32_t count = 0;
@@ -189,7 +189,7 @@ Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wa
                 : static_cast<size_t>(0.7 * cells_each * static_cast<double>(above)) + 1;
         const size_t before = merge.count();
         merge.merge_to(before - std::min(before - 1, steps), job);
-        Once once(left);
+        TriangleSet once(left);
         size_t kept = 0;
         for (const Triangle& t : triangles) {
             const Triangle of(merge.whole(t.x), merge.whole(t.y), merge.whole(t.z));
@@ -208,7 +208,7 @@ Grouped merged(const Cells& cells, const Grouped& start, size_t nodes, size_t wa
         const uint32_t of = number[start.group[i]];
         group[i] = of == count ? count : merge.whole(of);
     }
-    Grouped out = grouped(cells, std::move(group));
+    CellGroups out = grouped(cells, std::move(group));
     out.scattered = true;
     return out;
 }
@@ -226,11 +226,12 @@ GroupingPlan::GroupingPlan(size_t triangles, size_t target) {
         begin += removed / wanted;
 }
 
-Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target, const Job& job) {
+CellGroups group_cells(const GridCells& cells, const GroupingPlan& plan, size_t target,
+                       const Job& job) {
     CellTree tree(cells);
     job.check();
     const auto wanted = static_cast<double>(target);
-    Grouped best;
+    CellGroups best;
     size_t count = 0;
     size_t left = 0;
     if (plan.merges) {
@@ -244,7 +245,7 @@ Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target,
     double too_many = 0;  // 0: none yet
     for (int i = 0; i < kGoals; ++i) {
         ScratchVector<uint32_t> group = joined(cells, tree, goal, kNear, count, left);
-        Grouped found = grouped(cells, std::move(group));
+        CellGroups found = grouped(cells, std::move(group));
         const size_t kept = found.triangles.size();
         const bool within = kept <= target;
         if (best.triangles.empty() || (within && kept > best.triangles.size()))

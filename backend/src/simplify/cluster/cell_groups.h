@@ -7,7 +7,7 @@
 namespace lodestone::simplify {
 
 /// Triangles of groups of cells, each once.
-struct Grouped {
+struct CellGroups {
     ScratchVector<uint32_t> group;      // of each cell
     ScratchVector<Triangle> triangles;  // of groups
     ScratchVector<uint32_t> sources;    // the mesh's triangle each was
@@ -26,6 +26,7 @@ struct GroupingPlan {
 
 /// Groups that leave at most `target` triangles, as near to it as a few tries come; more, where
 /// fewer cells would leave none. Empty when the cells have no triangles.
-Grouped group_cells(const Cells& cells, const GroupingPlan& plan, size_t target, const Job& job);
+CellGroups group_cells(const GridCells& cells, const GroupingPlan& plan, size_t target,
+                       const Job& job);
 
 }  // namespace lodestone::simplify

@@ -47,14 +47,14 @@ CellMerge::CellMerge(std::span<const CellQuadric> quadrics, std::span<const Tria
     const auto edges = edges_of(triangles);
     pairs_.reserve(edges.size());
     for (const auto& [a, b] : edges) {
-        Pair pair{0, a, b, 0};
+        CellPair pair{0, a, b, 0};
         judge(pair);
         pairs_.push_back(pair);
     }
     std::make_heap(pairs_.begin(), pairs_.end());
 }
 
-void CellMerge::judge(Pair& pair) const {
+void CellMerge::judge(CellPair& pair) const {
     CellQuadric sum = quadrics_[pair.a];
     sum.add(quadrics_[pair.b]);
     pair.cost = std::max(0.0f, sum.least() - least_[pair.a] - least_[pair.b]);
@@ -74,7 +74,7 @@ void CellMerge::merge_to(size_t count, const Job& job) {
         if ((step & 0xfffu) == 0)
             job.check();
         std::pop_heap(pairs_.begin(), pairs_.end());
-        Pair pair = pairs_.back();
+        CellPair pair = pairs_.back();
         pair.a = whole(pair.a);
         pair.b = whole(pair.b);
         if (pair.a == pair.b) {

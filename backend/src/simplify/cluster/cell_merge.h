@@ -26,23 +26,23 @@ public:
     const CellQuadric& quadric(uint32_t cell) const { return quadrics_[cell]; }
 
 private:
-    struct Pair {
+    struct CellPair {
         float cost;
         uint32_t a, b;
-        uint32_t merges;                       // of both when it was judged
-        bool operator<(const Pair& o) const {  // cheapest on top of a heap; ties by number
+        uint32_t merges;                           // of both when it was judged
+        bool operator<(const CellPair& o) const {  // cheapest on top of a heap; ties by number
             if (cost != o.cost)
                 return cost > o.cost;
             return a != o.a ? a > o.a : b > o.b;
         }
     };
-    void judge(Pair& pair) const;
+    void judge(CellPair& pair) const;
 
     ScratchVector<CellQuadric> quadrics_;
     ScratchVector<float> least_;
     ScratchVector<uint32_t> part_of_;
     ScratchVector<uint32_t> merges_;
-    ScratchVector<Pair> pairs_;  // a heap
+    ScratchVector<CellPair> pairs_;  // a heap
     size_t count_;
 };
 

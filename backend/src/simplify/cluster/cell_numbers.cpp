@@ -42,17 +42,17 @@ Code code_of(const Four& point, int bits) {
 }
 
 template <typename Code>
-struct Key {
+struct CellKey {
     Code code;
     uint32_t vertex;
 };
 
 /// The vertices along the curve; those of one code in their own order.
 template <typename Code>
-ScratchVector<Key<Code>> sorted(std::span<const glm::vec3> positions, const CellFrame& frame) {
+ScratchVector<CellKey<Code>> sorted(std::span<const glm::vec3> positions, const CellFrame& frame) {
     constexpr size_t kDigits = 3 * kAxisBits<Code> / kDigit;
     constexpr size_t kValues = size_t{1} << static_cast<unsigned>(kDigit);
-    ScratchVector<Key<Code>> keys(positions.size());
+    ScratchVector<CellKey<Code>> keys(positions.size());
     std::array<std::array<uint32_t, kValues>, kDigits> starts{};
     for (size_t i = 0; i < positions.size(); ++i) {
         const Code code = code_of<Code>(frame(positions[i]), kAxisBits<Code>);
@@ -60,12 +60,12 @@ ScratchVector<Key<Code>> sorted(std::span<const glm::vec3> positions, const Cell
         for (size_t digit = 0; digit < kDigits; ++digit)
             ++starts[digit][code >> (digit * kDigit) & (kValues - 1)];
     }
-    ScratchVector<Key<Code>> other(positions.size());
+    ScratchVector<CellKey<Code>> other(positions.size());
     for (size_t digit = 0; digit < kDigits; ++digit) {
         uint32_t sum = 0;
         for (uint32_t& start : starts[digit])
             start = std::exchange(sum, sum + start);
-        for (const Key<Code>& key : keys)
+        for (const CellKey<Code>& key : keys)
             other[starts[digit][key.code >> (digit * kDigit) & (kValues - 1)]++] = key;
         keys.swap(other);
     }
@@ -91,9 +91,9 @@ int spare_bits(const Each& each, int bits, size_t least) {
 
 /// Cells in the order of the curve, by sorting all vertices along it.
 template <typename Code>
-void number_sorted(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+void number_sorted(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                    size_t least) {
-    const ScratchVector<Key<Code>> keys = sorted<Code>(positions, frame);
+    const ScratchVector<CellKey<Code>> keys = sorted<Code>(positions, frame);
     const auto each = [&](const auto& visit) {
         for (size_t i = 1; i < keys.size(); ++i)
             visit(keys[i].code, keys[i - 1].code);
@@ -152,7 +152,7 @@ private:
 };
 
 /// The same without sorting, for few cells. False: they are too many, or too near to each other.
-bool number_few(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+bool number_few(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                 size_t least) {
     // Surfaces go through at least the square of the steps a side.
     const int bits = static_cast<int>(std::bit_width(least) + 2) / 2;
@@ -186,7 +186,7 @@ bool number_few(Cells& cells, std::span<const glm::vec3> positions, const CellFr
 
 }  // namespace
 
-void number_cells(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+void number_cells(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                   size_t least) {
     cells.cell.resize(positions.size());
     if (positions.size() > kManyPoints)

@@ -24,8 +24,8 @@ private:
     float twice_;
 };
 
-/// Sets `cell`, `split` and `step`; see divide(). Positions in metres.
-void number_cells(Cells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
+/// Sets `cell`, `split` and `step`; see divide_into_cells(). Positions in metres.
+void number_cells(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                   size_t least);
 
 }  // namespace lodestone::simplify

@@ -7,7 +7,7 @@ namespace lodestone::simplify {
 namespace {
 
 /// The left half of a node whose right half is still to come.
-struct Open {
+struct LeftHalf {
     uint32_t node;
     uint8_t split;  // between it and what follows
     float least;    // of its quadric
@@ -17,19 +17,19 @@ struct Open {
 
 }  // namespace
 
-CellTree::CellTree(const Cells& cells) : cells_(cells.count()) {
+CellTree::CellTree(const GridCells& cells) : cells_(cells.count()) {
     if (cells_ == 0)
         return;
     parent_.assign(2 * cells_ - 1, kNoCell);
     cost_.reserve(cells_ - 1);
-    ScratchVector<Open> open;
+    ScratchVector<LeftHalf> open;
     open.reserve(64);
     for (size_t i = 0; i < cells_; ++i) {
-        Open node{static_cast<uint32_t>(i), cells.split[i], 0, 0, cells.quadrics[i]};
+        LeftHalf node{static_cast<uint32_t>(i), cells.split[i], 0, 0, cells.quadrics[i]};
         if (node.quadric.c() > 0)  // else all its vertices are one
             node.least = node.quadric.least();
         while (!open.empty() && open.back().split < node.split) {
-            const Open& left = open.back();
+            const LeftHalf& left = open.back();
             const auto above = static_cast<uint32_t>(cells_ + cost_.size());
             parent_[left.node] = parent_[node.node] = above;
             CellQuadric sum = left.quadric;

@@ -14,7 +14,7 @@ namespace lodestone::simplify {
 /// plane quadrics of Lindstrom 2000 (out-of-core simplification).
 class CellTree {
 public:
-    explicit CellTree(const Cells& cells);
+    explicit CellTree(const GridCells& cells);
 
     /// Joins nodes until `count` cells (from 1 to all) are left; returns the node each cell is in
     /// now. Cells that stay alone have numbers below cells.count(); valid until the next call.

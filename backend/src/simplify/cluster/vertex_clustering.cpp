@@ -50,7 +50,8 @@ Mesh largest(const Mesh& mesh, size_t count) {
 
 /// Parts of the surface that went into one group, connected within it: what shares normals and
 /// texture coordinates.
-ScratchVector<uint32_t> patches_of(const Mesh& mesh, const Cells& cells, const Grouped& grouping) {
+ScratchVector<uint32_t> patches_of(const Mesh& mesh, const GridCells& cells,
+                                   const CellGroups& grouping) {
     ScratchVector<uint32_t> patch(mesh.positions.size());
     std::iota(patch.begin(), patch.end(), 0u);
     const auto root = [&](uint32_t v) {
@@ -87,7 +88,7 @@ public:
         high_ = most_of(high_, other.high_);
     }
     /// The place of its vertex, in metres.
-    glm::vec3 point(const Cells& cells) const {
+    glm::vec3 point(const GridCells& cells) const {
         // Planes that hardly differ meet anywhere: not far from what they are planes of.
         const glm::vec3 low = first_three(low_);
         const glm::vec3 high = first_three(high_);
@@ -102,14 +103,14 @@ private:
 };
 
 /// One vertex for each group that a triangle uses.
-struct Places {
+struct ClusterVertices {
     ScratchVector<uint32_t> of;       // a group's place; kNoCell where nothing uses it
     ScratchVector<glm::vec3> points;  // metres
 };
 
-Places places_of(const Cells& cells, const Grouped& grouping, size_t nodes) {
+ClusterVertices places_of(const GridCells& cells, const CellGroups& grouping, size_t nodes) {
     constexpr uint32_t kUsed = kNoCell - 1;
-    Places places;
+    ClusterVertices places;
     places.of.assign(nodes, kNoCell);
     for (const Triangle& t : grouping.triangles)
         places.of[t.x] = places.of[t.y] = places.of[t.z] = kUsed;
@@ -145,7 +146,7 @@ bool without_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 }
 
 /// Every place is a vertex.
-Mesh plain(const Mesh& mesh, const Grouped& grouping, const Places& places) {
+Mesh plain(const Mesh& mesh, const CellGroups& grouping, const ClusterVertices& places) {
     Mesh out;
     out.positions.assign(places.points.begin(), places.points.end());
     out.triangles.reserve(grouping.triangles.size());
@@ -166,9 +167,10 @@ Mesh plain(const Mesh& mesh, const Grouped& grouping, const Places& places) {
 }
 
 /// Vertices of the result, made from the surface around them.
-class Assembly {
+class ClusterAssembler {
 public:
-    Assembly(const Mesh& mesh, const Cells& cells, const Grouped& grouping, const Places& places)
+    ClusterAssembler(const Mesh& mesh, const GridCells& cells, const CellGroups& grouping,
+                     const ClusterVertices& places)
         : mesh_(mesh) {
         const ScratchVector<uint32_t> patch = patches_of(mesh, cells, grouping);
         ScratchVector<uint32_t> vertex_of(patch.size(), kNoCell);
@@ -271,29 +273,29 @@ private:
 
 }  // namespace
 
-Mesh cluster(const Mesh& mesh, size_t target, const Job& job) {
+Mesh cluster_vertices(const Mesh& mesh, size_t target, const Job& job) {
     check(mesh);
     if (target == 0)
         fail(Status::InvalidArgument, "the target is 0 triangles");
     if (mesh.triangles.size() <= target)
         return mesh;
-    const Extent extent = extent_of(mesh.positions);
+    const PointExtent extent = extent_of(mesh.positions);
     if (!extent.finite)
-        return cluster(finite_part(mesh), target, job);
+        return cluster_vertices(finite_part(mesh), target, job);
     const GroupingPlan plan(mesh.triangles.size(), target);
     const size_t least =
         16 + static_cast<size_t>(kCellsPerLeft * plan.begin * 0.5 * static_cast<double>(target));
-    Scratch scratch(kVertexBytes * mesh.positions.size() + kCellBytes * least);
-    const Cells cells = divide(mesh, extent, least, job);
-    Grouped grouping;
+    ScratchArena scratch(kVertexBytes * mesh.positions.size() + kCellBytes * least);
+    const GridCells cells = divide_into_cells(mesh, extent, least, job);
+    CellGroups grouping;
     if (cells.count() > 0)
         grouping = group_cells(cells, plan, target, job);
     job.progress(0.8);
     if (grouping.triangles.empty())  // no extent, or all of it in specks
         return largest(mesh, target);
-    const Places places = places_of(cells, grouping, 2 * cells.count());
+    const ClusterVertices places = places_of(cells, grouping, 2 * cells.count());
     const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();
-    Mesh out = attributes ? Assembly(mesh, cells, grouping, places).result()
+    Mesh out = attributes ? ClusterAssembler(mesh, cells, grouping, places).result()
                           : plain(mesh, grouping, places);
     if (out.empty())
         out = largest(mesh, target);

@@ -16,6 +16,6 @@ namespace lodestone::simplify {
 /// the input's count returns the input. Any input is accepted; triangles with non-finite vertices
 /// are left out. Throws Error(InvalidArgument) as check(mesh) does, or for a target of 0. Same
 /// input, same bits. source: dissertation 3.3.6 (Rossignac & Borrel 1993).
-Mesh cluster(const Mesh& mesh, size_t triangles, const Job& job = {});
+Mesh cluster_vertices(const Mesh& mesh, size_t triangles, const Job& job = {});
 
 }  // namespace lodestone::simplify

@@ -35,7 +35,7 @@ struct Adjacency {
 };
 
 /// A set of small integers that is emptied in O(1); each member carries a number.
-class Marks {
+class StampedSet {
 public:
     void resize(size_t count) {
         stamps_.assign(count, 0);

@@ -135,7 +135,8 @@ void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<
 
 }  // namespace
 
-CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, Adjacency* adjacency) {
+CollapseMesh open_collapse_mesh(const Mesh& source, const Job& job, OtherPositions others,
+                                Adjacency* adjacency) {
     CollapseMesh mesh;
     mesh.has_normals = !source.normals.empty();
     Box3 box;
@@ -155,7 +156,7 @@ CollapseMesh open(const Mesh& source, const Job& job, OtherPositions others, Adj
     std::vector<uint32_t> order;
     std::vector<uint32_t> first;
     {
-        order = geometry::along_curve(source.positions, first);
+        order = geometry::morton_order(source.positions, first);
         std::vector<uint32_t> place(first.size(), kNone);
         for (uint32_t i = 0; i < order.size(); ++i)
             place[order[i]] = i;

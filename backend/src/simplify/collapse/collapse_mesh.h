@@ -65,8 +65,8 @@ struct Adjacency;
 
 /// Leaves out triangles with non-finite vertices and those with two corners in one place. Compact;
 /// fills `adjacency`, when given.
-CollapseMesh open(const Mesh& mesh, const Job& job, OtherPositions others = {},
-                  Adjacency* adjacency = nullptr);
+CollapseMesh open_collapse_mesh(const Mesh& mesh, const Job& job, OtherPositions others = {},
+                                Adjacency* adjacency = nullptr);
 
 /// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when
 /// given, which takes less time than building it afterwards.

@@ -22,8 +22,8 @@ constexpr size_t kWork = 40;
 
 /// Small passes choose with fresher costs, large ones take less time. (More than .35 ruins plates
 /// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
-constexpr Pace kFast{0.35, 2.0, 1.0 / 3, 6};
-constexpr Pace kBest{0.12, 1.0, 0.5, 1};
+constexpr PassLimits kFast{0.35, 2.0, 1.0 / 3, 6};
+constexpr PassLimits kBest{0.12, 1.0, 0.5, 1};
 /// Far from the target, that is with so many times more triangles, a pass may cost more: triangles
 /// twice as large cost eight times as much, so all of it is little beside what is to come.
 constexpr double kFar = 4;
@@ -55,26 +55,27 @@ bool is_slow(size_t gone, size_t wanted) {
     return static_cast<double>(gone) < kSlow * static_cast<double>(wanted);
 }
 
-uint32_t step_of(const Candidate& candidate) {
+uint32_t step_of(const CollapseCandidate& candidate) {
     return candidate.key >> kKeyShift;
 }
 
 /// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
 /// Parts up to the limit count too: a round begins with the removal of those that are cheaper than
 /// all it has.
-std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
-                                const std::vector<Part>& removable, uint32_t limit, size_t want) {
+std::vector<uint32_t> rounds_of(const std::vector<EdgeChunk>& chunks,
+                                const std::vector<CollapsePart>& removable, uint32_t limit,
+                                size_t want) {
     std::vector<size_t> counts((kImpossible >> kKeyShift) + 1, 0);
     size_t all = 0;
-    for (const Part& part : removable) {
+    for (const CollapsePart& part : removable) {
         const uint32_t key = key_of_cost(static_cast<float>(part.cost));
         if (key > limit)
             break;
         ++counts[key >> kKeyShift];
         ++all;
     }
-    for (const Chunk& chunk : chunks) {
-        for (const Candidate& candidate : chunk.candidates)
+    for (const EdgeChunk& chunk : chunks) {
+        for (const CollapseCandidate& candidate : chunk.candidates)
             ++counts[step_of(candidate)];
         all += chunk.candidates.size();
     }
@@ -92,13 +93,14 @@ std::vector<uint32_t> rounds_of(const std::vector<Chunk>& chunks,
 
 }  // namespace
 
-Reducer::Reducer(CollapseMesh& mesh, const SimplifyOptions& options)
+CollapseReducer::CollapseReducer(CollapseMesh& mesh, const SimplifyOptions& options)
     : mesh_(mesh), options_(options), pace_(options.mode == SimplifyMode::Best ? kBest : kFast) {}
 
 /// One batch of collapses.
-class Reducer::Batch {
+class CollapseReducer::CollapseBatch {
 public:
-    Batch(Reducer& reducer, Effort effort, size_t start, size_t want, uint32_t limit)
+    CollapseBatch(CollapseReducer& reducer, CollapseEffort effort, size_t start, size_t want,
+                  uint32_t limit)
         : r_(reducer),
           effort_(effort),
           limit_(limit),
@@ -113,7 +115,7 @@ public:
     }
 
     void run(const Job& job) {
-        const std::vector<Chunk>& chunks = r_.edges_.chunks();
+        const std::vector<EdgeChunk>& chunks = r_.edges_.chunks();
         std::vector<size_t> next(chunks.size(), 0);  // candidate of each chunk
         std::vector<size_t> last(chunks.size(), 0);  // that the round goes up to
         std::vector<std::vector<uint32_t>> left(chunks.size());
@@ -127,7 +129,7 @@ public:
             begin = end;
             size_t all = 0;
             for (size_t i = 0; i < chunks.size(); ++i) {
-                const std::vector<Candidate>& candidates = chunks[i].candidates;
+                const std::vector<CollapseCandidate>& candidates = chunks[i].candidates;
                 last[i] = next[i];
                 while (last[i] < candidates.size() && step_of(candidates[last[i]]) < end)
                     ++last[i];
@@ -157,14 +159,14 @@ public:
             across(chunks, left, job);
             next = last;
         }
-        if (effort_ == Effort::Careful && gone_ == 0) {
+        if (effort_ == CollapseEffort::Careful && gone_ == 0) {
             // No edge within the limit can be collapsed: parts go before dearer ones do.
             limit_ = kImpossible - 1;
             const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
             if (all.size() > 1)
                 remove_parts_below(all[all.size() - 2] << kKeyShift);
         }
-        if (effort_ >= Effort::Topology && is_slow(gone_, want_)) {
+        if (effort_ >= CollapseEffort::Topology && is_slow(gone_, want_)) {
             while (gone_ < want_ && next_part_ < removable_.size())
                 remove_next_part();
         }
@@ -175,7 +177,7 @@ public:
 
 private:
     void remove_next_part() {
-        const Part& part = removable_[next_part_++];
+        const CollapsePart& part = removable_[next_part_++];
         doomed_[part.part] = 1;
         gone_ += part.triangles - taken_[part.part];
     }
@@ -185,12 +187,12 @@ private:
                gone_ < want_)
             remove_next_part();
     }
-    size_t collapse(Collapser& collapser, const Candidate& candidate) {
+    size_t collapse(EdgeCollapser& collapser, const CollapseCandidate& candidate) {
         const uint32_t part = r_.mesh_.parts[candidate.a];
         if (!doomed_.empty() && doomed_[part])
             return 0;
         const size_t went = collapser.collapse(candidate);
-        if (went == 0 || went == Collapser::kOutside)
+        if (went == 0 || went == EdgeCollapser::kOutside)
             return went;
         r_.used_[candidate.a] = r_.used_[candidate.b] = 1;
         if (!taken_.empty())
@@ -200,21 +202,21 @@ private:
 
     /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most`
     /// triangles at most; `left` gets the others.
-    size_t within(const Chunk& chunk, size_t next, size_t last, size_t most, size_t work,
+    size_t within(const EdgeChunk& chunk, size_t next, size_t last, size_t most, size_t work,
                   std::vector<uint32_t>& left) {
         if (next == last)
             return 0;
-        Collapser collapser(r_.mesh_, r_.adjacency_, r_.edges_, effort_, r_.options_.max_turn,
-                            &chunk);
+        EdgeCollapser collapser(r_.mesh_, r_.adjacency_, r_.edges_, effort_, r_.options_.max_turn,
+                                &chunk);
         size_t gone = 0;
         for (size_t k = next; k < last; ++k) {
-            const Candidate& candidate = chunk.candidates[k];
+            const CollapseCandidate& candidate = chunk.candidates[k];
             if (k + kLists < last)
-                collapser.expect_lists(chunk.candidates[k + kLists]);
+                collapser.prefetch_lists(chunk.candidates[k + kLists]);
             if (k + kTriangles < last) {
-                const Candidate& coming = chunk.candidates[k + kTriangles];
+                const CollapseCandidate& coming = chunk.candidates[k + kTriangles];
                 if (!r_.used_[coming.a])
-                    collapser.expect_triangles(coming);
+                    collapser.prefetch_triangles(coming);
             }
             if (r_.used_[candidate.a])
                 continue;
@@ -225,7 +227,7 @@ private:
             if (r_.used_[candidate.b])
                 continue;
             const size_t went = collapse(collapser, candidate);
-            if (went == Collapser::kOutside)
+            if (went == EdgeCollapser::kOutside)
                 left.push_back(static_cast<uint32_t>(k));
             else
                 gone += went;
@@ -234,18 +236,18 @@ private:
     }
 
     /// What the chunks left, one after the other.
-    void across(const std::vector<Chunk>& chunks, const std::vector<std::vector<uint32_t>>& left,
-                const Job& job) {
+    void across(const std::vector<EdgeChunk>& chunks,
+                const std::vector<std::vector<uint32_t>>& left, const Job& job) {
         for (size_t i = 0; i < chunks.size(); ++i) {
             for (size_t n = 0; n < left[i].size(); ++n) {
                 if ((n & 0xfffu) == 0)
                     job.check();
-                const std::vector<Candidate>& candidates = chunks[i].candidates;
-                const Candidate& candidate = candidates[left[i][n]];
+                const std::vector<CollapseCandidate>& candidates = chunks[i].candidates;
+                const CollapseCandidate& candidate = candidates[left[i][n]];
                 if (n + kLists < left[i].size())
-                    whole_.expect_lists(candidates[left[i][n + kLists]]);
+                    whole_.prefetch_lists(candidates[left[i][n + kLists]]);
                 if (n + kTriangles < left[i].size())
-                    whole_.expect_triangles(candidates[left[i][n + kTriangles]]);
+                    whole_.prefetch_triangles(candidates[left[i][n + kTriangles]]);
                 if (r_.used_[candidate.a] || r_.used_[candidate.b])
                     continue;
                 remove_parts_below(candidate.key);
@@ -258,31 +260,31 @@ private:
         }
     }
 
-    Reducer& r_;
-    Effort effort_;
+    CollapseReducer& r_;
+    CollapseEffort effort_;
     uint32_t limit_;  // of parts: keys that none exceeds
     size_t want_;
     size_t work_;  // triangles it may look at
-    const std::vector<Part>& removable_;
+    const std::vector<CollapsePart>& removable_;
     std::vector<uint8_t> doomed_;
     std::vector<size_t> taken_;
-    Collapser whole_;
+    EdgeCollapser whole_;
     size_t next_part_ = 0;
     size_t gone_ = 0;       // triangles, with those of parts
     size_t collapsed_ = 0;  // without
 };
 
-size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
+size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& job) {
     const size_t before = mesh_.live;
-    if (effort == Effort::Anything)
+    if (effort == CollapseEffort::Anything)
         drop_copies(mesh_);
-    if (begun_ || effort == Effort::Anything)
+    if (begun_ || effort == CollapseEffort::Anything)
         compact(mesh_, &adjacency_);
     if (mesh_.live <= target)
         return before - mesh_.live;
     edges_.build(mesh_, adjacency_, options_, !begun_, job);
     if (!begun_) {
-        for (const Chunk& chunk : edges_.chunks()) {
+        for (const EdgeChunk& chunk : edges_.chunks()) {
             for (const auto& [a, b] : chunk.borders)
                 mesh_.outline.emplace_back(mesh_.ids[a], mesh_.ids[b]);
         }
@@ -303,7 +305,7 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
     const auto share = static_cast<size_t>(pace_.share * static_cast<double>(start));
     const size_t want = std::min(start - target, std::max<size_t>(share, 64));
     uint32_t limit = kImpossible - 1;
-    if (effort == Effort::Careful) {
+    if (effort == CollapseEffort::Careful) {
         const auto live = static_cast<double>(start);
         const auto wanted = static_cast<double>(want);
         const bool rest = want == start - target && wanted < kRest * live;
@@ -316,25 +318,26 @@ size_t Reducer::pass(size_t target, Effort effort, const Job& job) {
             limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
     }
     // Edges with more than two triangles are the input's, to stay, or all of its closing.
-    if (effort >= Effort::Topology && !asked_) {
+    if (effort >= CollapseEffort::Topology && !asked_) {
         asked_ = true;
-        loops_ = !has_pinches(mesh_, adjacency_);
+        loops_ = !has_tunnels(mesh_, adjacency_);
     }
-    const bool usual = effort == Effort::Careful && reach_ == 1;
+    const bool usual = effort == CollapseEffort::Careful && reach_ == 1;
     edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
-    Batch(*this, effort, start, want, limit).run(job);
-    if (effort >= Effort::Topology)
-        cut_ = cut_pinches(mesh_, loops_);
+    CollapseBatch(*this, effort, start, want, limit).run(job);
+    if (effort >= CollapseEffort::Topology)
+        cut_ = cut_tunnels(mesh_, loops_);
     // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
     reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);
     return before - mesh_.live;
 }
 
-bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
-                     Adjacency& adjacency) {
-    const Effort last = options_.keep_topology ? Effort::Rough : Effort::Anything;
-    Effort effort = Effort::Careful;
+bool CollapseReducer::reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
+                             Adjacency& adjacency) {
+    const CollapseEffort last =
+        options_.keep_topology ? CollapseEffort::Rough : CollapseEffort::Anything;
+    CollapseEffort effort = CollapseEffort::Careful;
     int slow_passes = 0;
     adjacency_ = std::move(adjacency);
     measured_ = false;
@@ -345,7 +348,7 @@ bool Reducer::reduce(size_t target, const Job& job, const std::function<void()>&
         if (!is_slow(gone, wanted))
             continue;
         if (effort < last)
-            effort = static_cast<Effort>(static_cast<int>(effort) + 1);
+            effort = static_cast<CollapseEffort>(static_cast<int>(effort) + 1);
         else if (gone == 0 || ++slow_passes > kMostSlowPasses)
             break;
     }

@@ -12,17 +12,17 @@
 namespace lodestone::simplify {
 
 /// How far one pass goes.
-struct Pace {
+struct PassLimits {
     double share;       // of the live triangles it may take
     double slack;       // a careful pass stops at this many times the cost
     double quantile;    // that this many edges for each triangle wanted do not exceed
     double most_slack;  // times that, far from the target
 };
 
-class Reducer {
+class CollapseReducer {
 public:
     /// `mesh` must be compact.
-    Reducer(CollapseMesh& mesh, const SimplifyOptions& options);
+    CollapseReducer(CollapseMesh& mesh, const SimplifyOptions& options);
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
     /// `after_pass` is called after every pass. `adjacency` holds the mesh's lists, at first and,
@@ -31,16 +31,16 @@ public:
                 Adjacency& adjacency);
 
 private:
-    class Batch;
+    class CollapseBatch;
     /// One batch; returns how many triangles went.
-    size_t pass(size_t target, Effort effort, const Job& job);
+    size_t pass(size_t target, CollapseEffort effort, const Job& job);
 
     CollapseMesh& mesh_;
     SimplifyOptions options_;
-    Pace pace_;
+    PassLimits pace_;
     Adjacency adjacency_;
-    Edges edges_;
-    Parts parts_;
+    EdgeQueue edges_;
+    CollapseParts parts_;
     bool begun_ = false;
     bool measured_ = false;  // parts, as they were before the first pass to a target
     bool cut_ = false;       // parts may have become several

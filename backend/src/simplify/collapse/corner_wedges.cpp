@@ -149,7 +149,7 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
                 continue;
             int at_a_of[2] = {0, 0};
             int at_b_of[2] = {0, 0};
-            for (const Member& member : members_) {
+            for (const WedgeMember& member : members_) {
                 if (member.group == to || member.group == from)
                     ++(member.at_a ? at_a_of : at_b_of)[member.group == from];
             }
@@ -158,14 +158,14 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
                 return false;
             if (clash)
                 continue;
-            for (Member& member : members_) {
+            for (WedgeMember& member : members_) {
                 if (member.group == from)
                     member.group = to;
             }
         }
     }
-    values_.assign(members_.size(), Value{});
-    for (Value& value : values_)
+    values_.assign(members_.size(), WedgeValue{});
+    for (WedgeValue& value : values_)
         value.square = std::numeric_limits<double>::infinity();
     for (const uint32_t end : {a, b}) {
         for (const uint32_t t : adjacency.around(end)) {
@@ -184,7 +184,7 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
                 if (corners[corner] != end)
                     continue;
                 const uint32_t member = find_or_add(mesh.wedges[t][corner], end == a);
-                Value& value = values_[members_[member].group];
+                WedgeValue& value = values_[members_[member].group];
                 if (!(square < value.square))
                     continue;
                 value.square = square;
@@ -208,7 +208,7 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
 
 void WedgeMerge::apply(CollapseMesh& mesh) {
     for (uint32_t i = 0; i < members_.size(); ++i) {
-        const Value& value = values_[i];
+        const WedgeValue& value = values_[i];
         if (members_[i].group != i || !std::isfinite(value.square))
             continue;
         const uint32_t wedge = members_[i].wedge;
@@ -225,7 +225,7 @@ void WedgeMerge::apply(CollapseMesh& mesh) {
 }
 
 uint32_t WedgeMerge::wedge_of(uint32_t old_wedge) const {
-    for (const Member& member : members_) {
+    for (const WedgeMember& member : members_) {
         if (member.wedge == old_wedge)
             return members_[member.group].wedge;
     }

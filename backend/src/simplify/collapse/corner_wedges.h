@@ -29,20 +29,20 @@ public:
     uint32_t wedge_of(uint32_t old_wedge) const;
 
 private:
-    struct Member {
+    struct WedgeMember {
         uint32_t wedge;
         uint32_t group;  // index of the member that stands for it
         bool at_a;
     };
-    struct Value {
+    struct WedgeValue {
         glm::dvec3 normal{0.0};
         glm::dvec2 uv{0.0};
         glm::dvec4 color{0.0};
         double square = 0;
     };
     uint32_t find_or_add(uint32_t wedge, bool at_a);
-    std::vector<Member> members_;
-    std::vector<Value> values_;
+    std::vector<WedgeMember> members_;
+    std::vector<WedgeValue> values_;
 };
 
 }  // namespace lodestone::simplify

@@ -18,16 +18,16 @@ constexpr double kThin = 2e-3;
 constexpr size_t kEndsAtOnce = 4;
 using Lanes = float __attribute__((vector_size(4 * kEndsAtOnce)));
 
-struct Vectors {
+struct EndVectors {
     Lanes x, y, z;
 };
 
-Lanes dot(const Vectors& a, const Vectors& b) {
+Lanes dot(const EndVectors& a, const EndVectors& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// Differences are all that single precision is asked for.
-Vectors between(const glm::dvec3* const (&ends)[kEndsAtOnce], const glm::dvec3& from) {
+EndVectors between(const glm::dvec3* const (&ends)[kEndsAtOnce], const glm::dvec3& from) {
     using Two = double __attribute__((vector_size(16)));
     using TwoFloats = float __attribute__((vector_size(8)));
     const auto component = [&](auto member) {
@@ -40,21 +40,21 @@ Vectors between(const glm::dvec3* const (&ends)[kEndsAtOnce], const glm::dvec3& 
 }
 
 /// Of four triangles that share a corner, the edges from there.
-struct Spokes {
-    Vectors next, last;
-    Spokes(const glm::dvec3* const (&ends_next)[kEndsAtOnce],
-           const glm::dvec3* const (&ends_last)[kEndsAtOnce], const glm::dvec3& from)
+struct CornerSpokes {
+    EndVectors next, last;
+    CornerSpokes(const glm::dvec3* const (&ends_next)[kEndsAtOnce],
+                 const glm::dvec3* const (&ends_last)[kEndsAtOnce], const glm::dvec3& from)
         : next(between(ends_next, from)), last(between(ends_last, from)) {}
 
     /// The area vectors.
-    Vectors facet() const {
+    EndVectors facet() const {
         return {0.5f * (next.y * last.z - last.y * next.z),
                 0.5f * (next.z * last.x - last.z * next.x),
                 0.5f * (next.x * last.y - last.x * next.y)};
     }
     /// Of each triangle's longest edge.
     Lanes longest_square() const {
-        const Vectors across{last.x - next.x, last.y - next.y, last.z - next.z};
+        const EndVectors across{last.x - next.x, last.y - next.y, last.z - next.z};
         const auto larger = [](const Lanes& a, const Lanes& b) { return a < b ? b : a; };
         return larger(larger(dot(next, next), dot(last, last)), dot(across, across));
     }
@@ -62,8 +62,8 @@ struct Spokes {
 
 }  // namespace
 
-Collapser::Collapser(CollapseMesh& mesh, const Adjacency& adjacency, const Edges& edges,
-                     Effort effort, double max_turn, const Chunk* chunk)
+EdgeCollapser::EdgeCollapser(CollapseMesh& mesh, const Adjacency& adjacency, const EdgeQueue& edges,
+                             CollapseEffort effort, double max_turn, const EdgeChunk* chunk)
     : mesh_(mesh),
       adjacency_(adjacency),
       edges_(edges),
@@ -72,20 +72,20 @@ Collapser::Collapser(CollapseMesh& mesh, const Adjacency& adjacency, const Edges
       count_(chunk != nullptr ? chunk->last - chunk->first
                               : static_cast<uint32_t>(mesh.points.size())) {
     const double cosine =
-        effort >= Effort::Rough ? 0.0 : std::cos(max_turn * 3.14159265358979 / 180);
+        effort >= CollapseEffort::Rough ? 0.0 : std::cos(max_turn * 3.14159265358979 / 180);
     square_cosine_ = cosine * cosine;
     stamps_.assign(count_, 0);
 }
 
-bool Collapser::find_corners(uint32_t vertex, uint32_t other, Corners& corners,
-                             Corners& shared) const {
+bool EdgeCollapser::find_corners(uint32_t vertex, uint32_t other, RingCorners& corners,
+                                 RingCorners& shared) const {
     const std::span<const uint32_t> around = adjacency_.around(vertex);
-    Corner* to = corners.reserve(around.size());
-    Corner* on = shared.reserve(around.size());
+    RingCorner* to = corners.reserve(around.size());
+    RingCorner* on = shared.reserve(around.size());
     bool inside = true;
     for (const uint32_t t : around) {
         const Triangle& c = mesh_.triangles[t];
-        const Ends ends = ends_of(c, vertex);
+        const CornerEnds ends = ends_of(c, vertex);
         // Written to both, counted in one: no branches here either.
         const bool live = c.x != kNone;
         const bool shares = (ends.next == other) | (ends.last == other);
@@ -103,11 +103,11 @@ bool Collapser::find_corners(uint32_t vertex, uint32_t other, Corners& corners,
     return inside;
 }
 
-bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
+bool EdgeCollapser::link_allows(uint32_t a, uint32_t b, bool search) {
     now_ += 2;
-    for (const Corner& corner : around_a_)
+    for (const RingCorner& corner : around_a_)
         stamp(corner.next) = stamp(corner.last) = now_;
-    for (const Corner& corner : shared_)
+    for (const RingCorner& corner : shared_)
         stamp(corner.next == b ? corner.last : corner.next) = now_;
     size_t common = 0;
     const auto count = [&](uint32_t vertex) {
@@ -116,11 +116,11 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
         mark += met;
         common += met;
     };
-    for (const Corner& corner : around_b_) {
+    for (const RingCorner& corner : around_b_) {
         count(corner.next);
         count(corner.last);
     }
-    for (const Corner& corner : shared_)
+    for (const RingCorner& corner : shared_)
         count(corner.next == b ? corner.last : corner.next);
     if (!search && common != shared_.count)
         return false;
@@ -130,23 +130,23 @@ bool Collapser::link_allows(uint32_t a, uint32_t b, bool search) {
     return left && (hub || !find_coinciding()) && common == shared_.count;
 }
 
-bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corners,
-                            const glm::dvec3& from, const glm::dvec3& point) {
+bool EdgeCollapser::turns_allow(const std::vector<glm::dvec3>& points, RingCorners& corners,
+                                const glm::dvec3& from, const glm::dvec3& point) {
     for (size_t first = 0; first < corners.count; first += kEndsAtOnce) {
-        Corner* const some = corners.begin() + first;
+        RingCorner* const some = corners.begin() + first;
         const size_t count = std::min(kEndsAtOnce, corners.count - first);
         const glm::dvec3* ends_next[kEndsAtOnce];
         const glm::dvec3* ends_last[kEndsAtOnce];
         for (size_t i = 0; i < kEndsAtOnce; ++i) {
-            const Corner& corner = some[std::min(i, count - 1)];
+            const RingCorner& corner = some[std::min(i, count - 1)];
             ends_next[i] = &points[corner.next];
             ends_last[i] = &points[corner.last];
         }
-        const Spokes spokes(ends_next, ends_last, point);
-        const Vectors facets = spokes.facet();
+        const CornerSpokes spokes(ends_next, ends_last, point);
+        const EndVectors facets = spokes.facet();
         // Not read: it lies where nothing else is needed from.
-        const Spokes old_spokes(ends_next, ends_last, from);
-        const Vectors old_facets = old_spokes.facet();
+        const CornerSpokes old_spokes(ends_next, ends_last, from);
+        const EndVectors old_facets = old_spokes.facet();
         const Lanes squares = dot(facets, facets);
         const Lanes old_squares = dot(old_facets, old_facets);
         const Lanes dots = dot(facets, old_facets);
@@ -169,7 +169,7 @@ bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corn
                 return false;
             if (dot <= 0 || dot * dot < square_cosine_ * square * old_square)
                 return false;
-            if (effort_ < Effort::Rough && 4 * square < thin &&
+            if (effort_ < CollapseEffort::Rough && 4 * square < thin &&
                 square * old_longest * old_longest < old_square * longest * longest)
                 return false;
         }
@@ -177,7 +177,7 @@ bool Collapser::turns_allow(const std::vector<glm::dvec3>& points, Corners& corn
     return true;
 }
 
-bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point) {
+bool EdgeCollapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point) {
     const auto both = [&](const std::vector<glm::dvec3>& points, const glm::dvec3& to) {
         return turns_allow(points, around_a_, points[a], to) &&
                turns_allow(points, around_b_, points[b], to);
@@ -189,18 +189,18 @@ bool Collapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& point)
     return both(mesh_.points, point);  // last: its area vectors are kept
 }
 
-bool Collapser::find_coinciding() {
+bool EdgeCollapser::find_coinciding() {
     doomed_.clear();
     const auto near_a = [&](uint32_t u) { return stamp(u) - now_ <= 1; };
-    for (const Corner& corner : around_b_) {
+    for (const RingCorner& corner : around_b_) {
         if (!near_a(corner.next) || !near_a(corner.last))
             continue;
-        for (const Corner& other : around_a_) {
+        for (const RingCorner& other : around_a_) {
             if (!other.on(corner.next) || !other.on(corner.last) ||
                 std::find(doomed_.begin(), doomed_.end(), other.triangle) != doomed_.end())
                 continue;
             // Of one side both stay: their edges have four triangles then, as pinches do.
-            if (other.next != corner.last && effort_ == Effort::Topology)
+            if (other.next != corner.last && effort_ == CollapseEffort::Topology)
                 continue;
             doomed_.push_back(corner.triangle);
             if (other.next == corner.last)
@@ -211,12 +211,12 @@ bool Collapser::find_coinciding() {
     return !doomed_.empty();
 }
 
-size_t Collapser::collapse(const Candidate& edge) {
+size_t EdgeCollapser::collapse(const CollapseCandidate& edge) {
     const uint32_t a = edge.a;
     const uint32_t b = edge.b;
     const size_t around = adjacency_.valence(a) + adjacency_.valence(b);
     work_ += around;
-    if (around > kMostAround && effort_ < Effort::Anything)
+    if (around > kMostAround && effort_ < CollapseEffort::Anything)
         return 0;
     if (!find_corners(a, b, around_a_, shared_) || !find_corners(b, a, around_b_, shared_b_))
         return kOutside;
@@ -224,33 +224,33 @@ size_t Collapser::collapse(const Candidate& edge) {
     if (shared_.count == 0)
         return 0;
     doomed_.clear();
-    const bool fits = link_allows(a, b, effort_ >= Effort::Topology);
-    if (effort_ < Effort::Topology && !fits)
+    const bool fits = link_allows(a, b, effort_ >= CollapseEffort::Topology);
+    if (effort_ < CollapseEffort::Topology && !fits)
         return 0;
     if (around_a_.count + around_b_.count <= doomed_.size())
         return 0;
     const glm::dvec3 point = edges_.point(mesh_, edge, effort_);
     if (!mesh_.others.empty()) {
         std::vector<uint32_t> shared;
-        for (const Corner& corner : shared_)
+        for (const RingCorner& corner : shared_)
             shared.push_back(corner.triangle);
         edges_.other_points(mesh_, a, b, shared, effort_, others_);
     }
-    if (effort_ < Effort::Anything && !all_turns_allow(a, b, point))
+    if (effort_ < CollapseEffort::Anything && !all_turns_allow(a, b, point))
         return 0;
     const bool carried = !mesh_.wedges.empty();
-    if (carried && !wedges_.plan(mesh_, adjacency_, a, b, point, effort_ >= Effort::Rough))
+    if (carried && !wedges_.plan(mesh_, adjacency_, a, b, point, effort_ >= CollapseEffort::Rough))
         return 0;
     for (const uint32_t t : doomed_)
         mesh_.triangles[t].x = kNone;
-    for (const Corner& corner : shared_)
+    for (const RingCorner& corner : shared_)
         mesh_.triangles[corner.triangle].x = kNone;
     mesh_.points[a] = point;
     for (size_t i = 0; i < others_.size(); ++i)
         mesh_.others[i].points[a] = others_[i];
     mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
-    for (Corners* corners : {&around_a_, &around_b_}) {
-        for (const Corner& corner : *corners) {
+    for (RingCorners* corners : {&around_a_, &around_b_}) {
+        for (const RingCorner& corner : *corners) {
             const uint32_t t = corner.triangle;
             Triangle& ends = mesh_.triangles[t];
             if (ends.x == kNone)  // doomed
@@ -261,7 +261,7 @@ size_t Collapser::collapse(const Candidate& edge) {
                 wedge = wedges_.wedge_of(wedge);
             }
             mesh_.facets[t] =
-                effort_ < Effort::Anything ? corner.facet : glm::vec3(mesh_.facet_of(ends));
+                effort_ < CollapseEffort::Anything ? corner.facet : glm::vec3(mesh_.facet_of(ends));
             for (OtherPose& other : mesh_.others)
                 other.facets[t] = glm::vec3(CollapseMesh::facet_of(other.points, ends));
         }

@@ -26,7 +26,7 @@ struct EdgeInput {
     float held = 0;
 };
 
-/// As best_point and cost_at of quadric.h, in single precision.
+/// As optimal_collapse and collapse_cost of quadric.h, in single precision.
 struct EdgeBlock {
     static constexpr size_t kSize = 64;
     EdgeInput in[kSize];

@@ -18,40 +18,40 @@ inline constexpr auto kPull = static_cast<float>(geometry::kEdgePull);
 inline constexpr auto kLength = static_cast<float>(geometry::kEdgeLength);
 inline constexpr Lanes kZero{};
 
-struct Vector {
+struct LaneVector {
     Lanes x, y, z;
 };
-inline Vector operator+(const Vector& a, const Vector& b) {
+inline LaneVector operator+(const LaneVector& a, const LaneVector& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline Vector operator-(const Vector& a, const Vector& b) {
+inline LaneVector operator-(const LaneVector& a, const LaneVector& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline Vector operator*(const Lanes& s, const Vector& a) {
+inline LaneVector operator*(const Lanes& s, const LaneVector& a) {
     return {s * a.x, s * a.y, s * a.z};
 }
-inline Lanes dot(const Vector& a, const Vector& b) {
+inline Lanes dot(const LaneVector& a, const LaneVector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// A symmetric matrix.
-struct Form {
+struct QuadraticForm {
     Lanes xx, xy, xz, yy, yz, zz;
-    Vector operator*(const Vector& v) const {
+    LaneVector operator*(const LaneVector& v) const {
         return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                 xz * v.x + yz * v.y + zz * v.z};
     }
     /// v^T M v, which rounding does not make negative.
-    Lanes of(const Vector& v) const {
+    Lanes of(const LaneVector& v) const {
         const Lanes value = dot(v, *this * v);
         return value > kZero ? value : kZero;
     }
 };
 
 /// L D L^T.
-struct Factors {
+struct LdlFactors {
     Lanes l10, l20, l21, d0, d1, d2;
-    explicit Factors(const Form& m) {
+    explicit LdlFactors(const QuadraticForm& m) {
         d0 = 1 / m.xx;
         l10 = m.xy * d0;
         l20 = m.xz * d0;
@@ -60,9 +60,9 @@ struct Factors {
         l21 = t * d1;
         d2 = 1 / (m.zz - l20 * m.xz - l21 * t);
     }
-    Vector solve(const Vector& b) const {
+    LaneVector solve(const LaneVector& b) const {
         const Lanes y = b.y - l10 * b.x;
-        Vector x;
+        LaneVector x;
         x.z = (b.z - l20 * b.x - l21 * y) * d2;
         x.y = y * d1 - l21 * x.z;
         x.x = b.x * d0 - l10 * x.y - l20 * x.z;
@@ -125,7 +125,7 @@ inline void transpose(const EdgeInput* rows, Lanes (&columns)[kColumns]) {
 
 /// Here a, there b.
 template <typename Mask>
-inline Vector choose(const Mask& mask, const Vector& a, const Vector& b) {
+inline LaneVector choose(const Mask& mask, const LaneVector& a, const LaneVector& b) {
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
@@ -133,30 +133,31 @@ inline void costs_of(EdgeBlock& block, size_t count) {
     for (size_t i = 0; i < count; i += kLanes) {
         Lanes in[kColumns];
         transpose(block.in + i, in);
-        const Vector d =
-            (kZero + 0.5f) * (Vector{in[12], in[13], in[14]} - Vector{in[0], in[1], in[2]});
-        const Vector facet_a{in[3], in[4], in[5]};
-        const Vector facet_b{in[15], in[16], in[17]};
-        const Form a{in[6], in[7], in[8], in[9], in[10], in[11]};
-        const Form b{in[18], in[19], in[20], in[21], in[22], in[23]};
+        const LaneVector d =
+            (kZero + 0.5f) * (LaneVector{in[12], in[13], in[14]} - LaneVector{in[0], in[1], in[2]});
+        const LaneVector facet_a{in[3], in[4], in[5]};
+        const LaneVector facet_b{in[15], in[16], in[17]};
+        const QuadraticForm a{in[6], in[7], in[8], in[9], in[10], in[11]};
+        const QuadraticForm b{in[18], in[19], in[20], in[21], in[22], in[23]};
         const Lanes trace = (a.xx + b.xx) + (a.yy + b.yy) + (a.zz + b.zz);
         const Lanes pull = kPull * trace;
-        const Factors factors(Form{a.xx + b.xx + pull, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy + pull,
-                                   a.yz + b.yz, a.zz + b.zz + pull});
-        const Vector linear = b * d - a * d;
-        Vector y = factors.solve(linear);
+        const LdlFactors factors(QuadraticForm{a.xx + b.xx + pull, a.xy + b.xy, a.xz + b.xz,
+                                               a.yy + b.yy + pull, a.yz + b.yz,
+                                               a.zz + b.zz + pull});
+        const LaneVector linear = b * d - a * d;
+        LaneVector y = factors.solve(linear);
         y = factors.solve(linear + pull * y);
-        const Vector facet = facet_b + facet_a - Vector{in[24], in[25], in[26]};
-        const Vector turned = factors.solve(facet);
+        const LaneVector facet = facet_b + facet_a - LaneVector{in[24], in[25], in[26]};
+        const LaneVector turned = factors.solve(facet);
         const Lanes height = dot(facet_b - facet_a, d);
         const Lanes way = (height - dot(facet, y)) / dot(facet, turned);
         const Lanes square = dot(d, d);
         const Lanes held_way = dot(facet, facet) > 0.01f * trace * trace ? way : kZero;
-        const Vector move = held_way * turned;
+        const LaneVector move = held_way * turned;
         const Lanes step = dot(move, move) <= square ? held_way : kZero;
         y = y + step * turned;
         const Lanes best = a.of(y + d) + b.of(y - d);
-        const Vector edge = d + d;
+        const LaneVector edge = d + d;
         const Lanes at_a = b.of(edge);
         const Lanes at_b = a.of(edge);
         const Lanes at_middle = a.of(d) + b.of(d);
@@ -164,16 +165,16 @@ inline void costs_of(EdgeBlock& block, size_t count) {
         const Lanes at_three = at_ends < at_middle ? at_ends : at_middle;
         const auto near = dot(y, y) <= 9 * square;
         const Lanes free = near ? best : at_three;
-        const Vector none{kZero, kZero, kZero};
-        const Vector at_best = choose(at_ends < at_middle, choose(at_b < at_a, edge, none), d);
-        const Vector offset = choose(near, y + d, at_best);
+        const LaneVector none{kZero, kZero, kZero};
+        const LaneVector at_best = choose(at_ends < at_middle, choose(at_b < at_a, edge, none), d);
+        const LaneVector offset = choose(near, y + d, at_best);
         const Lanes end = in[27];
         Lanes cost = end < kZero ? at_a : free;
         cost = end > kZero ? at_b : cost;
         cost = cost + 4 * kLength * square * trace;
         cost = trace > 1e-37f ? cost : kZero;
         std::memcpy(&block.cost[i], &cost, sizeof(cost));
-        const Vector from_a = choose(trace > 1e-37f, offset, d);
+        const LaneVector from_a = choose(trace > 1e-37f, offset, d);
         std::memcpy(&block.x[i], &from_a.x, sizeof(Lanes));
         std::memcpy(&block.y[i], &from_a.y, sizeof(Lanes));
         std::memcpy(&block.z[i], &from_a.z, sizeof(Lanes));

@@ -5,14 +5,14 @@
 
 namespace lodestone::simplify {
 
-std::span<const Neighbors::Neighbor> Neighbors::find(const CollapseMesh& mesh,
-                                                     std::span<const uint32_t> ring,
-                                                     uint32_t vertex, Fan fan) {
+std::span<const VertexNeighbors::NeighborEdge> VertexNeighbors::find(const CollapseMesh& mesh,
+                                                                     std::span<const uint32_t> ring,
+                                                                     uint32_t vertex, FanKind fan) {
     found_.clear();
-    if (fan == Fan::Closed) {
+    if (fan == FanKind::Closed) {
         for (uint32_t i = 0; i < ring.size(); ++i)
             found_.push_back({to_[i], 2, ring[i], ring[before_[i]], true, false});
-    } else if (fan != Fan::Open || !find_in_open_fan(ring)) {
+    } else if (fan != FanKind::Open || !find_in_open_fan(ring)) {
         find_any(mesh, ring, vertex);
     }
     return found_;
@@ -20,7 +20,7 @@ std::span<const Neighbors::Neighbor> Neighbors::find(const CollapseMesh& mesh,
 
 /// In the order in which find_any() finds them. False, and nothing done, where an edge on its
 /// border has another triangle.
-bool Neighbors::find_in_open_fan(std::span<const uint32_t> ring) {
+bool VertexNeighbors::find_in_open_fan(std::span<const uint32_t> ring) {
     const auto count = static_cast<uint32_t>(ring.size());
     uint32_t after[kMost]{};
     uint32_t met = 0;
@@ -45,8 +45,8 @@ bool Neighbors::find_in_open_fan(std::span<const uint32_t> ring) {
     return true;
 }
 
-void Neighbors::find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring,
-                         uint32_t vertex) {
+void VertexNeighbors::find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring,
+                               uint32_t vertex) {
     constexpr size_t kFew = 64;
     const size_t end = 2 * ring.size();
     const auto other_end = [&](size_t i) {
@@ -65,12 +65,12 @@ void Neighbors::find_any(const CollapseMesh& mesh, std::span<const uint32_t> rin
         const uint32_t other = other_end(i);
         const uint32_t t = ring[i / 2];
         const bool leaving = (i & 1u) == 0;
-        Neighbor* known = nullptr;
+        NeighborEdge* known = nullptr;
         if (!uses_.empty()) {
             if (!found_.empty() && found_.back().vertex == other)
                 known = &found_.back();
         } else {
-            for (Neighbor& each : found_) {
+            for (NeighborEdge& each : found_) {
                 if (each.vertex == other)
                     known = &each;
             }

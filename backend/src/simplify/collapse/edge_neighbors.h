@@ -19,10 +19,10 @@ inline int corner_of(const Triangle& t, uint32_t vertex) {
 
 /// What comes after the corner of a triangle that is `vertex`: the corner next, and the last one.
 /// No branches: which corner it is nobody can predict.
-struct Ends {
+struct CornerEnds {
     uint32_t at, next, last;
 };
-inline Ends ends_of(const Triangle& t, uint32_t vertex) {
+inline CornerEnds ends_of(const Triangle& t, uint32_t vertex) {
     const uint32_t* corners = &t.x;
     const uint32_t at = static_cast<uint32_t>(t.y == vertex) + 2 * uint32_t{t.z == vertex};
     // Of the corners 0, 1, 2 the next are 1, 2, 0 and the last 2, 0, 1: two bits each.
@@ -30,22 +30,22 @@ inline Ends ends_of(const Triangle& t, uint32_t vertex) {
 }
 
 /// The neighbors of one vertex after the other, and the triangles they share with it.
-class Neighbors {
+class VertexNeighbors {
 public:
-    struct Neighbor {
+    struct NeighborEdge {
         uint32_t vertex, uses, t0, t1;  // the first two triangles on it
         bool leaving0, leaving1;        // the triangle runs vertex -> neighbor
     };
 
     /// Of its triangles around a vertex, all turned alike. Closed: one fan or several, each around
     /// the whole vertex. Open: one that begins and ends on a border. Those are the usual cases.
-    enum class Fan : uint8_t { None, Closed, Open };
-    Fan find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
+    enum class FanKind : uint8_t { None, Closed, Open };
+    FanKind find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
         const auto count = static_cast<uint32_t>(ring.size());
         if (count > kMost || count == 0)
-            return Fan::None;
+            return FanKind::None;
         for (uint32_t i = 0; i < count; ++i) {
-            const Ends ends = ends_of(mesh.triangles[ring[i]], vertex);
+            const CornerEnds ends = ends_of(mesh.triangles[ring[i]], vertex);
             to_[i] = ends.next;
             from_[i] = ends.last;
             slots_[ends.last % kSlots] = static_cast<uint8_t>(i);
@@ -64,17 +64,17 @@ public:
         }
         const uint32_t all = (1u << count) - 1;
         if (starts == 0)
-            return met == all ? Fan::Closed : Fan::None;
+            return met == all ? FanKind::Closed : FanKind::None;
         if (starts > 1 || !std::has_single_bit(all ^ met))
-            return Fan::None;
+            return FanKind::None;
         end_ = static_cast<uint32_t>(std::countr_zero(all ^ met));
         if (to_[begin_] == from_[end_]) {  // whose slot another neighbor has taken
             before_[begin_] = end_;
             begin_ = end_;
-            return Fan::Closed;
+            return FanKind::Closed;
         }
         open_ = true;
-        return Fan::Open;
+        return FanKind::Open;
     }
 
     /// After find_fan() has found one: puts the ring in order, so that corner next of each triangle
@@ -112,8 +112,8 @@ public:
     uint32_t last_corner() const { return from_[end_]; }
 
     /// Of any vertex; `fan`: as find_fan() has just found.
-    std::span<const Neighbor> find(const CollapseMesh& mesh, std::span<const uint32_t> ring,
-                                   uint32_t vertex, Fan fan);
+    std::span<const NeighborEdge> find(const CollapseMesh& mesh, std::span<const uint32_t> ring,
+                                       uint32_t vertex, FanKind fan);
 
 private:
     static constexpr uint32_t kMost = 16;
@@ -130,7 +130,7 @@ private:
     uint32_t begin_ = 0;
     uint32_t end_ = 0;
     bool open_ = false;
-    std::vector<Neighbor> found_;
+    std::vector<NeighborEdge> found_;
     std::vector<std::pair<uint32_t, size_t>> uses_;
 };
 

@@ -146,8 +146,9 @@ constexpr size_t kSteps = (kImpossible >> kKeyShift) + 1;
 
 }  // namespace
 
-void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
-                  uint32_t vertex, Neighbors& neighbors, Chunk* borders) {
+void EdgeQueue::visit(const CollapseMesh& mesh, Adjacency& adjacency,
+                      const SimplifyOptions& options, uint32_t vertex, VertexNeighbors& neighbors,
+                      EdgeChunk* borders) {
     const std::span<uint32_t> ring = adjacency.around(vertex);
     for (const uint32_t t : adjacency.ahead(vertex)) {
         __builtin_prefetch(&mesh.triangles[t]);
@@ -156,15 +157,16 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
     own_[vertex] = around_of(mesh.points[vertex], mesh.facets, ring);
     for (size_t i = 0; i < others_.size(); ++i)
         others_[i][vertex] = around_of(mesh.others[i].points[vertex], mesh.others[i].facets, ring);
-    const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, vertex);
-    const bool closed = fan == Neighbors::Fan::Closed;
+    const VertexNeighbors::FanKind fan = neighbors.find_fan(mesh, ring, vertex);
+    const bool closed = fan == VertexNeighbors::FanKind::Closed;
     const double least = kLeastSquare * typical_square_;
     const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
     if (closed && plain) {
         kinds_[vertex] = neighbors.order(ring) ? VertexKind::FreeFan : VertexKind::Free;
         return;
     }
-    if (fan == Neighbors::Fan::Open && plain && others_.empty() && neighbors.order(ring)) {
+    if (fan == VertexNeighbors::FanKind::Open && plain && others_.empty() &&
+        neighbors.order(ring)) {
         geometry::Quadric quadric;
         const auto border = [&](uint32_t neighbor, uint32_t triangle) {
             if (neighbor > vertex && borders != nullptr)
@@ -182,7 +184,7 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
     std::vector<geometry::Quadric> quadrics(others_.size());
     int open = 0;
     bool holds = false;
-    for (const Neighbors::Neighbor& n : neighbors.find(mesh, ring, vertex, fan)) {
+    for (const VertexNeighbors::NeighborEdge& n : neighbors.find(mesh, ring, vertex, fan)) {
         const bool two = n.uses == 2;
         if (!two && n.vertex > vertex && borders != nullptr)
             borders->borders.emplace_back(vertex, n.vertex);
@@ -236,8 +238,8 @@ void Edges::visit(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
         kinds_[vertex] = VertexKind::FreeFan;
 }
 
-void Edges::build(const CollapseMesh& mesh, Adjacency& adjacency, const SimplifyOptions& options,
-                  bool borders, const Job& job) {
+void EdgeQueue::build(const CollapseMesh& mesh, Adjacency& adjacency,
+                      const SimplifyOptions& options, bool borders, const Job& job) {
     const size_t vertices = mesh.points.size();
     own_.resize(vertices);
     others_.resize(mesh.others.size());
@@ -248,17 +250,17 @@ void Edges::build(const CollapseMesh& mesh, Adjacency& adjacency, const Simplify
     chunks_.resize((vertices + kChunk - 1) / kChunk);
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
-        Chunk& chunk = chunks_[i];
+        EdgeChunk& chunk = chunks_[i];
         chunk.first = static_cast<uint32_t>(i * kChunk);
         chunk.last = static_cast<uint32_t>(std::min(vertices, (i + 1) * kChunk));
         chunk.borders.clear();
-        Neighbors neighbors;
+        VertexNeighbors neighbors;
         for (uint32_t v = chunk.first; v < chunk.last; ++v)
             visit(mesh, adjacency, options, v, neighbors, borders ? &chunk : nullptr);
     });
 }
 
-void Edges::clear() {
+void EdgeQueue::clear() {
     chunks_ = {};
     own_ = {};
     others_ = {};
@@ -266,9 +268,10 @@ void Edges::clear() {
 }
 
 /// What edges cost, a block of them at a time.
-class Edges::Pricing {
+class EdgeQueue::EdgePricing {
 public:
-    Pricing(const Edges& edges, const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort)
+    EdgePricing(const EdgeQueue& edges, const CollapseMesh& mesh, const Adjacency& adjacency,
+                CollapseEffort effort)
         : edges_(edges), mesh_(mesh), adjacency_(adjacency), effort_(effort) {}
 
     /// Calls take(candidate) for every edge of which `vertex` is the lower end and that may be
@@ -283,8 +286,8 @@ public:
         const VertexKind kind = edges_.kinds_[vertex];
         const bool curve = kind == VertexKind::CurveFan;
         if ((kind != VertexKind::FreeFan && !curve) || !edges_.others_.empty()) {
-            for (const Neighbors::Neighbor& n :
-                 neighbors_.find(mesh_, ring, vertex, Neighbors::Fan::None)) {
+            for (const VertexNeighbors::NeighborEdge& n :
+                 neighbors_.find(mesh_, ring, vertex, VertexNeighbors::FanKind::None)) {
                 if (n.vertex > vertex)
                     price(vertex, n.vertex, n.t0, n.uses == 2 ? n.t1 : kNone, take);
             }
@@ -295,7 +298,7 @@ public:
         uint32_t before = curve ? kNone : ring.back();
         uint32_t last = 0;
         for (const uint32_t t : ring) {
-            const Ends ends = ends_of(mesh_.triangles[t], vertex);
+            const CornerEnds ends = ends_of(mesh_.triangles[t], vertex);
             last = ends.last;
             __builtin_prefetch(&edges_.own_[ends.next]);
             __builtin_prefetch(&mesh_.facets[t]);
@@ -312,22 +315,22 @@ public:
     void flush(const Take& take) {
         for (size_t begin = 0; begin < count_; begin += EdgeBlock::kSize) {
             const size_t count = std::min(EdgeBlock::kSize, count_ - begin);
-            const Waiting* waiting = waiting_.data() + begin;
+            const PendingEdge* waiting = waiting_.data() + begin;
             for (size_t i = 0; i < count; ++i)
                 block_.in[i] = input_of(waiting[i]);
             for (size_t i = count; i % 8 != 0; ++i)
                 block_.in[i] = block_.in[0];
             edge_costs(block_, count);
             for (size_t i = 0; i < count; ++i)
-                take(Candidate{waiting[i].a, waiting[i].b, key_of_cost(block_.cost[i]),
-                               glm::vec3(block_.x[i], block_.y[i], block_.z[i])});
+                take(CollapseCandidate{waiting[i].a, waiting[i].b, key_of_cost(block_.cost[i]),
+                                       glm::vec3(block_.x[i], block_.y[i], block_.z[i])});
         }
         count_ = 0;
     }
 
 private:
     static constexpr size_t kWaiting = 2 * EdgeBlock::kSize;
-    struct Waiting {
+    struct PendingEdge {
         uint32_t a, b, t0, t1;
     };
     /// t1: kNone where it is not shared by exactly two triangles.
@@ -343,12 +346,12 @@ private:
         }
         const uint32_t shared[2] = {t0, t1};
         const std::span<const uint32_t> on(shared, t1 == kNone ? 1 : 2);
-        const geometry::Optimum best = edges_.optimum(mesh_, a, b, on, effort_);
-        take(Candidate{a, b, key_of_cost(static_cast<float>(best.cost)),
-                       glm::vec3(best.point - mesh_.points[a])});
+        const geometry::CollapseOptimum best = edges_.optimum(mesh_, a, b, on, effort_);
+        take(CollapseCandidate{a, b, key_of_cost(static_cast<float>(best.cost)),
+                               glm::vec3(best.point - mesh_.points[a])});
     }
 
-    EdgeInput input_of(const Waiting& edge) const {
+    EdgeInput input_of(const PendingEdge& edge) const {
         glm::vec3 shared = mesh_.facets[edge.t0];
         if (edge.t1 != kNone)
             shared += mesh_.facets[edge.t1];
@@ -356,27 +359,27 @@ private:
                 static_cast<float>(edges_.held(edge.a, edge.b, effort_))};
     }
 
-    const Edges& edges_;
+    const EdgeQueue& edges_;
     const CollapseMesh& mesh_;
     const Adjacency& adjacency_;
-    Effort effort_;
-    Neighbors neighbors_;
+    CollapseEffort effort_;
+    VertexNeighbors neighbors_;
     EdgeBlock block_{};
-    std::array<Waiting, kWaiting + 1> waiting_;
+    std::array<PendingEdge, kWaiting + 1> waiting_;
     size_t count_ = 0;
 };
 
-uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
-                       size_t count) const {
+uint32_t EdgeQueue::key_of(const CollapseMesh& mesh, const Adjacency& adjacency,
+                           CollapseEffort effort, size_t count) const {
     const auto vertices = static_cast<uint32_t>(mesh.points.size());
     const uint32_t step = std::max(vertices / kSampled, 1u) * kRun;
     std::vector<uint32_t> keys;
     keys.reserve(size_t{kSampled} * 4);
-    const auto take = [&](const Candidate& candidate) {
+    const auto take = [&](const CollapseCandidate& candidate) {
         if (candidate.key < kImpossible)
             keys.push_back(candidate.key);
     };
-    Pricing pricing(*this, mesh, adjacency, effort);
+    EdgePricing pricing(*this, mesh, adjacency, effort);
     uint32_t sampled = 0;
     for (uint32_t first = 0; first < vertices; first += step) {
         const uint32_t last = std::min(vertices, first + kRun);
@@ -394,33 +397,33 @@ uint32_t Edges::key_of(const CollapseMesh& mesh, const Adjacency& adjacency, Eff
     return *middle;
 }
 
-void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort effort,
-                 uint32_t limit, double held, const Job& job) {
+void EdgeQueue::take(const CollapseMesh& mesh, const Adjacency& adjacency, CollapseEffort effort,
+                     uint32_t limit, double held, const Job& job) {
     parallel_for(chunks_.size(), [&](size_t i) {
         job.check();
-        Chunk& chunk = chunks_[i];
+        EdgeChunk& chunk = chunks_[i];
         const uint32_t vertices = chunk.last - chunk.first;
         const auto most = static_cast<size_t>(held * vertices);
-        std::vector<Candidate> taken(vertices + 1);
+        std::vector<CollapseCandidate> taken(vertices + 1);
         size_t count = 0;
-        const auto take = [&](const Candidate& candidate) {
+        const auto take = [&](const CollapseCandidate& candidate) {
             taken[count] = candidate;
             count += candidate.key <= limit;
             if (count == taken.size())
                 taken.resize(2 * count);
         };
-        Pricing pricing(*this, mesh, adjacency, effort);
+        EdgePricing pricing(*this, mesh, adjacency, effort);
         for (uint32_t v = chunk.first; v < chunk.last; ++v)
             pricing.price(v, take);
         pricing.flush(take);
         taken.resize(count);
         std::vector<uint32_t> starts(kSteps + 1, 0);
-        for (const Candidate& candidate : taken)
+        for (const CollapseCandidate& candidate : taken)
             ++starts[(candidate.key >> kKeyShift) + 1];
         for (size_t k = 0; k < kSteps; ++k)
             starts[k + 1] += starts[k];
         chunk.candidates.resize(std::min(count, most));
-        for (const Candidate& candidate : taken) {
+        for (const CollapseCandidate& candidate : taken) {
             const uint32_t at = starts[candidate.key >> kKeyShift]++;
             if (at < most)
                 chunk.candidates[at] = candidate;
@@ -428,8 +431,8 @@ void Edges::take(const CollapseMesh& mesh, const Adjacency& adjacency, Effort ef
     });
 }
 
-bool Edges::allowed(uint32_t a, uint32_t b, bool border, Effort effort) const {
-    if (effort >= Effort::Topology)
+bool EdgeQueue::allowed(uint32_t a, uint32_t b, bool border, CollapseEffort effort) const {
+    if (effort >= CollapseEffort::Topology)
         return true;
     if (kinds_[a] == VertexKind::Fixed && kinds_[b] == VertexKind::Fixed)
         return false;
@@ -437,25 +440,28 @@ bool Edges::allowed(uint32_t a, uint32_t b, bool border, Effort effort) const {
     return border || kinds_[a] <= VertexKind::Free || kinds_[b] <= VertexKind::Free;
 }
 
-geometry::Optimum Edges::optimum_in(const std::vector<glm::dvec3>& points,
-                                    const std::vector<glm::vec3>& facets,
-                                    const std::vector<VertexAround>& around, uint32_t a, uint32_t b,
-                                    std::span<const uint32_t> shared, Effort effort) const {
+geometry::CollapseOptimum EdgeQueue::optimum_in(const std::vector<glm::dvec3>& points,
+                                                const std::vector<glm::vec3>& facets,
+                                                const std::vector<VertexAround>& around, uint32_t a,
+                                                uint32_t b, std::span<const uint32_t> shared,
+                                                CollapseEffort effort) const {
     const geometry::EdgeEnd end_a{points[a], quadric_of(around[a]), glm::dvec3(around[a].facet)};
     const geometry::EdgeEnd end_b{points[b], quadric_of(around[b]), glm::dvec3(around[b].facet)};
     if (const int end = held(a, b, effort); end != 0) {
         const glm::dvec3& point = end < 0 ? end_a.point : end_b.point;
-        return {point, geometry::cost_at(end_a, end_b, point)};
+        return {point, geometry::collapse_cost(end_a, end_b, point)};
     }
     glm::dvec3 both(0.0);
     for (const uint32_t t : shared)
         both += glm::dvec3(facets[t]);
-    return best_point(end_a, end_b, both);
+    return optimal_collapse(end_a, end_b, both);
 }
 
-geometry::Optimum Edges::optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,
-                                 std::span<const uint32_t> shared, Effort effort) const {
-    geometry::Optimum best = optimum_in(mesh.points, mesh.facets, own_, a, b, shared, effort);
+geometry::CollapseOptimum EdgeQueue::optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                                             std::span<const uint32_t> shared,
+                                             CollapseEffort effort) const {
+    geometry::CollapseOptimum best =
+        optimum_in(mesh.points, mesh.facets, own_, a, b, shared, effort);
     for (size_t i = 0; i < others_.size(); ++i) {
         const OtherPose& pose = mesh.others[i];
         best.cost += optimum_in(pose.points, pose.facets, others_[i], a, b, shared, effort).cost;
@@ -463,9 +469,9 @@ geometry::Optimum Edges::optimum(const CollapseMesh& mesh, uint32_t a, uint32_t 
     return best;
 }
 
-void Edges::other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
-                         std::span<const uint32_t> shared, Effort effort,
-                         std::vector<glm::dvec3>& points) const {
+void EdgeQueue::other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
+                             std::span<const uint32_t> shared, CollapseEffort effort,
+                             std::vector<glm::dvec3>& points) const {
     points.clear();
     for (size_t i = 0; i < others_.size(); ++i) {
         const OtherPose& pose = mesh.others[i];

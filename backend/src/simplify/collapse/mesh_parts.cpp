@@ -5,23 +5,23 @@
 
 namespace lodestone::simplify {
 
-void Parts::measure(const CollapseMesh& mesh, double weight) {
+void CollapseParts::measure(const CollapseMesh& mesh, double weight) {
     parts_.clear();
     if (mesh.part_count <= 1)
         return;
-    struct Sums {
+    struct PartMoments {
         double area = 0;
         glm::dvec3 first{0.0};
         double second = 0;
         size_t triangles = 0;
         glm::dvec3 origin{0.0};
     };
-    std::vector<Sums> sums(mesh.part_count);
+    std::vector<PartMoments> sums(mesh.part_count);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i))
             continue;
         const Triangle& t = mesh.triangles[i];
-        Sums& sum = sums[mesh.parts[t.x]];
+        PartMoments& sum = sums[mesh.parts[t.x]];
         // Moments about a vertex of the part: small parts far out lose no digits.
         if (sum.triangles++ == 0)
             sum.origin = mesh.points[t.x];
@@ -39,18 +39,18 @@ void Parts::measure(const CollapseMesh& mesh, double weight) {
         sum.second += area * (squares / 12 + 0.75 * glm::dot(middle, middle));
     }
     for (uint32_t part = 0; part < sums.size(); ++part) {
-        const Sums& sum = sums[part];
+        const PartMoments& sum = sums[part];
         if (sum.triangles == 0)
             continue;
         const double shift = sum.area > 0 ? glm::dot(sum.first, sum.first) / sum.area : 0;
         parts_.push_back({part, sum.triangles, weight * std::max(0.0, sum.second - shift)});
     }
     std::stable_sort(parts_.begin(), parts_.end(),
-                     [](const Part& a, const Part& b) { return a.cost < b.cost; });
+                     [](const CollapsePart& a, const CollapsePart& b) { return a.cost < b.cost; });
     parts_.pop_back();
 }
 
-void Parts::count(const CollapseMesh& mesh) {
+void CollapseParts::count(const CollapseMesh& mesh) {
     if (parts_.empty())
         return;
     std::vector<uint32_t> counts(mesh.part_count, 0);
@@ -58,12 +58,12 @@ void Parts::count(const CollapseMesh& mesh) {
         if (!mesh.dead(i))
             ++counts[mesh.parts[mesh.triangles[i].x]];
     }
-    for (Part& part : parts_)
+    for (CollapsePart& part : parts_)
         part.triangles = counts[part.part];
-    std::erase_if(parts_, [](const Part& part) { return part.triangles == 0; });
+    std::erase_if(parts_, [](const CollapsePart& part) { return part.triangles == 0; });
 }
 
-size_t Parts::remove(CollapseMesh& mesh, const std::vector<uint8_t>& doomed) const {
+size_t CollapseParts::remove(CollapseMesh& mesh, const std::vector<uint8_t>& doomed) const {
     size_t gone = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i) || !doomed[mesh.parts[mesh.triangles[i].x]])

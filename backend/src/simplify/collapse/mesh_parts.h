@@ -6,13 +6,13 @@
 
 namespace lodestone::simplify {
 
-struct Part {
+struct CollapsePart {
     uint32_t part = 0;
     size_t triangles = 0;  // at the start of the pass
     double cost = 0;       // of removing it, comparable to the cost of a collapse
 };
 
-class Parts {
+class CollapseParts {
 public:
     /// Collects the parts; with one the list is empty (it is never removed).
     /// The cost is `weight` x the second moment of its area about its centroid: what squeezing it
@@ -23,13 +23,13 @@ public:
     void count(const CollapseMesh& mesh);
 
     /// Cheapest first, without the dearest (which stays whatever happens).
-    const std::vector<Part>& removable() const { return parts_; }
+    const std::vector<CollapsePart>& removable() const { return parts_; }
 
     /// Removes the given parts' triangles; returns how many went.
     size_t remove(CollapseMesh& mesh, const std::vector<uint8_t>& doomed) const;
 
 private:
-    std::vector<Part> parts_;
+    std::vector<CollapsePart> parts_;
 };
 
 }  // namespace lodestone::simplify

@@ -31,7 +31,7 @@ public:
 
 private:
     /// A side of a triangle at the vertex.
-    struct Side {
+    struct FanSide {
         uint32_t neighbor;
         uint32_t at;  // in the ring
         bool leaving;
@@ -58,7 +58,7 @@ private:
     CollapseMesh& mesh_;
     std::vector<uint32_t> ring_;     // of the vertex, what is left of it
     std::vector<uint32_t> parents_;  // fans, as sets of the ring's triangles
-    std::vector<Side> sides_;
+    std::vector<FanSide> sides_;
     std::vector<FanEnds> ends_;                                 // by root
     std::vector<std::pair<uint32_t, uint32_t>> by_fan_;         // root and triangle
     std::vector<uint32_t> fan_;                                 // triangles of one
@@ -69,11 +69,11 @@ void PinchCutter::find_fans(uint32_t vertex, bool pairs) {
     const auto count = static_cast<uint32_t>(ring_.size());
     sides_.clear();
     for (uint32_t i = 0; i < count; ++i) {
-        const Ends ends = ends_of(mesh_.triangles[ring_[i]], vertex);
+        const CornerEnds ends = ends_of(mesh_.triangles[ring_[i]], vertex);
         sides_.push_back({ends.next, i, true});
         sides_.push_back({ends.last, i, false});
     }
-    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+    std::sort(sides_.begin(), sides_.end(), [](const FanSide& a, const FanSide& b) {
         return std::tie(a.neighbor, a.at) < std::tie(b.neighbor, b.at);
     });
     parents_.resize(count);
@@ -120,7 +120,7 @@ void PinchCutter::join_pairs(uint32_t vertex, size_t begin) {
     std::array<size_t, 2> found{};
     glm::dvec3 x(0.0);
     for (size_t i = begin; i < begin + 4; ++i) {
-        const Side& side = sides_[i];
+        const FanSide& side = sides_[i];
         const Triangle& t = mesh_.triangles[ring_[side.at]];
         const uint32_t third = t.x ^ t.y ^ t.z ^ vertex ^ side.neighbor;
         // Turned away from the edge; with y it is as long as with x times the edge's length.
@@ -242,17 +242,17 @@ bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring, bool loop
 
 }  // namespace
 
-bool has_pinches(const CollapseMesh& mesh, const Adjacency& adjacency) {
-    Neighbors neighbors;
+bool has_tunnels(const CollapseMesh& mesh, const Adjacency& adjacency) {
+    VertexNeighbors neighbors;
     std::vector<uint32_t> ends;
     for (uint32_t v = 0; v < mesh.points.size(); ++v) {
         const std::span<const uint32_t> ring = adjacency.around(v);
-        if (neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+        if (neighbors.find_fan(mesh, ring, v) != VertexNeighbors::FanKind::None &&
             neighbors.is_one(ring.size()))
             continue;
         ends.clear();
         for (const uint32_t t : ring) {
-            const Ends sides = ends_of(mesh.triangles[t], v);
+            const CornerEnds sides = ends_of(mesh.triangles[t], v);
             ends.insert(ends.end(), {sides.next, sides.last});
         }
         std::sort(ends.begin(), ends.end());
@@ -264,19 +264,19 @@ bool has_pinches(const CollapseMesh& mesh, const Adjacency& adjacency) {
     return false;
 }
 
-bool cut_pinches(CollapseMesh& mesh, bool loops) {
+bool cut_tunnels(CollapseMesh& mesh, bool loops) {
     const size_t before = mesh.points.size();
     bool cut = true;
     for (int sweep = 0; cut && sweep < kMostSweeps; ++sweep) {
         cut = false;
         Adjacency adjacency;
         adjacency.build(mesh);
-        Neighbors neighbors;
+        VertexNeighbors neighbors;
         PinchCutter cutter(mesh);
         const auto vertices = static_cast<uint32_t>(mesh.points.size());
         for (uint32_t v = 0; v < vertices; ++v) {
             const std::span<const uint32_t> ring = adjacency.around(v);
-            const bool one = neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+            const bool one = neighbors.find_fan(mesh, ring, v) != VertexNeighbors::FanKind::None &&
                              neighbors.is_one(ring.size());
             if (!one && cutter.cut(v, ring, loops))
                 cut = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pinches: cuts handles and tunnels where collapses have closed them.
+// Mesh tunnels: cuts handles and tunnels where collapses have closed them.
 #pragma once
 
 #include "simplify/collapse/adjacency.h"
@@ -12,9 +12,9 @@ namespace lodestone::simplify {
 /// Edges with four triangles whose fans run on from one such edge to another (walls that cross,
 /// loops around a closed tunnel) stay, unless `loops`: then solids that touch there part. False:
 /// there was nothing to cut. Otherwise a part may have become several.
-bool cut_pinches(CollapseMesh& mesh, bool loops);
+bool cut_tunnels(CollapseMesh& mesh, bool loops);
 
 /// Whether any edge has more than two triangles.
-bool has_pinches(const CollapseMesh& mesh, const Adjacency& adjacency);
+bool has_tunnels(const CollapseMesh& mesh, const Adjacency& adjacency);
 
 }  // namespace lodestone::simplify

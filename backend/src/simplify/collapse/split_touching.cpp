@@ -82,7 +82,7 @@ void split_layers(CollapseMesh& mesh) {
 
 void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
     adjacency.build(mesh);
-    Marks seen;
+    StampedSet seen;
     seen.resize(mesh.points.size());
     std::vector<uint32_t> parents;
     std::vector<uint32_t> copy_of_root;
@@ -92,13 +92,13 @@ void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
     constexpr uint32_t kChunk = 8192;
     std::vector<uint8_t> whole(vertices, 0);
     parallel_for((vertices + kChunk - 1) / kChunk, [&](size_t chunk) {
-        Neighbors neighbors;
+        VertexNeighbors neighbors;
         const auto first = static_cast<uint32_t>(chunk * kChunk);
         for (uint32_t v = first; v < std::min(vertices, first + kChunk); ++v) {
             for (const uint32_t t : adjacency.ahead(v))
                 __builtin_prefetch(&mesh.triangles[t]);
             const std::span<const uint32_t> ring = adjacency.around(v);
-            whole[v] = neighbors.find_fan(mesh, ring, v) != Neighbors::Fan::None &&
+            whole[v] = neighbors.find_fan(mesh, ring, v) != VertexNeighbors::FanKind::None &&
                        neighbors.is_one(ring.size());
         }
     });

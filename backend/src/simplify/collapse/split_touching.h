@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sheets: gives surfaces that merely touch or coincide vertices of their own.
+// Touching sheets: gives surfaces that merely touch or coincide vertices of their own.
 #pragma once
 
 #include "simplify/collapse/collapse_mesh.h"

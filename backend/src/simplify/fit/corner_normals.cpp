@@ -129,12 +129,12 @@ bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& s
 /// Corners at `vertex` that come out alike, of wedges that were, get their mean.
 void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_t vertex,
                    std::vector<glm::vec3>& normals) {
-    struct Shared {
+    struct SharedNormal {
         glm::vec3 first;
         glm::vec3 carried;
         glm::vec3 sum;
     };
-    std::vector<Shared> found;
+    std::vector<SharedNormal> found;
     std::vector<std::pair<uint32_t, uint32_t>> members;  // corner, index in found
     for (const uint32_t t : adjacency.around(vertex)) {
         for (uint32_t corner = 0; corner < 3; ++corner) {
@@ -142,10 +142,11 @@ void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_
             if (mesh.triangles[t][static_cast<int>(corner)] != vertex || !shaded(normals[at]))
                 continue;
             const glm::vec3 carried = mesh.normals[mesh.wedges[t][static_cast<int>(corner)]];
-            const auto alike = std::find_if(found.begin(), found.end(), [&](const Shared& one) {
-                return glm::dot(one.first, normals[at]) > kAlike &&
-                       glm::dot(one.carried, carried) > kOneWedge;
-            });
+            const auto alike =
+                std::find_if(found.begin(), found.end(), [&](const SharedNormal& one) {
+                    return glm::dot(one.first, normals[at]) > kAlike &&
+                           glm::dot(one.carried, carried) > kOneWedge;
+                });
             const auto index = static_cast<uint32_t>(alike - found.begin());
             if (alike == found.end())
                 found.push_back({normals[at], carried, glm::vec3(0.0f)});

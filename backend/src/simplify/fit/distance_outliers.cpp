@@ -25,8 +25,8 @@ int nearest_corner(const glm::vec3& w) {
 
 }  // namespace
 
-Strays::Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
-               const Job& job)
+DistanceOutliers::DistanceOutliers(const FitPlaces& places, const Adjacency& adjacency,
+                                   const FitSamples& samples, const Job& job)
     : places_(places),
       mesh_(places.mesh()),
       adjacency_(adjacency),
@@ -36,11 +36,11 @@ Strays::Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSam
     look_from_original(job);
 }
 
-geometry::Spot Strays::find(const glm::vec3& point, uint32_t from) const {
-    geometry::Spot best;
+geometry::TriangleSpot DistanceOutliers::find(const glm::vec3& point, uint32_t from) const {
+    geometry::TriangleSpot best;
     uint32_t at = from;
     for (int step = 0; step < kMostSearched; ++step) {
-        geometry::look_on(
+        geometry::nearest_of_triangles(
             ring(at), point, [&](uint32_t t) { return corners(t); }, best);
         if (best.triangle == kNone)
             return best;
@@ -54,7 +54,7 @@ geometry::Spot Strays::find(const glm::vec3& point, uint32_t from) const {
     return best;
 }
 
-void Strays::find_rings() {
+void DistanceOutliers::find_rings() {
     const Mesh& source = places_.source();
     source_first_.assign(source.positions.size() + 2, 0);
     for (const Triangle& t : source.triangles) {
@@ -70,7 +70,7 @@ void Strays::find_rings() {
     }
 }
 
-void Strays::look_from_original(const Job& job) {
+void DistanceOutliers::look_from_original(const Job& job) {
     const size_t count = places_.source().positions.size();
     nearest_.assign(count, {0.0f, kNone});
     parallel_for((count + kSearched - 1) / kSearched, [&](size_t chunk) {
@@ -81,7 +81,7 @@ void Strays::look_from_original(const Job& job) {
             const uint32_t from = places_.place(vertex);
             if (from == kNone || welded(vertex) != vertex)
                 continue;
-            const geometry::Spot spot = find(places_.original(vertex), from);
+            const geometry::TriangleSpot spot = find(places_.original(vertex), from);
             nearest_[v] = {spot.square, spot.triangle};
         }
     });
@@ -102,9 +102,9 @@ void Strays::look_from_original(const Job& job) {
     }
 }
 
-geometry::Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
+geometry::TriangleSpot DistanceOutliers::walk(const glm::vec3& point, uint32_t from) const {
     const auto corners_of = [&](uint32_t t) { return original(t); };
-    geometry::Spot best = geometry::nearest_on(original(from), point);
+    geometry::TriangleSpot best = geometry::nearest_spot(original(from), point);
     best.triangle = from;
     for (int step = 0; step < kMostWalked; ++step) {
         const float before = best.square;
@@ -113,8 +113,9 @@ geometry::Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
         const uint32_t hub = welded(places_.source().triangles[best.triangle][corner]);
         const size_t last =
             std::min<size_t>(source_first_[hub + 1], source_first_[hub] + kMostRing);
-        geometry::look_on({source_order_.data() + source_first_[hub], source_order_.data() + last},
-                          point, corners_of, best);
+        geometry::nearest_of_triangles(
+            {source_order_.data() + source_first_[hub], source_order_.data() + last}, point,
+            corners_of, best);
         if (!(best.square < before))
             break;
     }
@@ -123,12 +124,13 @@ geometry::Spot Strays::walk(const glm::vec3& point, uint32_t from) const {
 
 /// How far a place of the mesh is from the original, beginning where a sample of that is nearest.
 /// What is below `least` or the worst so far is left as soon as it is known to be.
-void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
-                  std::span<const uint32_t> hubs, float least, Stray& worst) const {
+void DistanceOutliers::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
+                            std::span<const uint32_t> hubs, float least,
+                            DistanceOutlier& worst) const {
     const float enough = std::max(least, worst.square);
     const std::span<const PlacedSample> own = by_triangle_.on(triangle);
     for (const PlacedSample& sample : own.first(std::min(own.size(), kMostStarts))) {
-        if (geometry::nearest_on(original(sample.source), place).square < enough)
+        if (geometry::nearest_spot(original(sample.source), place).square < enough)
             return;
     }
     float nearest = 1e30f;
@@ -147,7 +149,7 @@ void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& we
     }
     if (from == nullptr)
         return;
-    const geometry::Spot spot = walk(place, from->source);
+    const geometry::TriangleSpot spot = walk(place, from->source);
     if (!(spot.square > worst.square))
         return;
     const geometry::TrianglePoints c = original(spot.triangle);
@@ -156,7 +158,8 @@ void Strays::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& we
              kNone,       spot.triangle};
 }
 
-void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job& job) const {
+void DistanceOutliers::look_from_mesh(std::vector<DistanceOutlier>& worst_of, float least,
+                                      const Job& job) const {
     const size_t count = mesh_.triangles.size();
     parallel_for((count + kLooked - 1) / kLooked, [&](size_t chunk) {
         job.check();
@@ -168,7 +171,7 @@ void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job
                 __builtin_prefetch(&places_.source().triangles[samples.front().source]);
             const Triangle& c = mesh_.triangles[t];
             const geometry::TrianglePoints at = corners(t);
-            Stray& worst = worst_of[t];
+            DistanceOutlier& worst = worst_of[t];
             const std::array<uint32_t, 3> all{c.x, c.y, c.z};
             look((at[0] + at[1] + at[2]) * (1.0f / 3), t, glm::vec3(1.0f / 3), all, least, worst);
             for (int k = 0; k < 3; ++k) {
@@ -190,7 +193,7 @@ void Strays::look_from_mesh(std::vector<Stray>& worst_of, float least, const Job
     });
 }
 
-void Strays::confirm_from_mesh(Stray& stray) const {
+void DistanceOutliers::confirm_from_mesh(DistanceOutlier& stray) const {
     const geometry::TrianglePoints at = corners(stray.triangle);
     const glm::vec3& w = stray.weights;
     const glm::vec3 place = w.x * at[0] + w.y * at[1] + w.z * at[2];
@@ -201,7 +204,7 @@ void Strays::confirm_from_mesh(Stray& stray) const {
         for (const uint32_t t : ring(hubs[k])) {
             const std::span<const PlacedSample> on_it = by_triangle_.on(t);
             for (const PlacedSample& sample : on_it.first(std::min(on_it.size(), kMostStarts))) {
-                const geometry::Spot spot = walk(place, sample.source);
+                const geometry::TriangleSpot spot = walk(place, sample.source);
                 if (!(spot.square < stray.square))
                     continue;
                 const geometry::TrianglePoints c = original(spot.triangle);
@@ -214,7 +217,7 @@ void Strays::confirm_from_mesh(Stray& stray) const {
     }
 }
 
-bool Strays::confirm(Stray& stray) const {
+bool DistanceOutliers::confirm(DistanceOutlier& stray) const {
     const float before = stray.square;
     if (stray.vertex == kNone) {
         confirm_from_mesh(stray);
@@ -227,7 +230,7 @@ bool Strays::confirm(Stray& stray) const {
             const uint32_t from = places_.place(t[k]);
             if (from == kNone || !known(from))
                 continue;
-            const geometry::Spot spot = find(stray.point, from);
+            const geometry::TriangleSpot spot = find(stray.point, from);
             if (!(spot.square < stray.square))
                 continue;
             stray.square = spot.square;
@@ -238,10 +241,10 @@ bool Strays::confirm(Stray& stray) const {
     return stray.square >= kConfirmed * before;
 }
 
-std::vector<Stray> Strays::list(size_t most, const Job& job) const {
-    std::vector<Stray> worst(mesh_.triangles.size());
+std::vector<DistanceOutlier> DistanceOutliers::list_farthest(size_t most, const Job& job) const {
+    std::vector<DistanceOutlier> worst(mesh_.triangles.size());
     for (uint32_t t = 0; t < worst.size(); ++t) {
-        Stray& stray = worst[t];
+        DistanceOutlier& stray = worst[t];
         for (const uint32_t v : on(t)) {
             if (nearest_[v].first > stray.square) {
                 stray.square = nearest_[v].first;
@@ -252,22 +255,23 @@ std::vector<Stray> Strays::list(size_t most, const Job& job) const {
             continue;
         stray.triangle = t;
         stray.point = places_.original(stray.vertex);
-        stray.weights = geometry::nearest_on(corners(t), stray.point).weights;
+        stray.weights = geometry::nearest_spot(corners(t), stray.point).weights;
         stray.source = source_order_[source_first_[stray.vertex]];
     }
     float least = 0;  // as many are that far off already
     if (most > 0 && most < worst.size()) {
         std::vector<float> squares(worst.size());
         std::transform(worst.begin(), worst.end(), squares.begin(),
-                       [](const Stray& stray) { return stray.square; });
+                       [](const DistanceOutlier& stray) { return stray.square; });
         const auto nth = squares.begin() + static_cast<std::ptrdiff_t>(most - 1);
         std::nth_element(squares.begin(), nth, squares.end(), std::greater<>());
         least = *nth;
     }
     look_from_mesh(worst, least, job);
-    std::erase_if(worst, [](const Stray& stray) { return stray.triangle == kNone; });
-    std::stable_sort(worst.begin(), worst.end(),
-                     [](const Stray& x, const Stray& y) { return x.square > y.square; });
+    std::erase_if(worst, [](const DistanceOutlier& stray) { return stray.triangle == kNone; });
+    std::stable_sort(
+        worst.begin(), worst.end(),
+        [](const DistanceOutlier& x, const DistanceOutlier& y) { return x.square > y.square; });
     return worst;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strays: where a simplified mesh and its original are far from each other.
+// Distance outliers: where a simplified mesh and its original are far from each other.
 #pragma once
 
 #include "simplify/fit/fit_samples.h"
@@ -7,7 +7,7 @@
 namespace lodestone::simplify {
 
 /// A place of the mesh that is too far from the original, or that the original is too far from.
-struct Stray {
+struct DistanceOutlier {
     float square = 0;  // of the distance
     uint32_t triangle = kNone;
     glm::vec3 weights{0.0f};
@@ -20,20 +20,20 @@ struct Stray {
 /// triangles to the original. Both only go downhill from where one is known to be: distances are
 /// never too small, sometimes too large. The mesh may be changed meanwhile as long as its triangles
 /// and vertices keep their numbers; `adjacency` stays that of the beginning.
-class Strays {
+class DistanceOutliers {
 public:
     /// `samples`: of the original's surface, many; others (without a source) do no harm.
-    Strays(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
-           const Job& job);
+    DistanceOutliers(const FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
+                     const Job& job);
 
     /// Of each triangle the worst, worst first. Right as far as the first `most`: what cannot be
     /// one of them is not looked for.
-    std::vector<Stray> list(size_t most, const Job& job) const;
+    std::vector<DistanceOutlier> list_farthest(size_t most, const Job& job) const;
     /// Looks from other sides, too: for the original's vertex from where its neighbors went, from a
     /// place of the mesh to all that is sampled around it. False: it is not far off after all.
-    bool confirm(Stray& stray) const;
+    bool confirm(DistanceOutlier& stray) const;
     /// The place of the original nearest to a point, downhill from one of its triangles.
-    geometry::Spot walk(const glm::vec3& point, uint32_t from) const;
+    geometry::TriangleSpot walk(const glm::vec3& point, uint32_t from) const;
 
     geometry::TrianglePoints corners(uint32_t triangle) const {
         const Triangle& t = mesh_.triangles[triangle];
@@ -61,11 +61,11 @@ private:
     uint32_t welded(uint32_t vertex) const { return mesh_.sources[vertex]; }
     void find_rings();
     void look_from_original(const Job& job);
-    geometry::Spot find(const glm::vec3& point, uint32_t from) const;
+    geometry::TriangleSpot find(const glm::vec3& point, uint32_t from) const;
     void look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
-              std::span<const uint32_t> hubs, float least, Stray& worst) const;
-    void confirm_from_mesh(Stray& stray) const;
-    void look_from_mesh(std::vector<Stray>& worst, float least, const Job& job) const;
+              std::span<const uint32_t> hubs, float least, DistanceOutlier& worst) const;
+    void confirm_from_mesh(DistanceOutlier& stray) const;
+    void look_from_mesh(std::vector<DistanceOutlier>& worst, float least, const Job& job) const;
 
     const FitPlaces& places_;
     const CollapseMesh& mesh_;

@@ -21,7 +21,7 @@ constexpr size_t kMostFlipRing = 64;
 constexpr size_t kFlipChunk = 4096;
 
 /// Triangles (a, b, c) and (b, a, d), which flipped are (a, d, c) and (d, b, c).
-struct Quad {
+struct FlipQuad {
     uint32_t t0, t1;
     uint32_t a, b, c, d;
     int at0, at1;  // corner of a in t0, of b in t1
@@ -33,30 +33,30 @@ glm::vec3 unit(const glm::vec3& v) {
     return length > 0 ? v / length : glm::vec3(0.0f);
 }
 
-class Flipper {
+class EdgeFlipper {
 public:
-    Flipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples);
+    EdgeFlipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples);
     size_t flip(const Job& job);
 
 private:
-    struct Facets {
+    struct FacetPair {
         glm::vec3 first, second;
     };
-    bool find_quad(uint32_t triangle, int corner, Quad& quad) const;
+    bool find_quad(uint32_t triangle, int corner, FlipQuad& quad) const;
     bool has_edge(uint32_t u, uint32_t w) const;
-    bool seam(const Quad& quad) const;
-    bool allows(const Quad& quad, const Facets& before, const Facets& after) const;
-    float gain_of(const Quad& quad) const;
-    void apply(const Quad& quad);
+    bool seam(const FlipQuad& quad) const;
+    bool allows(const FlipQuad& quad, const FacetPair& before, const FacetPair& after) const;
+    float gain_of(const FlipQuad& quad) const;
+    void apply(const FlipQuad& quad);
     glm::vec3 facet(uint32_t u, uint32_t v, uint32_t w) const {
         return 0.5f * glm::cross(points_[v] - points_[u], points_[w] - points_[u]);
     }
     /// True on the side of triangle (d, b, c) of the plane through c and d.
-    struct Cut {
+    struct FlipPlane {
         glm::vec3 from, normal;
         bool second(const glm::vec3& point) const { return glm::dot(point - from, normal) > 0; }
     };
-    Cut cut_of(const Quad& quad, const Facets& before) const;
+    FlipPlane cut_of(const FlipQuad& quad, const FacetPair& before) const;
 
     FitPlaces& places_;
     CollapseMesh& mesh_;
@@ -67,7 +67,7 @@ private:
     std::vector<glm::vec3> normals_;  // of the original, by sample
 };
 
-Flipper::Flipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples)
+EdgeFlipper::EdgeFlipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples)
     : places_(places),
       mesh_(places.mesh()),
       adjacency_(adjacency),
@@ -88,7 +88,7 @@ Flipper::Flipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samp
     }
 }
 
-bool Flipper::find_quad(uint32_t triangle, int corner, Quad& quad) const {
+bool EdgeFlipper::find_quad(uint32_t triangle, int corner, FlipQuad& quad) const {
     const Triangle& t = mesh_.triangles[triangle];
     quad = {triangle, kNone, t[corner], t[(corner + 1) % 3], t[(corner + 2) % 3], kNone,
             corner,   0,     0};
@@ -116,7 +116,7 @@ bool Flipper::find_quad(uint32_t triangle, int corner, Quad& quad) const {
     return quad.t1 != kNone && quad.c != quad.d;
 }
 
-bool Flipper::has_edge(uint32_t u, uint32_t w) const {
+bool EdgeFlipper::has_edge(uint32_t u, uint32_t w) const {
     if (adjacency_.valence(u) > adjacency_.valence(w))
         std::swap(u, w);
     if (adjacency_.valence(u) > kMostFlipRing)
@@ -128,7 +128,7 @@ bool Flipper::has_edge(uint32_t u, uint32_t w) const {
     });
 }
 
-bool Flipper::seam(const Quad& q) const {
+bool EdgeFlipper::seam(const FlipQuad& q) const {
     if (!mesh_.slots.empty() && mesh_.slots[q.t0] != mesh_.slots[q.t1])
         return true;
     if (mesh_.wedges.empty())
@@ -153,7 +153,7 @@ bool Flipper::seam(const Quad& q) const {
     return !(area(at_a, at_d, at_c) * sum >= 0 && area(at_d, at_b, at_c) * sum >= 0);
 }
 
-bool Flipper::allows(const Quad& q, const Facets& before, const Facets& after) const {
+bool EdgeFlipper::allows(const FlipQuad& q, const FacetPair& before, const FacetPair& after) const {
     const glm::vec3 sum = before.first + before.second;
     for (const glm::vec3& facet : {after.first, after.second}) {
         const float dot = glm::dot(facet, sum);
@@ -171,24 +171,24 @@ bool Flipper::allows(const Quad& q, const Facets& before, const Facets& after) c
            2 * glm::length(after.second) >= kThin * longest1;
 }
 
-Flipper::Cut Flipper::cut_of(const Quad& q, const Facets& before) const {
+EdgeFlipper::FlipPlane EdgeFlipper::cut_of(const FlipQuad& q, const FacetPair& before) const {
     const glm::vec3 normal = glm::cross(before.first + before.second, points_[q.d] - points_[q.c]);
     const bool toward_b = glm::dot(points_[q.b] - points_[q.c], normal) > 0;
     return {points_[q.c], toward_b ? normal : -normal};
 }
 
-float Flipper::gain_of(const Quad& q) const {
+float EdgeFlipper::gain_of(const FlipQuad& q) const {
     const size_t count = by_triangle_.on(q.t0).size() + by_triangle_.on(q.t1).size();
     if (count < kFewest || seam(q) || has_edge(q.c, q.d))
         return 0;
-    const Facets before{mesh_.facets[q.t0], mesh_.facets[q.t1]};
-    const Facets after{facet(q.a, q.d, q.c), facet(q.d, q.b, q.c)};
+    const FacetPair before{mesh_.facets[q.t0], mesh_.facets[q.t1]};
+    const FacetPair after{facet(q.a, q.d, q.c), facet(q.d, q.b, q.c)};
     if (!allows(q, before, after))
         return 0;
     const glm::vec3 was[2] = {unit(before.first), unit(before.second)};
     const glm::vec3 is[2] = {unit(after.first), unit(after.second)};
     const float turn = kTurn * glm::length(before.first + before.second);
-    const Cut cut = cut_of(q, before);
+    const FlipPlane cut = cut_of(q, before);
     float old_cost = 0;
     float new_cost = 0;
     float old_most = 0;
@@ -211,9 +211,9 @@ float Flipper::gain_of(const Quad& q) const {
     return gain > kLeastGain * old_cost && new_most <= old_most ? gain : 0;
 }
 
-void Flipper::apply(const Quad& q) {
-    const Facets before{mesh_.facets[q.t0], mesh_.facets[q.t1]};
-    const Cut cut = cut_of(q, before);
+void EdgeFlipper::apply(const FlipQuad& q) {
+    const FacetPair before{mesh_.facets[q.t0], mesh_.facets[q.t1]};
+    const FlipPlane cut = cut_of(q, before);
     if (!mesh_.wedges.empty()) {
         Triangle& w0 = mesh_.wedges[q.t0];
         Triangle& w1 = mesh_.wedges[q.t1];
@@ -248,15 +248,15 @@ void Flipper::apply(const Quad& q) {
         std::ranges::for_each(by_triangle_.on(t), move);
 }
 
-size_t Flipper::flip(const Job& job) {
+size_t EdgeFlipper::flip(const Job& job) {
     const size_t count = mesh_.triangles.size();
-    std::vector<std::vector<Quad>> found((count + kFlipChunk - 1) / kFlipChunk);
+    std::vector<std::vector<FlipQuad>> found((count + kFlipChunk - 1) / kFlipChunk);
     parallel_for(found.size(), [&](size_t chunk) {
         job.check();
         const size_t last = std::min(count, (chunk + 1) * kFlipChunk);
         for (size_t t = chunk * kFlipChunk; t < last; ++t) {
             for (int corner = 0; corner < 3; ++corner) {
-                Quad quad{};
+                FlipQuad quad{};
                 const Triangle& corners = mesh_.triangles[t];
                 if (corners[corner] > corners[(corner + 1) % 3] ||
                     !find_quad(static_cast<uint32_t>(t), corner, quad))
@@ -267,14 +267,14 @@ size_t Flipper::flip(const Job& job) {
             }
         }
     });
-    std::vector<Quad> quads;
-    for (const std::vector<Quad>& some : found)
+    std::vector<FlipQuad> quads;
+    for (const std::vector<FlipQuad>& some : found)
         quads.insert(quads.end(), some.begin(), some.end());
     std::stable_sort(quads.begin(), quads.end(),
-                     [](const Quad& x, const Quad& y) { return x.gain > y.gain; });
+                     [](const FlipQuad& x, const FlipQuad& y) { return x.gain > y.gain; });
     std::vector<uint8_t> touched(points_.size(), 0);
     size_t flipped = 0;
-    for (const Quad& q : quads) {
+    for (const FlipQuad& q : quads) {
         if (touched[q.a] || touched[q.b] || touched[q.c] || touched[q.d])
             continue;
         touched[q.a] = touched[q.b] = touched[q.c] = touched[q.d] = 1;
@@ -290,7 +290,7 @@ size_t flip_edges(FitPlaces& places, const Adjacency& adjacency, const Job& job,
                   FitSamples& samples) {
     if (samples.empty())
         return 0;
-    return Flipper(places, adjacency, samples).flip(job);
+    return EdgeFlipper(places, adjacency, samples).flip(job);
 }
 
 }  // namespace lodestone::simplify

@@ -12,7 +12,7 @@ constexpr float kBorder = 2;
 constexpr int kMostOutlineSteps = 4;
 
 /// The edge from a triangle's corner to the next one lies on a border.
-struct Border {
+struct OutlineBorder {
     uint32_t triangle;
     int corner;
     uint32_t next;  // of the same vertex
@@ -38,7 +38,7 @@ private:
     const std::vector<glm::vec3>& points_;
     FitSamples& samples_;
     std::vector<uint32_t> heads_;  // of each vertex the first of its borders
-    std::vector<Border> borders_;
+    std::vector<OutlineBorder> borders_;
 };
 
 void OutlineSampler::find_borders() {
@@ -77,13 +77,13 @@ void OutlineSampler::find_borders() {
 void OutlineSampler::take(const glm::vec3& point, uint32_t from, const glm::vec3& edge,
                           float weight) {
     float least = 1e30f;
-    const Border* best = nullptr;
+    const OutlineBorder* best = nullptr;
     float best_along = 0;
     uint32_t at = from;
     for (int step = 0; step < kMostOutlineSteps; ++step) {
         int looked = 0;
         for (uint32_t i = heads_[at]; i != kNone && looked < 8; i = borders_[i].next, ++looked) {
-            const Border& border = borders_[i];
+            const OutlineBorder& border = borders_[i];
             const Triangle& c = mesh_.triangles[border.triangle];
             const glm::vec3& start = points_[c[border.corner]];
             const glm::vec3 run = points_[c[(border.corner + 1) % 3]] - start;

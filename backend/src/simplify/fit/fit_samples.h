@@ -32,7 +32,7 @@ public:
         return glm::vec3((glm::dvec3(source_.positions[vertex]) - mesh_.center) * per_scale_);
     }
     /// Asks for what place() and original() will need.
-    void expect(uint32_t vertex) const {
+    void prefetch_place(uint32_t vertex) const {
         __builtin_prefetch(&mesh_.merged[vertex]);
         __builtin_prefetch(&source_.positions[vertex]);
     }

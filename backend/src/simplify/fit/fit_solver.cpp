@@ -18,7 +18,7 @@ Lanes lanes_of(const glm::vec3& v, float last) {
 }
 
 /// Symmetric.
-struct Matrix {
+struct SymmetricMatrix {
     Lanes first{};  // xx, xy, xz, and the sum of the samples' areas
     Lanes rest{};   // yy, yz, zz, nothing
     Lanes times(const Lanes& p) const {
@@ -29,7 +29,7 @@ struct Matrix {
 };
 
 /// With what is added to hold the vertex (`hold` times the areas); zero where there is none.
-Matrix damped_inverse(const Matrix& m, float hold) {
+SymmetricMatrix damped_inverse(const SymmetricMatrix& m, float hold) {
     const float trace = m.first[0] + m.rest[0] + m.rest[2];
     if (!(trace > 1e-30f))
         return {};
@@ -52,7 +52,7 @@ Matrix damped_inverse(const Matrix& m, float hold) {
 void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations, float hold,
                std::vector<glm::vec3>& moves) {
     const size_t count = mesh.points.size();
-    std::vector<Matrix> matrices(count);
+    std::vector<SymmetricMatrix> matrices(count);
     std::vector<float> most(count, 0);  // that samples near a vertex miss
     std::vector<Lanes> pulls(count);    // where nothing has moved yet, at first
     for (const FitSample& s : samples) {
@@ -63,7 +63,7 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
             pulls[c[i]] += s.weights[i] * pull;
             const float mass = s.area * s.weights[i];
             const Lanes weighted = (mass * s.weights[i]) * toward;
-            Matrix& m = matrices[c[i]];
+            SymmetricMatrix& m = matrices[c[i]];
             m.first += Lanes{weighted[0], weighted[0], weighted[0], mass} * toward;
             m.rest += __builtin_shufflevector(weighted, weighted, 1, 1, 2, 3) *
                       __builtin_shufflevector(toward, toward, 1, 2, 2, 3);
@@ -71,7 +71,7 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
                 most[c[i]] = std::max(most[c[i]], std::abs(s.miss));
         }
     }
-    for (Matrix& m : matrices)
+    for (SymmetricMatrix& m : matrices)
         m = damped_inverse(m, hold);
     std::vector<Lanes> moved(count);
     for (int iteration = 0; iteration < iterations; ++iteration) {

@@ -28,7 +28,7 @@ private:
               float area, uint32_t nearest, FitSample& sample) const;
     /// The point lies above or below that triangle, turned as that is.
     bool above(const glm::vec3& point, const glm::vec3& normal, uint32_t triangle,
-               geometry::Spot& spot) const;
+               geometry::TriangleSpot& spot) const;
 
     const FitPlaces& places_;
     const CollapseMesh& mesh_;
@@ -37,7 +37,7 @@ private:
 };
 
 bool SurfaceSampler::above(const glm::vec3& point, const glm::vec3& normal, uint32_t triangle,
-                           geometry::Spot& spot) const {
+                           geometry::TriangleSpot& spot) const {
     const Triangle& c = mesh_.triangles[triangle];
     const glm::vec3& facet = mesh_.facets[triangle];
     const float agree = glm::dot(facet, normal);
@@ -62,7 +62,7 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
                           FitSample& sample) const {
     if (from == kNone)
         return;
-    geometry::Spot best;
+    geometry::TriangleSpot best;
     uint32_t at = from;
     bool found = nearest != kNone && above(point, normal, nearest, best);
     for (int step = 0; step < kMostWalkSteps && !found; ++step) {
@@ -80,7 +80,7 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
             const Triangle& c = mesh_.triangles[t];
             return geometry::TrianglePoints{points_[c.x], points_[c.y], points_[c.z]};
         };
-        geometry::look_on(ring, point, corners, best);
+        geometry::nearest_of_triangles(ring, point, corners, best);
         if (best.triangle == kNone)
             return;
         const Triangle& c = mesh_.triangles[best.triangle];
@@ -208,7 +208,7 @@ void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t 
             const size_t ahead = std::min(n + kSamplesAhead, end - 1);
             const Triangle& coming = places.source().triangles[nth(ahead)];
             for (const uint32_t vertex : {coming.x, coming.y, coming.z})
-                places.expect(vertex);
+                places.prefetch_place(vertex);
             for (const uint32_t t : {triangles[2 * ahead], triangles[2 * ahead + 1]}) {
                 if (t != kNone) {
                     __builtin_prefetch(&places.mesh().triangles[t]);

@@ -118,8 +118,8 @@ void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::
 
 }  // namespace
 
-void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const FitOptions& options,
-         const Job& job) {
+void fit_surface(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency,
+                 const FitOptions& options, const Job& job) {
     if (mesh.live == 0 || mesh.ids.empty() || !mesh.others.empty())
         return;
     FitPlaces places(mesh, source);

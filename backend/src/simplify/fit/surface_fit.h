@@ -30,7 +30,7 @@ struct FitOptions {
 /// borders also to the outline's. Closed parts of at most 8 triangles (bricks, boards) stay as they
 /// are. `mesh` must be compact and `adjacency` its own. No triangle turns over. A mesh with other
 /// poses is left as it is. source: Hoppe et al. 1993 (mesh optimization), with distances to planes.
-void fit(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency, const FitOptions& options,
-         const Job& job);
+void fit_surface(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency,
+                 const FitOptions& options, const Job& job);
 
 }  // namespace lodestone::simplify

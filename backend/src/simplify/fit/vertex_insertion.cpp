@@ -22,10 +22,10 @@ constexpr float kThinnest = 4e-3f;
 /// Places tried, for each vertex that may be inserted.
 constexpr size_t kTried = 8;
 
-class Inserter {
+class VertexInserter {
 public:
-    Inserter(FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
-             const Job& job)
+    VertexInserter(FitPlaces& places, const Adjacency& adjacency, const FitSamples& samples,
+                   const Job& job)
         : places_(places),
           mesh_(places.mesh()),
           adjacency_(adjacency),
@@ -39,15 +39,15 @@ private:
         return std::none_of(triangles.begin(), triangles.end(),
                             [&](uint32_t t) { return touched_[t] != 0; });
     }
-    bool fits(const Stray& stray, const glm::vec3& point, const geometry::TrianglePoints& after,
-              uint32_t was) const;
-    bool better(const Stray& stray, const glm::vec3& point, std::span<const uint32_t> before,
-                std::span<const geometry::TrianglePoints> after,
+    bool fits(const DistanceOutlier& stray, const glm::vec3& point,
+              const geometry::TrianglePoints& after, uint32_t was) const;
+    bool better(const DistanceOutlier& stray, const glm::vec3& point,
+                std::span<const uint32_t> before, std::span<const geometry::TrianglePoints> after,
                 std::span<const uint32_t> was) const;
-    bool move_corner(const Stray& stray, uint32_t vertex, float part);
-    bool split_edge(const Stray& stray, int corner);
-    bool split_triangle(const Stray& stray);
-    uint32_t add_vertex(const Stray& stray, uint32_t beside);
+    bool move_corner(const DistanceOutlier& stray, uint32_t vertex, float part);
+    bool split_edge(const DistanceOutlier& stray, int corner);
+    bool split_triangle(const DistanceOutlier& stray);
+    uint32_t add_vertex(const DistanceOutlier& stray, uint32_t beside);
     uint32_t add_wedge(const Triangle& wedges, const glm::vec3& weights);
     void add_triangle(const Triangle& t, const Triangle& wedges, uint32_t like);
     void refresh(uint32_t triangle) {
@@ -58,14 +58,14 @@ private:
     CollapseMesh& mesh_;
     const Adjacency& adjacency_;
     std::vector<glm::vec3>& points_;
-    Strays strays_;
+    DistanceOutliers strays_;
     std::vector<uint8_t> touched_;  // by triangle: what was around it is out of date
 };
 
 /// A triangle is not thin, turned over or far from the original, as its edges at `point` are not;
 /// `was`: what it was before.
-bool Inserter::fits(const Stray& stray, const glm::vec3& point,
-                    const geometry::TrianglePoints& after, uint32_t was) const {
+bool VertexInserter::fits(const DistanceOutlier& stray, const glm::vec3& point,
+                          const geometry::TrianglePoints& after, uint32_t was) const {
     const float limit = kBetter * kBetter * stray.square;
     const auto& [a, b, c] = after;
     const glm::vec3 facet = glm::cross(b - a, c - a);
@@ -74,7 +74,7 @@ bool Inserter::fits(const Stray& stray, const glm::vec3& point,
         std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
     if (!(square >= kThinnest * kThinnest * longest * longest))
         return false;
-    const geometry::Spot middle = strays_.walk((a + b + c) * (1.0f / 3), stray.source);
+    const geometry::TriangleSpot middle = strays_.walk((a + b + c) * (1.0f / 3), stray.source);
     if (!(middle.square <= stray.square))
         return false;
     const auto agrees = [&](const glm::vec3& normal) {
@@ -96,9 +96,10 @@ bool Inserter::fits(const Stray& stray, const glm::vec3& point,
 
 /// Whether triangles `after`, of which `point` is new, fit, and the original's vertices that
 /// `before` were nearest to miss less with them.
-bool Inserter::better(const Stray& stray, const glm::vec3& point, std::span<const uint32_t> before,
-                      std::span<const geometry::TrianglePoints> after,
-                      std::span<const uint32_t> was) const {
+bool VertexInserter::better(const DistanceOutlier& stray, const glm::vec3& point,
+                            std::span<const uint32_t> before,
+                            std::span<const geometry::TrianglePoints> after,
+                            std::span<const uint32_t> was) const {
     for (size_t i = 0; i < after.size(); ++i) {
         if (!fits(stray, point, after[i], was[i]))
             return false;
@@ -109,7 +110,7 @@ bool Inserter::better(const Stray& stray, const glm::vec3& point, std::span<cons
             const glm::vec3 missed = places_.original(v);
             float least = 1e30f;
             for (const geometry::TrianglePoints& c : after)
-                least = std::min(least, geometry::nearest_on(c, missed).square);
+                least = std::min(least, geometry::nearest_spot(c, missed).square);
             if (!(least <= limit) &&
                 !(least <= kRounding * strays_.square_of(v) && v != stray.vertex))
                 return false;
@@ -118,7 +119,7 @@ bool Inserter::better(const Stray& stray, const glm::vec3& point, std::span<cons
     return true;
 }
 
-bool Inserter::move_corner(const Stray& stray, uint32_t vertex, float part) {
+bool VertexInserter::move_corner(const DistanceOutlier& stray, uint32_t vertex, float part) {
     const glm::vec3 to = points_[vertex] + part * (stray.point - points_[vertex]);
     const std::span<const uint32_t> around = adjacency_.around(vertex);
     if (around.size() > kMostInsertRing || !free(around))
@@ -142,7 +143,7 @@ bool Inserter::move_corner(const Stray& stray, uint32_t vertex, float part) {
     return true;
 }
 
-uint32_t Inserter::add_wedge(const Triangle& wedges, const glm::vec3& weights) {
+uint32_t VertexInserter::add_wedge(const Triangle& wedges, const glm::vec3& weights) {
     const auto mix = [&](auto& values) {
         auto value = values[wedges.x] * weights.x;
         value += values[wedges.y] * weights.y;
@@ -164,7 +165,7 @@ uint32_t Inserter::add_wedge(const Triangle& wedges, const glm::vec3& weights) {
     return made;
 }
 
-uint32_t Inserter::add_vertex(const Stray& stray, uint32_t beside) {
+uint32_t VertexInserter::add_vertex(const DistanceOutlier& stray, uint32_t beside) {
     const auto vertex = static_cast<uint32_t>(points_.size());
     mesh_.points.emplace_back(stray.point);
     mesh_.parts.push_back(uint32_t{mesh_.parts[beside]});
@@ -173,7 +174,7 @@ uint32_t Inserter::add_vertex(const Stray& stray, uint32_t beside) {
     return vertex;
 }
 
-void Inserter::add_triangle(const Triangle& t, const Triangle& wedges, uint32_t like) {
+void VertexInserter::add_triangle(const Triangle& t, const Triangle& wedges, uint32_t like) {
     mesh_.triangles.push_back(t);
     mesh_.facets.emplace_back(mesh_.facet_of(t));
     if (!mesh_.wedges.empty())
@@ -183,7 +184,7 @@ void Inserter::add_triangle(const Triangle& t, const Triangle& wedges, uint32_t 
     ++mesh_.live;
 }
 
-bool Inserter::split_triangle(const Stray& stray) {
+bool VertexInserter::split_triangle(const DistanceOutlier& stray) {
     const uint32_t t = stray.triangle;
     if (touched_[t] != 0)
         return false;
@@ -212,7 +213,7 @@ bool Inserter::split_triangle(const Stray& stray) {
     return true;
 }
 
-bool Inserter::split_edge(const Stray& stray, int corner) {
+bool VertexInserter::split_edge(const DistanceOutlier& stray, int corner) {
     // The edge from a to b of the first triangle, from b to a of the second.
     std::array<uint32_t, 2> on{stray.triangle, kNone};
     std::array<int, 2> at{corner, 0};
@@ -282,13 +283,13 @@ bool Inserter::split_edge(const Stray& stray, int corner) {
     return true;
 }
 
-size_t Inserter::insert(size_t most, const Job& job) {
+size_t VertexInserter::insert(size_t most, const Job& job) {
     const size_t tried = kTried * most;
-    std::vector<Stray> strays = strays_.list(tried, job);
+    std::vector<DistanceOutlier> strays = strays_.list_farthest(tried, job);
     size_t moved = 0;
     size_t inserted = 0;
     for (size_t i = 0; i < strays.size() && inserted < most && i < tried; ++i) {
-        Stray& stray = strays[i];
+        DistanceOutlier& stray = strays[i];
         if (touched_[stray.triangle] != 0 || !strays_.confirm(stray) ||
             touched_[stray.triangle] != 0)
             continue;
@@ -313,7 +314,7 @@ size_t insert_vertices(FitPlaces& places, const Adjacency& adjacency, const FitS
                        size_t most, const Job& job) {
     if (most == 0 || samples.empty())
         return 0;
-    return Inserter(places, adjacency, samples, job).insert(most, job);
+    return VertexInserter(places, adjacency, samples, job).insert(most, job);
 }
 
 }  // namespace lodestone::simplify

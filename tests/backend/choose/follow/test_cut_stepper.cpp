@@ -16,7 +16,7 @@ TEST(Step, OfAnEmptyGroupIsEmpty) {
     Model model;
     model.root = models::add_group(model, "empty", {});
     summarize_assemblies(model, bottom_up(model));
-    choose::Stepper stepper(table_of(model));
+    choose::CutStepper stepper(table_of(model));
     choose::Cut cut;
     View view;
     stepper.step(view, cut);
@@ -29,16 +29,16 @@ TEST(Step, OfAnEmptyGroupIsEmpty) {
 TEST(Step, ChangesALevelExactlyWhereItsErrorIsAPixel) {
     // LOD 2 of a ball is off by .2 m: good enough from 128 m on, to its nearest point.
     const Model model = bent::pairs(2);
-    choose::Stepper stepper(table_of(model));
+    choose::CutStepper stepper(table_of(model));
     choose::Cut cut;
     const double turns = 1 + 0.2 * 640;
     stepper.step(models::view_from(turns - 1), cut);
     EXPECT_EQ(bent::drawn(model, cut), "pair 0/left 1, pair 0/right 1");
     stepper.step(models::view_from(turns + 0.001), cut);
     EXPECT_EQ(bent::drawn(model, cut), "pair 0/left 2, pair 0/right 2");
-    EXPECT_EQ(stepper.looked_at(), 2u) << "the pair itself cannot change so near";
+    EXPECT_EQ(stepper.decided_nodes(), 2u) << "the pair itself cannot change so near";
     stepper.step(models::view_from(turns + 0.0015), cut);
-    EXPECT_EQ(stepper.looked_at(), 0u);
+    EXPECT_EQ(stepper.decided_nodes(), 0u);
     stepper.step(models::view_from(300), cut);
     EXPECT_EQ(bent::drawn(model, cut), "pair 0 1");
     stepper.step(models::view_from(turns - 1), cut);
@@ -76,14 +76,14 @@ TEST(Step, IsTheCutMadeAnewWithinRoundingOfWhereItTurns) {
     // The eye goes to and fro by a few last bits where LOD 2 of a ball begins to be good enough.
     const Model model = bent::pairs(2);
     const auto table = table_of(model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     int changes = 0;
     std::string before;
     for (int step = 0; step < 200; ++step) {
         View view = models::view_from(129 + (step % 7 - 3) * std::exp2(-10 - step / 6));
         stepper.step(view, cut);
-        expect_same(cut, choose::choose(*table, view));
+        expect_same(cut, choose::choose_cut(*table, view));
         changes += bent::drawn(model, cut) != before ? 1 : 0;
         before = bent::drawn(model, cut);
     }
@@ -94,7 +94,7 @@ TEST(Step, LooksAtNothingThatItPassesSideways) {
     // Half a metre nearer both balls would be LOD 1; 10 m to the side they are farther by .4 m.
     const Model model = bent::pairs(2);
     const auto table = table_of(model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     View view = models::view_from(129.5);
     stepper.step(view, cut);
@@ -102,12 +102,12 @@ TEST(Step, LooksAtNothingThatItPassesSideways) {
     for (const double x : {-10.0, 10.0, -5.0}) {
         view.camera.position.x = x;
         stepper.step(view, cut);
-        EXPECT_EQ(stepper.looked_at(), 0u);
-        expect_same(cut, choose::choose(*table, view));
+        EXPECT_EQ(stepper.decided_nodes(), 0u);
+        expect_same(cut, choose::choose_cut(*table, view));
     }
     view.camera.position = {0, -128.9, 0};
     stepper.step(view, cut);
-    EXPECT_GT(stepper.looked_at(), 0u);
+    EXPECT_GT(stepper.decided_nodes(), 0u);
     EXPECT_EQ(bent::drawn(model, cut), "pair 0/left 1, pair 0/right 1");
 }
 
@@ -115,13 +115,14 @@ TEST(Step, IsTheCutOfABudgetAtTheThresholdThatItFinds) {
     for (uint32_t seed = 500; seed < 515; ++seed) {
         Forest forest(seed);
         const auto table = table_of(forest.model);
-        choose::Stepper stepper(table);
+        choose::CutStepper stepper(table);
         choose::Cut cut;
         View view = forest.view();
         view.camera.orthographic = false;
         for (int step = 0; step < 10; ++step) {
             const uint64_t triangles = 500 + static_cast<uint64_t>(20000 * forest.any());
-            const choose::Budgeted found = choose::choose_within(*table, view, {triangles, 0});
+            const choose::BudgetedCut found =
+                choose::fit_cut_to_budget(*table, view, {triangles, 0});
             View at = view;
             at.pixel_error = found.pixel_error;
             stepper.step(at, cut);
@@ -129,7 +130,7 @@ TEST(Step, IsTheCutOfABudgetAtTheThresholdThatItFinds) {
             view.camera.position.x += forest.any() - 0.5;
             at.camera = view.camera;
             stepper.step(at, cut);
-            expect_same(cut, choose::choose(*table, at));
+            expect_same(cut, choose::choose_cut(*table, at));
         }
     }
 }
@@ -140,7 +141,7 @@ TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
     Forest forest(7);
     const auto table = table_of(forest.model);
     for (int i = 0; i < 160; ++i) {
-        choose::Stepper stepper(table);
+        choose::CutStepper stepper(table);
         choose::Cut cut;
         View view = forest.view();
         view.modifiers = {};
@@ -172,7 +173,7 @@ TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
                 view.modifiers.depth = 1.5;
                 break;
             case 8:
-                view.modifiers.criterion = Criterion::Area;
+                view.modifiers.criterion = DetailCriterion::Area;
                 break;
             default:
                 view.modifiers.off_screen = OffScreen::Shadows;
@@ -182,7 +183,7 @@ TEST(Step, IsTheCutMadeAnewWhateverElseChanges) {
             View at = next;
             at.camera.position.y += 0.25;
             stepper.step(at, cut);
-            expect_same(cut, choose::choose(*table, at));
+            expect_same(cut, choose::choose_cut(*table, at));
         }
     }
 }
@@ -191,19 +192,19 @@ TEST(Step, KeepsNothingWhileStepsAreInVain) {
     // Leaps change everything, again and again; slow motion afterwards is followed again.
     const Model model = bent::pairs(400);
     const auto table = table_of(model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     for (int leap = 0; leap < 200; ++leap) {
         stepper.step(models::view_from(leap % 2 == 0 ? 30 : 300), cut);
-        expect_same(cut, choose::choose(*table, models::view_from(leap % 2 == 0 ? 30 : 300)));
-        EXPECT_EQ(stepper.looked_at(), cut.nodes.size());
+        expect_same(cut, choose::choose_cut(*table, models::view_from(leap % 2 == 0 ? 30 : 300)));
+        EXPECT_EQ(stepper.decided_nodes(), cut.nodes.size());
     }
     size_t followed = 0;
     for (int step = 0; step < 100; ++step) {
         const View view = models::view_from(200 + 1e-4 * step);
         stepper.step(view, cut);
-        expect_same(cut, choose::choose(*table, view));
-        followed += stepper.looked_at() == 0 ? 1 : 0;
+        expect_same(cut, choose::choose_cut(*table, view));
+        followed += stepper.decided_nodes() == 0 ? 1 : 0;
     }
     EXPECT_GE(followed, 60u);
     EXPECT_LE(followed, 90u) << "nothing was kept of the last leaps";
@@ -212,7 +213,7 @@ TEST(Step, KeepsNothingWhileStepsAreInVain) {
 TEST(Step, RefusesNonsenseAndKeepsTheCut) {
     Forest forest(3);
     const auto table = table_of(forest.model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     View view = forest.view();
     view.camera.orthographic = false;
@@ -236,16 +237,16 @@ TEST(Step, RefusesNonsenseAndKeepsTheCut) {
     expect_same(cut, before);
     view.camera.position.x += 1e8;
     stepper.step(view, cut);
-    expect_same(cut, choose::choose(*table, view));
+    expect_same(cut, choose::choose_cut(*table, view));
     view.camera.position.x -= 1e300;
     stepper.step(view, cut);
-    expect_same(cut, choose::choose(*table, view));
+    expect_same(cut, choose::choose_cut(*table, view));
 }
 
 TEST(Step, StaysExactAfterAMillionMetresInSmallSteps) {
     const Model model = bent::pairs(16);
     const auto table = table_of(model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     for (int lap = 0; lap < 4; ++lap) {
         View view = models::view_from(100 + 100 * lap);
@@ -255,7 +256,7 @@ TEST(Step, StaysExactAfterAMillionMetresInSmallSteps) {
         for (int step = 0; step < 300; ++step) {
             view.camera.position.x += 0.37;
             stepper.step(view, cut);
-            expect_same(cut, choose::choose(*table, view));
+            expect_same(cut, choose::choose_cut(*table, view));
         }
     }
 }

@@ -90,7 +90,7 @@ TEST(Step, IsTheCutMadeAnewWhileAllThatBendsComesAndGoes) {
         lamp.position = {0, 0, 100};
         forest.model.lights = {lamp};
         walk(forest, view, 60, [&](View& next) {
-            Modifiers& bends = next.modifiers;
+            QualityModifiers& bends = next.modifiers;
             DetailLens& lens = bends.lenses[forest.any() < 0.5 ? 0 : 1];
             switch (static_cast<int>(24 * forest.any())) {
                 case 0:
@@ -131,8 +131,9 @@ TEST(Step, IsTheCutMadeAnewWhileAllThatBendsComesAndGoes) {
                     bends.closing->position.x += 1;
                     break;
                 case 11:
-                    next.border = forest.any() < 0.5 ? std::optional<Border>()
-                                                     : std::optional<Border>({10, 20, 300, 200});
+                    next.border = forest.any() < 0.5
+                                      ? std::optional<RenderBorder>()
+                                      : std::optional<RenderBorder>({10, 20, 300, 200});
                     break;
                 default:
                     break;
@@ -159,7 +160,7 @@ TEST(Step, IsTheCutMadeAnewWhileALensThatHidesMoves) {
 TEST(Step, AMovedLensIsLookedAtWhereItIsAndWas) {
     // From 300 m each of 20 pairs is drawn as one; a lens opens the one that it lies on.
     const Model model = bent::pairs(40);
-    choose::Stepper stepper(table_of(model));
+    choose::CutStepper stepper(table_of(model));
     choose::Cut cut;
     View view = models::view_from(300);
     view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
@@ -168,15 +169,15 @@ TEST(Step, AMovedLensIsLookedAtWhereItIsAndWas) {
     view.modifiers.lenses[0].transform.offset.x += 1e3;
     stepper.step(view, cut);
     EXPECT_EQ(bent::drawn(model, cut).substr(0, 20), "pair 0 1, pair 1 1, ");
-    EXPECT_LE(stepper.looked_at(), 4u);  // the root, the pair, and what was below it
+    EXPECT_LE(stepper.decided_nodes(), 4u);  // the root, the pair, and what was below it
     stepper.step(view, cut);
-    EXPECT_EQ(stepper.looked_at(), 0u);
+    EXPECT_EQ(stepper.decided_nodes(), 0u);
 }
 
 TEST(Step, RefusesALensThatMakesNoSenseAndKeepsTheCut) {
     const Model model = bent::pairs(8);
     const auto table = table_of(model);
-    choose::Stepper stepper(table);
+    choose::CutStepper stepper(table);
     choose::Cut cut;
     View view = models::view_from(300);
     view.modifiers.lenses = {bent::lens(-1, 0.5, 4)};
@@ -188,5 +189,5 @@ TEST(Step, RefusesALensThatMakesNoSenseAndKeepsTheCut) {
     expect_same(cut, before);
     view.modifiers.lenses[0].strength = 2;
     stepper.step(view, cut);
-    expect_same(cut, choose::choose(*table, view));
+    expect_same(cut, choose::choose_cut(*table, view));
 }

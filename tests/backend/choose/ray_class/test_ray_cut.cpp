@@ -71,7 +71,7 @@ View view_of(RayMask rays, double distance = 20, double pixel_error = 1) {
 }
 
 RayCut shadow_cut(const Model& model, const View& view) {
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     std::vector<RayCut> rays = choose::choose_rays(model, view, cut, choose::shape_of);
     EXPECT_EQ(rays.size(), 1u);
     EXPECT_EQ(rays.at(0).states.size(), cut.chosen.size());
@@ -112,9 +112,9 @@ Affine wall() {  // a quad of 1 m becomes 16 x 8 m, upright, 6 m behind the ball
 TEST(RayCut, NothingIsAskedForByDefault) {
     const Model model = floating();
     const View view = view_of(0);
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     EXPECT_TRUE(choose::choose_rays(model, view, cut, choose::shape_of).empty());
-    const choose::Resident resident = choose::resident(model, cut, {});
+    const choose::ResidentSize resident = choose::resident_size(model, cut, {});
     EXPECT_EQ(resident.triangles, cut.triangles);
     EXPECT_EQ(resident.bytes, cut.bytes);
 }
@@ -122,7 +122,7 @@ TEST(RayCut, NothingIsAskedForByDefault) {
 TEST(RayCut, AFloatingBallThrowsTheShadowOfAnEllipsoidInsideIt) {
     const Model model = floating();
     const View view = view_of(kShadowRays);
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     const RayCut rays = shadow_cut(model, view);
     ASSERT_EQ(rays.own.size(), 1u);
     EXPECT_EQ(rays.states, (std::vector<RayState>{RayState::Own, RayState::Need}));
@@ -134,7 +134,7 @@ TEST(RayCut, AFloatingBallThrowsTheShadowOfAnEllipsoidInsideIt) {
     EXPECT_EQ(rays.triangles, cut.triangles - 1280);
     EXPECT_EQ(rays.met, 2u);
     // Both are in memory
-    const choose::Resident both = choose::resident(model, cut, {rays});
+    const choose::ResidentSize both = choose::resident_size(model, cut, {rays});
     EXPECT_EQ(both.triangles, cut.triangles);
     EXPECT_EQ(both.bytes, cut.bytes + kBytesPerOccurrence + kBytesPerPrimitive);
 }
@@ -226,7 +226,7 @@ TEST(RayCut, OtherCriteriaAndKindsHaveNothingOfTheirOwn) {
     view.kinds = mask_of(Kind::Mesh);
     EXPECT_EQ(shadow_cut(model, view).states.at(0), RayState::Need);
     view = view_of(kShadowRays, 20, 1e-6);
-    view.modifiers.criterion = Criterion::Feature;
+    view.modifiers.criterion = DetailCriterion::Feature;
     EXPECT_EQ(shadow_cut(model, view).states.at(0), RayState::Need);
     view = view_of(kRadiosityRays);
     EXPECT_EQ(shadow_cut(model, view).states.at(0), RayState::Need);
@@ -249,7 +249,7 @@ TEST(RayCut, NoSampledEdgeOfAShadowIsFartherOffThanPixelError) {
         const glm::dvec3 light(8 * any(random), 8 * any(random), 22 + 8 * any(random));
         model.lights = {lamp(light)};
         const View view = view_of(kShadowRays, 60 + 30 * any(random), 1 + 0.5 * any(random));
-        const Cut cut = choose::choose(model, view);
+        const Cut cut = choose::choose_cut(model, view);
         const RayCut rays = shadow_cut(model, view);
         if (rays.own.empty() || cut.nodes[rays.own[0].node].lod != 0)
             continue;
@@ -290,7 +290,7 @@ TEST(RayCut, FinerPixelErrorsNeverGiveCoarserShadows) {
     for (int step = 0; step < 31; ++step) {
         const double error = 0.0625 * std::pow(1.25, step);
         const RayCut rays = shadow_cut(model, view_of(kShadowRays, 20, error));
-        if (own && choose::choose(model, view_of(0, 20, error)).nodes[1].lod == 0) {
+        if (own && choose::choose_cut(model, view_of(0, 20, error)).nodes[1].lod == 0) {
             EXPECT_EQ(rays.states.at(0), RayState::Own) << error;
         }
         own = own || rays.states.at(0) == RayState::Own;
@@ -309,7 +309,7 @@ TEST(RayCut, WhatThePictureDoesNotShowThrowsShadowsByItsGroup) {
     model.lights = {sun};
     for (Material& material : model.materials)
         material = rough();
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
     const RayCut rays = shadow_cut(model, view);
     EXPECT_EQ(rays.own.size(), 2u);
@@ -341,7 +341,7 @@ TEST(RayCut, WhatOnlyAMirrorShowsIsReplacedForAllRaysTogether) {
     // A shadow on itself would be seen in the mirror
     EXPECT_EQ(shadow_cut(model, view_of(kShadowRays)).states.at(3), RayState::Need);
     View view = view_of(kShadowRays | kReflectionRays, 20, 1);
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     ASSERT_EQ(cut.chosen.size(), 4u);
     EXPECT_EQ(cut.nodes[cut.chosen[3]].lod, 0u);
     const auto rays = choose::choose_rays(model, view, cut, choose::shape_of);
@@ -353,7 +353,7 @@ TEST(RayCut, WhatOnlyAMirrorShowsIsReplacedForAllRaysTogether) {
         EXPECT_LE(own.own.back().error_px, 1);
     }
     // Its original is in memory no more
-    const choose::Resident all = choose::resident(model, cut, rays);
+    const choose::ResidentSize all = choose::resident_size(model, cut, rays);
     EXPECT_EQ(all.triangles, cut.triangles - 1280);
     // Curved one way or another, it may show it as large as the eye would see it
     Model bent = mirrored(shapes::terrain(8), wall());
@@ -375,7 +375,7 @@ TEST(RayCut, AMirrorShowsAnEllipsoidAroundTheBall) {
     const RayCut rays = shadow_cut(model, view);
     ASSERT_EQ(rays.own.size(), 1u);
     EXPECT_GE(rays.own[0].scale, 1);
-    EXPECT_EQ(choose::choose(model, view).nodes[1].lod, 0u);
+    EXPECT_EQ(choose::choose_cut(model, view).nodes[1].lod, 0u);
     // The mirror shows itself as it is
     EXPECT_EQ(rays.states.at(2), RayState::Need);
 }
@@ -414,7 +414,7 @@ TEST(RayCut, NonsenseIsTheCamerasOrRefused) {
     Model model = floating();
     View view = view_of(kShadowRays | kReflectionRays);
     view.camera.position = {0, 0, 5};  // inside the ball
-    const Cut cut = choose::choose(model, view);
+    const Cut cut = choose::choose_cut(model, view);
     for (const RayCut& rays : choose::choose_rays(model, view, cut, choose::shape_of))
         EXPECT_TRUE(rays.own.empty());
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -33,7 +33,7 @@ void expect_round_trip(const Mesh& mesh) {
 }
 
 Mesh random_mesh(uint64_t seed, size_t vertices, size_t triangles) {
-    Random random(seed);
+    PcgRandom random(seed);
     Mesh mesh;
     for (size_t i = 0; i < vertices; ++i) {
         const auto number = [&] { return static_cast<float>(random.uniform() * 4 - 2); };
@@ -219,7 +219,7 @@ TEST(Glb, ModelsRoundTrip) {
 }
 
 TEST(Glb, ShearedAndFlattenedPlacementsStayWhereTheyAre) {
-    Random random(5);
+    PcgRandom random(5);
     for (int round = 0; round < 50; ++round) {
         Model model;
         Object cube;

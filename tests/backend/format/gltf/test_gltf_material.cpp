@@ -15,7 +15,7 @@ namespace lodestone::format {
 namespace {
 
 using namespace gltf_text;
-using image::Sampler;
+using image::TextureSampler;
 
 std::filesystem::path folder() {
     std::filesystem::path path = own_scratch();
@@ -42,17 +42,17 @@ TEST(GltfMaterial, TexturesKeepTheirFactorsChannelsAndLayout) {
                 m.normal_texture);
     EXPECT_EQ(base.picture->hash, picture->hash);
     EXPECT_EQ(base.scale, glm::dvec3(0.5, 1, 0.25));
-    EXPECT_EQ(base.extension, Extension::Extend);
-    EXPECT_EQ(base.interpolation, Interpolation::Closest);
+    EXPECT_EQ(base.extension, TextureExtension::Extend);
+    EXPECT_EQ(base.interpolation, TextureInterpolation::Closest);
     expect_near(m.base_color, glm::dvec3(0.5, 1, 0.25) * glm::dvec3(picture->mean), 1e-12);
     EXPECT_EQ(m.alpha, 1);  // opaque
     EXPECT_FALSE(m.alpha_texture);
-    EXPECT_EQ(m.roughness_texture.channel, Channel::Green);
+    EXPECT_EQ(m.roughness_texture.channel, TextureChannel::Green);
     EXPECT_EQ(m.roughness_texture.scale.x, 0.25);
     EXPECT_EQ(m.roughness_texture.picture->space, ColorSpace::Linear);
-    EXPECT_EQ(m.roughness_texture.extension, Extension::Repeat);
+    EXPECT_EQ(m.roughness_texture.extension, TextureExtension::Repeat);
     EXPECT_NEAR(m.roughness, 0.25 * linear.y, 1e-12);
-    EXPECT_EQ(m.metallic_texture.channel, Channel::Blue);
+    EXPECT_EQ(m.metallic_texture.channel, TextureChannel::Blue);
     EXPECT_NEAR(m.metallic, 0.5 * linear.z, 1e-12);
     EXPECT_EQ(m.emission_texture.scale, glm::dvec3(8, 4, 0));
     expect_near(m.emission, glm::dvec3(8, 4, 0) * glm::dvec3(picture->mean), 1e-12);
@@ -63,7 +63,7 @@ TEST(GltfMaterial, TexturesKeepTheirFactorsChannelsAndLayout) {
 TEST(GltfMaterial, EveryTexelIsWhereGltfPutsIt) {
     const PicturePtr picture = many_texels(8, 4, ColorSpace::Srgb);
     const image::Image texels = image::decoded(*picture);
-    Random random(3);
+    PcgRandom random(3);
     for (int round = 0; round < 20; ++round) {
         const double ox = random.uniform() - 0.5, oy = random.uniform() - 0.5;
         const double turn = 7 * random.uniform();
@@ -76,8 +76,8 @@ TEST(GltfMaterial, EveryTexelIsWhereGltfPutsIt) {
         // What was written has six digits.
         const auto six = [](double x) { return std::stod(text(x)); };
         Texture closest = m.base_color_texture;
-        closest.interpolation = Interpolation::Closest;
-        const Sampler sampler(closest, {});
+        closest.interpolation = TextureInterpolation::Closest;
+        const TextureSampler sampler(closest, {});
         for (int i = 0; i < 50; ++i) {
             const double u = 2 * random.uniform(), v = 2 * random.uniform();  // glTF's, v down
             // KHR_texture_transform: turned against the clock as one looks at the picture.
@@ -107,7 +107,7 @@ TEST(GltfMaterial, AlphaIsTheFactorTimesThePictures) {
     };
     const Material blend = read_with(R"("alphaMode":"BLEND",)", picture);
     EXPECT_EQ(blend.alpha_mode, AlphaMode::Blend);
-    EXPECT_EQ(blend.alpha_texture.channel, Channel::Alpha);
+    EXPECT_EQ(blend.alpha_texture.channel, TextureChannel::Alpha);
     EXPECT_EQ(blend.alpha_texture.scale.x, 0.5);
     EXPECT_NEAR(blend.alpha, 0.5 * picture->mean.w, 1e-12);
     const Material mask = read_with(R"("alphaMode":"MASK","alphaCutoff":0.25,)", picture);
@@ -307,7 +307,8 @@ TEST(GltfMaterial, WhatIsSimplifiedIsNamed) {
     std::string striped =
         with_material(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})", picture);
     striped.replace(striped.find(R"("samplers":[{})"), 14, R"("samplers":[{"wrapT":33071})");
-    EXPECT_EQ(only_material(striped, problems).base_color_texture.extension, Extension::Repeat);
+    EXPECT_EQ(only_material(striped, problems).base_color_texture.extension,
+              TextureExtension::Repeat);
     EXPECT_TRUE(has(problems, "texture_simplified"));
     problems.clear();
     m = only_material(with_material(R"({"extensions":{"KHR_materials_transmission":{
@@ -322,7 +323,7 @@ TEST(GltfMaterial, WhatIsSimplifiedIsNamed) {
 TEST(GltfMaterial, PicturesShownTooOftenAreRefused) {
     image::Image image;
     image.width = image.height = 256;
-    Random random(1);
+    PcgRandom random(1);
     for (size_t i = 0; i < 4 * image.size(); ++i)
         image.pixels.push_back(static_cast<float>(random.uniform()));
     const std::string bytes = image::png_bytes(image);  // 256 KiB

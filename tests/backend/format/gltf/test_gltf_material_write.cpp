@@ -15,7 +15,7 @@ namespace lodestone::format {
 namespace {
 
 using namespace gltf_text;
-using image::Sampler;
+using image::TextureSampler;
 
 std::filesystem::path folder() {
     std::filesystem::path path = own_scratch();
@@ -24,7 +24,7 @@ std::filesystem::path folder() {
 }
 
 /// Everything a material can say, at random.
-Material any_material(Random& random, int depth = 0) {
+Material any_material(PcgRandom& random, int depth = 0) {
     static const std::vector<PicturePtr> kPictures{
         many_texels(4, 4, ColorSpace::Srgb),       many_texels(4, 4, ColorSpace::Srgb, true),
         many_texels(4, 4, ColorSpace::Linear),     many_texels(6, 3, ColorSpace::Linear, true),
@@ -40,14 +40,14 @@ Material any_material(Random& random, int depth = 0) {
             out = last;
         } else {
             out.picture = kPictures[static_cast<size_t>(below(6))];
-            out.extension = static_cast<Extension>(below(4));
-            out.interpolation = static_cast<Interpolation>(below(2));
+            out.extension = static_cast<TextureExtension>(below(4));
+            out.interpolation = static_cast<TextureInterpolation>(below(2));
             if (below(2) == 0)
                 out.to_picture = {random.uniform(), 0, random.uniform(), 0, -random.uniform(), 1};
             if (below(4) == 0)
                 out.to_picture = {random.uniform(), 0.3, 0, 0.1, random.uniform(), 0.1};  // shears
         }
-        out.channel = static_cast<Channel>(below(6));
+        out.channel = static_cast<TextureChannel>(below(6));
         if (below(2) == 0)
             out.scale = {random.uniform(), 2 * random.uniform(), random.uniform()};
         if (below(3) == 0)
@@ -87,7 +87,7 @@ Material any_material(Random& random, int depth = 0) {
 TEST(GltfMaterialWritten, EveryMaterialComesBackBitForBit) {
     EXPECT_EQ(hash_of(back_of(write_glb(model_of(Material{})))), hash_of(Material{}));
     for (uint64_t seed = 0; seed < 200; ++seed) {
-        Random random(seed, 11);
+        PcgRandom random(seed, 11);
         const Material m = any_material(random);
         const std::string glb = write_glb(model_of(m));
         EXPECT_EQ(hash_of(back_of(glb)), hash_of(m)) << seed;
@@ -117,9 +117,9 @@ TEST(GltfMaterialWritten, NearDefaultsAndExrPicturesComeBackToo) {
 TEST(GltfMaterialWritten, StrangersSeeTheSameSurface) {
     const auto compare = [](const Texture& ours, const glm::dvec3& our_color, const Texture& theirs,
                             const glm::dvec3& their_color, const glm::dvec3& limit) {
-        const Sampler a(ours, our_color);
-        const Sampler b(theirs, their_color);
-        Random random(5);
+        const TextureSampler a(ours, our_color);
+        const TextureSampler b(theirs, their_color);
+        PcgRandom random(5);
         for (int i = 0; i < 40; ++i) {
             const glm::dvec2 uv(4 * random.uniform() - 2, 4 * random.uniform() - 2);
             const glm::dvec3 wanted = glm::min(a.color(uv), limit);
@@ -131,9 +131,9 @@ TEST(GltfMaterialWritten, StrangersSeeTheSameSurface) {
     for (int round = 0; round < 24; ++round) {
         Texture texture;
         texture.picture = round % 2 == 0 ? srgb : linear;
-        texture.channel = static_cast<Channel>(round % 6);
-        texture.extension = static_cast<Extension>(round % 4);
-        texture.interpolation = Interpolation::Closest;
+        texture.channel = static_cast<TextureChannel>(round % 6);
+        texture.extension = static_cast<TextureExtension>(round % 4);
+        texture.interpolation = TextureInterpolation::Closest;
         const double c = std::cos(0.1 * round), s = std::sin(0.1 * round);
         texture.to_picture = {1.5 * c, -0.7 * s, 0.2, 1.5 * s, 0.7 * c, -0.1};
         if (round % 3 != 0) {
@@ -153,11 +153,11 @@ TEST(GltfMaterialWritten, StrangersSeeTheSameSurface) {
         EXPECT_FALSE(seen.metallic_texture && seen.metallic > 0) << round;
         compare(m.base_color_texture, {}, seen.base_color_texture, {}, glm::dvec3(1.0));
         compare(m.normal_texture, {}, seen.normal_texture, {}, glm::dvec3(1.0));
-        const Sampler ours(m.roughness_texture, {});
-        const Sampler theirs(seen.roughness_texture, {});
-        const Sampler our_glow(m.emission_texture, {});
-        const Sampler their_glow(seen.emission_texture, {});
-        Random random(9);
+        const TextureSampler ours(m.roughness_texture, {});
+        const TextureSampler theirs(seen.roughness_texture, {});
+        const TextureSampler our_glow(m.emission_texture, {});
+        const TextureSampler their_glow(seen.emission_texture, {});
+        PcgRandom random(9);
         for (int i = 0; i < 40; ++i) {
             const glm::dvec2 uv(2 * random.uniform(), 2 * random.uniform());
             EXPECT_NEAR(theirs.number(uv), std::min(ours.number(uv), 1.0), 0.004) << round;
@@ -170,16 +170,18 @@ TEST(GltfMaterialWritten, StrangersSeeTheHolesOfOtherPictures) {
     Material m;
     m.base_color_texture.picture = many_texels(4, 4, ColorSpace::Srgb);
     m.alpha_texture.picture = many_texels(8, 4, ColorSpace::Linear);
-    m.alpha_texture.channel = Channel::Red;
-    m.base_color_texture.interpolation = m.alpha_texture.interpolation = Interpolation::Closest;
+    m.alpha_texture.channel = TextureChannel::Red;
+    m.base_color_texture.interpolation = m.alpha_texture.interpolation =
+        TextureInterpolation::Closest;
     m.alpha_mode = AlphaMode::Clip;
     m.alpha_cutoff = 0.25;
     const Material seen = back_of(for_strangers(write_glb(model_of(m))));
     EXPECT_EQ(seen.alpha_mode, AlphaMode::Clip);
     EXPECT_EQ(seen.alpha_cutoff, 0.25);
     ASSERT_TRUE(seen.alpha_texture && seen.base_color_texture);
-    const Sampler ours(m.alpha_texture, {}), theirs(seen.alpha_texture, {});
-    const Sampler our_color(m.base_color_texture, {}), their_color(seen.base_color_texture, {});
+    const TextureSampler ours(m.alpha_texture, {}), theirs(seen.alpha_texture, {});
+    const TextureSampler our_color(m.base_color_texture, {}),
+        their_color(seen.base_color_texture, {});
     for (double u = 0.01; u < 1; u += 0.03) {
         EXPECT_NEAR(theirs.number({u, 0.3}), ours.number({u, 0.3}), 0.003);
         expect_near(their_color.color({u, 0.3}), our_color.color({u, 0.3}), 0.003);
@@ -201,8 +203,8 @@ TEST(GltfMaterialWritten, PicturesAreInTheFileOnce) {
         Material m;
         m.base_color_texture.picture = srgb;
         m.roughness_texture.picture = m.metallic_texture.picture = linear;
-        m.roughness_texture.channel = Channel::Green;
-        m.metallic_texture.channel = Channel::Blue;
+        m.roughness_texture.channel = TextureChannel::Green;
+        m.metallic_texture.channel = TextureChannel::Blue;
         m.bump_texture.picture = linear;
         m.roughness = i / 10.0;
         Mesh mesh = shapes::quad(1, 1);
@@ -264,7 +266,7 @@ TEST(GltfMaterialWritten, StoredMeshesNameTheStoresPictures) {
     Material m;
     m.base_color_texture.picture = models::checker();
     m.emission_texture.picture = models::checker();
-    m.emission_texture.channel = Channel::Luma;  // glTF cannot say it
+    m.emission_texture.channel = TextureChannel::Luma;  // glTF cannot say it
     Mesh mesh = shapes::quad(1, 1);
     const std::string bare = write_glb_mesh(mesh, {&m, 1}, "quad");
     EXPECT_EQ(bare.find("\"images\""), std::string::npos);  // no uvs: nothing to show it by
@@ -315,7 +317,7 @@ TEST(GltfMaterialWritten, SimplifiedModelsKeepTheirPictures) {
 }
 
 TEST(GltfMaterialWritten, DamagedTexturedFilesNeverCrash) {
-    Random random(4, 11);
+    PcgRandom random(4, 11);
     Material m = any_material(random);
     m.base_color_texture.picture = models::checker();
     m.other = std::make_shared<Material>(m);
@@ -328,7 +330,7 @@ TEST(GltfMaterialWritten, DamagedTexturedFilesNeverCrash) {
         for (const Material& material : model.materials) {
             EXPECT_TRUE(std::isfinite(material.base_color.x));
             for_each_texture(material, [](const Texture& texture) {
-                EXPECT_TRUE(std::isfinite(Sampler(texture, {}).color({0.3, 0.4}).x));
+                EXPECT_TRUE(std::isfinite(TextureSampler(texture, {}).color({0.3, 0.4}).x));
             });
         }
         write_glb(model);

@@ -37,13 +37,13 @@ Mesh without(const Mesh& mesh, uint16_t slot) {
 double error_of(const Mesh& stand_in, std::span<const Material> own) {
     const Mesh finest = lamp();
     const std::vector<Material> truth = materials();
-    measure::Looks palette;
+    measure::LookPalette palette;
     const std::vector<uint16_t> looks = palette.of(finest, truth);
     image::TexelCache texels;
     const measure::DeviationReference reference(
-        finest, {2048, 2048}, {looks, &palette, std::make_shared<ray::Skin>(truth, texels)});
+        finest, {2048, 2048}, {looks, &palette, std::make_shared<ray::MeshSkin>(truth, texels)});
     const std::vector<uint16_t> theirs = palette.of(stand_in, own);
-    return reference.of(stand_in, {theirs, &palette, std::make_shared<ray::Skin>(own, texels)})
+    return reference.of(stand_in, {theirs, &palette, std::make_shared<ray::MeshSkin>(own, texels)})
         .error;
 }
 
@@ -91,7 +91,7 @@ TEST_F(Glow, ALampThatIsGoneIsMissedHoweverNearItsGlobeIs) {
 }
 
 TEST_F(Glow, GlassAndWhatGlowsAreNoneOfTheirColorsLooks) {
-    measure::Looks looks;
+    measure::LookPalette looks;
     Material plain = models::colored("plain", {0.9, 0.95, 0.95});
     Material glass = plain;
     glass.transmission = 1;
@@ -121,9 +121,10 @@ TEST_F(Glow, GlassShowsWhatIsInItLargerByItsIndex) {
         globe.normals.push_back(glm::normalize(position));
     std::vector<Material> in_glass = truth;
     in_glass[kBulb].base_color = bare[kBulb].base_color = {0, 0, 0};
-    const measure::AgreementReference pictures(globe, std::make_shared<ray::Skin>(bare, texels), 1);
-    const measure::Agreement seen =
-        pictures.of(globe, std::make_shared<ray::Skin>(in_glass, texels));
+    const measure::AgreementReference pictures(globe, std::make_shared<ray::MeshSkin>(bare, texels),
+                                               1);
+    const measure::PictureAgreement seen =
+        pictures.of(globe, std::make_shared<ray::MeshSkin>(in_glass, texels));
     EXPECT_NEAR(1 / seen.light.x, 1.45 * 1.45, 0.06 * 1.45 * 1.45);
     EXPECT_NEAR(seen.coverage, 1.45 * 1.45, 0.06 * 1.45 * 1.45);
 }
@@ -146,7 +147,7 @@ TEST_F(Glow, EveryLevelOfALampSendsAsMuchLight) {
         std::vector<Material> own;
         for (const uint32_t index : level.materials)
             own.push_back(model.materials[index]);
-        return std::make_shared<const ray::Skin>(own, texels);
+        return std::make_shared<const ray::MeshSkin>(own, texels);
     };
     for (size_t i = 1; i < object.representations.size(); ++i) {
         const Representation& level = object.representations[i];

@@ -25,7 +25,7 @@ ray::SkinPtr skin_of(const Model& model, const Representation& level, image::Tex
     std::vector<Material> materials;
     for (const uint32_t index : level.materials)
         materials.push_back(model.materials[index]);
-    return std::make_shared<const ray::Skin>(materials, texels);
+    return std::make_shared<const ray::MeshSkin>(materials, texels);
 }
 
 Mesh drawn(const Representation& level) {
@@ -46,7 +46,7 @@ Mesh drawn(const Representation& level) {
 void expect_as_bright(Model& model, const std::string& name, size_t fewest_levels,
                       double uncovered) {
     Problems problems;
-    hierarchy::build_hierarchy(model, segment::Store(scratch(name)), hierarchy::Settings{},
+    hierarchy::build_hierarchy(model, segment::Store(scratch(name)), hierarchy::BuildSettings{},
                                problems, {});
     const Object& object = model.objects[model.root];
     const Representation& finest = object.representations[0];
@@ -64,7 +64,8 @@ void expect_as_bright(Model& model, const std::string& name, size_t fewest_level
         glm::dvec3 light(0.0);
         double coverage = 0;
         for (const auto& truth : truths) {
-            const measure::Agreement seen = truth->of(drawn(level), skin_of(model, level, texels));
+            const measure::PictureAgreement seen =
+                truth->of(drawn(level), skin_of(model, level, texels));
             light += seen.light / static_cast<double>(truths.size());
             coverage += seen.coverage / static_cast<double>(truths.size());
         }
@@ -82,7 +83,7 @@ void expect_as_bright(Model& model, const std::string& name, size_t fewest_level
 
 /// Shelves (slot 0) with books (slot 1) on them, open to the front.
 Mesh bookcase() {
-    Random random(2);
+    PcgRandom random(2);
     Mesh mesh;
     for (int shelf = 0; shelf < 5; ++shelf)
         append(mesh, shapes::box({0, 0, 0.5 * shelf}, {1.6, 0.4, 0.5 * shelf + 0.04}), {});
@@ -175,7 +176,7 @@ TEST_F(Brightness, PagesShowAtTheSidesOfABookThatIsABox) {
     model.materials.push_back(models::colored("paper", glm::dvec3(0.8)));
     summarize(finest, model);
     Problems problems;
-    hierarchy::build_hierarchy(model, segment::Store(scratch("book")), hierarchy::Settings{},
+    hierarchy::build_hierarchy(model, segment::Store(scratch("book")), hierarchy::BuildSettings{},
                                problems, {});
     const Representation& last = model.objects[model.root].representations.back();
     ASSERT_EQ(last.summary.kind, Kind::Mesh);

@@ -8,7 +8,7 @@ using namespace lodestone;
 
 namespace {
 
-class Judge : public WithRays {};
+class StandInEvaluator : public WithRays {};
 
 constexpr double kThick = 0.04;
 constexpr double kCover = 0.003;
@@ -23,7 +23,7 @@ Mesh book(double low, uint16_t paper, uint16_t cover) {
 
 }  // namespace
 
-TEST_F(Judge, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
+TEST_F(StandInEvaluator, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     // Alone a book shows its dark covers above all, in a pile its paper.
     const glm::dvec3 paper(0.8);
     const glm::dvec3 cover(0.05);
@@ -40,7 +40,7 @@ TEST_F(Judge, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     const std::vector<Material> materials{models::colored("paper", paper),
                                           models::colored("cover", cover)};
     image::TexelCache texels;
-    hierarchy::Judge judge(pile, materials, texels, {}, false, 1, 0.001, {});
+    hierarchy::StandInEvaluator judge(pile, materials, texels, {}, false, 1, 0.001, {});
     constexpr double kError = 0.2;  // metres: pixels of a third of the pile
     const auto alike = [&](const Mesh& drawn, double brightness, const glm::dvec3& other) {
         return judge.looks_alike(drawn,

@@ -25,13 +25,13 @@ Model scene_at(int frame, uint32_t cells = 32) {
     for (glm::vec3& p : sheet.positions)
         p.z = 0.02f * static_cast<float>(frame) *
               std::sin(9 * p.x + 0.3f * static_cast<float>(frame));
-    Pose pose;
+    PosedSurface pose;
     pose.connectivity = Hasher().array(std::span<const Triangle>(sheet.triangles)).result();
     pose.points = sheet.positions;
     pose.triangles = sheet.triangles;
     const ObjectIndex flag = models::add_leaf(model, "flag", std::move(sheet));
     model.objects[flag].deforms = true;
-    model.objects[flag].pose = std::make_shared<const Pose>(std::move(pose));
+    model.objects[flag].pose = std::make_shared<const PosedSurface>(std::move(pose));
     const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(0.3, 3));
     model.root = models::add_group(
         model, "scene", {{flag, Affine{}, "flag"}, {ball, models::moved(0, 0, -2), "ball"}});
@@ -40,7 +40,7 @@ Model scene_at(int frame, uint32_t cells = 32) {
 
 struct Built {
     Model model;
-    hierarchy::Report report;
+    hierarchy::BuildReport report;
     Problems problems;
 
     const Object& flag() const { return model.objects[0]; }
@@ -55,7 +55,7 @@ struct Built {
 Built build_frame(int frame, const fs::path& folder, const std::vector<Model>& poses,
                   uint32_t cells = 32) {
     Built built{scene_at(frame, cells), {}, {}};
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
     built.report = hierarchy::build_hierarchy(built.model, segment::Store(folder), settings,
@@ -228,15 +228,15 @@ TEST_F(Followed, DamagedBoundLevelsAreMadeAgain) {
 
 TEST_F(Followed, PosesThatAreNoNumbersAreNotUsed) {
     std::vector<Model> poses = some_poses();
-    Pose broken = *poses[0].objects[0].pose;
+    PosedSurface broken = *poses[0].objects[0].pose;
     broken.points[0].x = std::numeric_limits<float>::quiet_NaN();
-    poses[0].objects[0].pose = std::make_shared<const Pose>(broken);
+    poses[0].objects[0].pose = std::make_shared<const PosedSurface>(broken);
     const fs::path folder = scratch("nan");
     EXPECT_GT(build_frame(3, folder, poses).flag().representations.size(), 1u);
     // A frame's own broken point: nothing hangs on it, or the level is left out.
     Model model = scene_at(3);
-    model.objects[0].pose = std::make_shared<const Pose>(broken);
-    hierarchy::Settings settings;
+    model.objects[0].pose = std::make_shared<const PosedSurface>(broken);
+    hierarchy::BuildSettings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
     Problems problems;
@@ -247,7 +247,7 @@ TEST_F(Followed, PosesThatAreNoNumbersAreNotUsed) {
 TEST_F(Followed, ACancelledBuildLeavesTheModelAsItWas) {
     const std::vector<Model> poses = some_poses();
     Model model = scene_at(3);
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     for (const Model& pose : poses)
         settings.poses.push_back(&pose);
     volatile int32_t cancel = 1;

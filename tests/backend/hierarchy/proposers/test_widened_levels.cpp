@@ -36,8 +36,9 @@ Attributes attributes_of(const Mesh& mesh) {
     return measure::measure_visible(mesh, std::span<const Material>{}, {}).attributes;
 }
 
-hierarchy::Candidate level_of(const Mesh& mesh, const std::vector<Material>& own, double error) {
-    hierarchy::Candidate out;
+hierarchy::StandInCandidate level_of(const Mesh& mesh, const std::vector<Material>& own,
+                                     double error) {
+    hierarchy::StandInCandidate out;
     out.mesh = std::make_shared<const Mesh>(mesh);
     out.materials = own;
     out.error = out.max_error = error;
@@ -45,13 +46,14 @@ hierarchy::Candidate level_of(const Mesh& mesh, const std::vector<Material>& own
 }
 
 /// What becomes of one level of `finest` with that error.
-std::vector<hierarchy::Candidate> widened(const Mesh& finest, const std::vector<Material>& own,
-                                          const Mesh& level, double error) {
+std::vector<hierarchy::StandInCandidate> widened(const Mesh& finest,
+                                                 const std::vector<Material>& own,
+                                                 const Mesh& level, double error) {
     image::TexelCache texels;
-    hierarchy::Judge judge(finest, own, texels, {}, false, 1, 0, {});
+    hierarchy::StandInEvaluator judge(finest, own, texels, {}, false, 1, 0, {});
     judge.measure_finest(finest, {});
-    std::vector<hierarchy::Candidate> kept{level_of(level, own, error)};
-    hierarchy::widen(kept, finest, own, texels, 1, judge, {});
+    std::vector<hierarchy::StandInCandidate> kept{level_of(level, own, error)};
+    hierarchy::widen_thin_parts(kept, finest, own, texels, 1, judge, {});
     return kept;
 }
 
@@ -60,10 +62,10 @@ std::vector<hierarchy::Candidate> widened(const Mesh& finest, const std::vector<
 TEST_F(Widen, APostBecomesABoxOfItsLengthAndOfTheSameAreaTimesOpacity) {
     const Mesh post = shapes::box({-0.05, -0.05, 0}, {0.05, 0.05, 3});
     const Attributes attributes = attributes_of(post);
-    const auto thin = solids::thin_of(post, attributes);
+    const auto thin = solids::find_thin_part(post, attributes);
     ASSERT_TRUE(thin);
     EXPECT_NEAR(thin->thickness(), 0.1, 0.01);
-    const solids::Clear clear = solids::widened(*thin, 0.5, 0);
+    const solids::ClearSolid clear = solids::widened_box(*thin, 0.5, 0);
     EXPECT_NEAR(clear.primitive.half_size.x, 1.5, 1e-6);
     EXPECT_EQ(clear.primitive.half_size.y, 0.25);
     EXPECT_EQ(clear.primitive.half_size.z, 0.25);
@@ -80,12 +82,12 @@ TEST_F(Widen, APostBecomesABoxOfItsLengthAndOfTheSameAreaTimesOpacity) {
 
 TEST_F(Widen, OnlyWhatIsLongAndThinBothWaysIsThin) {
     const Mesh cube = shapes::cube();
-    EXPECT_FALSE(solids::thin_of(cube, attributes_of(cube)));
+    EXPECT_FALSE(solids::find_thin_part(cube, attributes_of(cube)));
     const Mesh board = shapes::box({0, 0, 0}, {0.02, 1, 3});
-    EXPECT_FALSE(solids::thin_of(board, attributes_of(board)));
-    EXPECT_FALSE(solids::thin_of(Mesh{}, {}));
+    EXPECT_FALSE(solids::find_thin_part(board, attributes_of(board)));
+    EXPECT_FALSE(solids::find_thin_part(Mesh{}, {}));
     const Mesh line = shapes::box({0, 0, 0}, {0, 0, 3});
-    EXPECT_FALSE(solids::thin_of(line, attributes_of(line)));
+    EXPECT_FALSE(solids::find_thin_part(line, attributes_of(line)));
 }
 
 TEST_F(Widen, AnOpaquePostOfALevelIsDrawnAsWideAsTheErrorAndAsClear) {
@@ -117,14 +119,14 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
     image::TexelCache texels;
     const std::vector<Material> own = materials();
     const Mesh finest = lamp();
-    hierarchy::Judge judge(finest, own, texels, {}, false, 1, 0, {});
+    hierarchy::StandInEvaluator judge(finest, own, texels, {}, false, 1, 0, {});
     judge.measure_finest(finest, {});
     const std::vector<size_t> targets{90, 60, 40};
     const std::vector<Mesh> levels = simplify::simplify_chain(finest, targets);
-    std::vector<hierarchy::Candidate> kept{level_of(levels[0], own, 0.05),
-                                           level_of(levels[1], own, 0.2),
-                                           level_of(levels[2], own, 1.5)};
-    hierarchy::widen(kept, finest, own, texels, 1, judge, {});
+    std::vector<hierarchy::StandInCandidate> kept{level_of(levels[0], own, 0.05),
+                                                  level_of(levels[1], own, 0.2),
+                                                  level_of(levels[2], own, 1.5)};
+    hierarchy::widen_thin_parts(kept, finest, own, texels, 1, judge, {});
     ASSERT_GE(kept.size(), 3u);
     EXPECT_EQ(kept[0].mesh->positions, levels[0].positions);
     for (size_t i = 1; i < kept.size(); ++i) {
@@ -136,9 +138,9 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
 
 TEST_F(Widen, ARailNearTheGroundDoesNotSinkIntoIt) {
     const Mesh rail = shapes::box({-2, -0.02, 0.1}, {2, 0.02, 0.14});
-    const auto thin = solids::thin_of(rail, attributes_of(rail));
+    const auto thin = solids::find_thin_part(rail, attributes_of(rail));
     ASSERT_TRUE(thin);
-    const solids::Clear clear = solids::widened(*thin, 0.6, 0);
+    const solids::ClearSolid clear = solids::widened_box(*thin, 0.6, 0);
     EXPECT_GE(bound_of_box(clear.primitive).box.low.z, -1e-6);
     EXPECT_NEAR(clear.opacity * solids::box_shell(clear.primitive.half_size).area,
                 thin->visible_area, 1e-9);
@@ -190,7 +192,7 @@ TEST_F(Widen, PostsWithoutThicknessAreNoTrouble) {
     mesh.triangles.emplace_back(last - 2, last - 1, last);
     mesh.slots.push_back(kPost);
     mesh.normals.clear();
-    for (const hierarchy::Candidate& made : widened(mesh, materials(), lamp(), 0.25)) {
+    for (const hierarchy::StandInCandidate& made : widened(mesh, materials(), lamp(), 0.25)) {
         EXPECT_TRUE(std::isfinite(made.error));
         for (const Material& material : made.materials)
             EXPECT_TRUE(material.alpha >= 0 && material.alpha <= 1) << material.alpha;

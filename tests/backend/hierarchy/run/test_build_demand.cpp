@@ -22,16 +22,16 @@ View view_from(double distance) {
     return view;
 }
 
-hierarchy::Settings settings_for(double distance, double share) {
-    hierarchy::Settings settings;
-    settings.demand = hierarchy::Demand{view_from(distance), share};
+hierarchy::BuildSettings settings_for(double distance, double share) {
+    hierarchy::BuildSettings settings;
+    settings.demand = hierarchy::BuildDemand{view_from(distance), share};
     return settings;
 }
 
-hierarchy::Report build_in(Model& model, const fs::path& folder,
-                           const hierarchy::Settings& settings) {
+hierarchy::BuildReport build_in(Model& model, const fs::path& folder,
+                                const hierarchy::BuildSettings& settings) {
     Problems problems;
-    const hierarchy::Report report =
+    const hierarchy::BuildReport report =
         hierarchy::build_hierarchy(model, segment::Store(folder), settings, problems, {});
     EXPECT_TRUE(problems.empty()) << problems[0].message;
     return report;
@@ -51,16 +51,17 @@ Model three(double near) {
     return model;
 }
 
-std::vector<hierarchy::Stale> everything(const Model& model) {
-    std::vector<hierarchy::Stale> stale;
+std::vector<hierarchy::StaleObject> everything(const Model& model) {
+    std::vector<hierarchy::StaleObject> stale;
     for (const ObjectIndex index : bottom_up(model))
         stale.push_back({index, {}});
     return stale;
 }
 
-std::vector<std::string> called_names(const Model& model, const hierarchy::Settings& settings) {
-    const std::vector<hierarchy::Stale> stale = everything(model);
-    const std::vector<uint8_t> called = hierarchy::called_for(model, stale, settings, {});
+std::vector<std::string> called_names(const Model& model,
+                                      const hierarchy::BuildSettings& settings) {
+    const std::vector<hierarchy::StaleObject> stale = everything(model);
+    const std::vector<uint8_t> called = hierarchy::select_demanded(model, stale, settings, {});
     std::vector<std::string> names;
     for (size_t i = 0; i < stale.size(); ++i) {
         if (called[i] != 0)
@@ -73,20 +74,20 @@ using Names = std::vector<std::string>;
 
 }  // namespace
 
-TEST(Demand, OfNothingStaleCallsForNothing) {
+TEST(BuildDemand, OfNothingStaleCallsForNothing) {
     const Model model = three(1.1);
-    EXPECT_TRUE(hierarchy::called_for(model, {}, settings_for(0, 1), {}).empty());
+    EXPECT_TRUE(hierarchy::select_demanded(model, {}, settings_for(0, 1), {}).empty());
 }
 
-TEST(Demand, WithoutTimeCallsForNothing) {
+TEST(BuildDemand, WithoutTimeCallsForNothing) {
     EXPECT_EQ(called_names(three(1.1), settings_for(0, 0)), Names{});
 }
 
-TEST(Demand, CallsForWhatIsFarAndHasManyTriangles) {
+TEST(BuildDemand, CallsForWhatIsFarAndHasManyTriangles) {
     EXPECT_EQ(called_names(three(1.1), settings_for(0, 1)), Names{"far"});
 }
 
-TEST(Demand, CallsForNothingThatAnotherStandInDrawsAlready) {
+TEST(BuildDemand, CallsForNothingThatAnotherStandInDrawsAlready) {
     Model model = three(500);
     Representation box;
     box.summary = {Kind::Box, 0.1, 0.1, model.objects[model.root].bound(), {0, 1500}, 7};
@@ -95,21 +96,21 @@ TEST(Demand, CallsForNothingThatAnotherStandInDrawsAlready) {
     EXPECT_EQ(called_names(model, settings_for(0, 100)), Names{});
 }
 
-TEST(Demand, CallsForGroupsOnlyWhenAllBelowIsThere) {
+TEST(BuildDemand, CallsForGroupsOnlyWhenAllBelowIsThere) {
     const Model rows = models::row_of_balls(200);
     const Names all = called_names(rows, settings_for(3000, 100));
     EXPECT_EQ(all, (Names{"ball", "pair", "row"}));
     // Half a share less than all of it takes leaves out the last, not the first.
     double seconds = 0;
-    for (const hierarchy::Stale& stale : everything(rows))
+    for (const hierarchy::StaleObject& stale : everything(rows))
         seconds += hierarchy::seconds_to_build(rows.objects[stale.index], {});
     const View view = view_from(3000);
-    const double picture = hierarchy::seconds_to_draw(rows, choose::choose(rows, view), view);
+    const double picture = hierarchy::seconds_to_draw(rows, choose::choose_cut(rows, view), view);
     EXPECT_EQ(called_names(rows, settings_for(3000, 0.9 * seconds / picture)),
               (Names{"ball", "pair"}));
 }
 
-TEST(Demand, MovedAndEnlargedTogetherCallsForTheSame) {
+TEST(BuildDemand, MovedAndEnlargedTogetherCallsForTheSame) {
     // A scene ten times as large from ten times as far away.
     Model large = three(11);
     for (Object& object : large.objects) {
@@ -130,11 +131,11 @@ TEST(Demand, MovedAndEnlargedTogetherCallsForTheSame) {
               called_names(three(1.1), settings_for(0, 1)));
 }
 
-TEST(Demand, OfAViewOfNoDepthIsFinite) {
+TEST(BuildDemand, OfAViewOfNoDepthIsFinite) {
     // The camera in the middle of everything, a pixel as large as the world, one of no error.
     Model model = three(0);
     for (const double error : {0.0, 1e-300, 1e300}) {
-        hierarchy::Settings settings = settings_for(0, 1e9);
+        hierarchy::BuildSettings settings = settings_for(0, 1e9);
         settings.demand->view.pixel_error = error;
         const Names names = called_names(model, settings);
         EXPECT_LE(names.size(), 4U);
@@ -144,11 +145,11 @@ TEST(Demand, OfAViewOfNoDepthIsFinite) {
     }
 }
 
-TEST(Demand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
+TEST(BuildDemand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
     const fs::path parts = scratch("parts");
     const fs::path once = scratch("once");
     Model first = three(1.1);
-    const hierarchy::Report helped = build_in(first, parts, settings_for(0, 1));
+    const hierarchy::BuildReport helped = build_in(first, parts, settings_for(0, 1));
     EXPECT_EQ(helped.built, 1U);
     EXPECT_EQ(helped.left, 3U);
     EXPECT_EQ(first.objects[0].representations.size(), 1U);  // close
@@ -159,7 +160,7 @@ TEST(Demand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
     EXPECT_GT(again.objects[1].representations.size(), 1U);
 
     Model rest = three(1.1);
-    const hierarchy::Report full = build_in(rest, parts, {});
+    const hierarchy::BuildReport full = build_in(rest, parts, {});
     EXPECT_EQ(full.built, 3U);
     EXPECT_EQ(full.left, 0U);
     Model whole = three(1.1);
@@ -172,7 +173,7 @@ TEST(Demand, BuildsItsShareAndThenTheRestAsIfAtOnce) {
     }
 }
 
-TEST(Demand, OfTenThousandObjectsIsFoundAtOnce) {
+TEST(BuildDemand, OfTenThousandObjectsIsFoundAtOnce) {
     Model model;
     std::vector<Placement> placements;
     for (int i = 0; i < 10000; ++i) {

@@ -53,7 +53,7 @@ Model rooms(const std::vector<Affine>& places, double last_ball = 1.5) {
     return model;
 }
 
-std::vector<hierarchy::Moved> moved_in(const Model& model) {
+std::vector<hierarchy::MovedCopy> moved_in(const Model& model) {
     const std::vector<ObjectIndex> order = bottom_up(model);
     const hierarchy::MeshSource resident = [](const Representation& level) {
         return std::get<std::shared_ptr<const Mesh>>(level.payload);
@@ -66,19 +66,19 @@ class MovedGroups : public WithRays {};
 
 }  // namespace
 
-TEST(Moved, AreThoseThatPlaceTheSameThingsInTheSameWay) {
+TEST(MovedCopy, AreThoseThatPlaceTheSameThingsInTheSameWay) {
     const Affine far = turned(0.5, {200, -300, 20});
     const Model same = rooms({Affine{}, far, turned(-2, {0, 50, 0})});
-    const std::vector<hierarchy::Moved> found = moved_in(same);
+    const std::vector<hierarchy::MovedCopy> found = moved_in(same);
     ASSERT_EQ(found.size(), 2u);
-    for (const hierarchy::Moved& one : found) {
+    for (const hierarchy::MovedCopy& one : found) {
         EXPECT_EQ(same.objects[one.original].name, "room 0");
         EXPECT_LT(one.off, 1e-9);
     }
     EXPECT_LT(glm::length(found[0].place(glm::dvec3(1, 2, 3)) - far(glm::dvec3(1, 2, 3))), 1e-9);
 }
 
-TEST(Moved, AreNotThoseThatDifferALittleTiltedOrLargerOnes) {
+TEST(MovedCopy, AreNotThoseThatDifferALittleTiltedOrLargerOnes) {
     Affine larger;
     larger.linear *= 1.01;
     Affine mirrored;
@@ -100,8 +100,8 @@ TEST_F(MovedGroups, HaveTheStandInsOfTheOneThatIsMeasured) {
     const Affine far = turned(0.5, {20, -30, 2});
     Model model = rooms({Affine{}, far});
     Problems problems;
-    const hierarchy::Report report = hierarchy::build_hierarchy(
-        model, segment::Store(scratch("moved")), hierarchy::Settings{}, problems, {});
+    const hierarchy::BuildReport report = hierarchy::build_hierarchy(
+        model, segment::Store(scratch("moved")), hierarchy::BuildSettings{}, problems, {});
     EXPECT_EQ(report.built, report.objects);
     const Object& first = model.objects[2];
     const Object& second = model.objects[3];
@@ -109,8 +109,8 @@ TEST_F(MovedGroups, HaveTheStandInsOfTheOneThatIsMeasured) {
     ASSERT_GE(first.representations.size(), 2u);
     ASSERT_EQ(second.representations.size(), first.representations.size());
     for (size_t i = 1; i < first.representations.size(); ++i) {
-        const Summary& a = first.representations[i].summary;
-        const Summary& b = second.representations[i].summary;
+        const RepresentationSummary& a = first.representations[i].summary;
+        const RepresentationSummary& b = second.representations[i].summary;
         EXPECT_EQ(a.kind, b.kind);
         EXPECT_EQ(a.cost.triangles, b.cost.triangles);
         EXPECT_NEAR(a.error, b.error, 1e-6);
@@ -127,7 +127,7 @@ TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
     const auto built = [&](Model& model, const fs::path& store,
                            const std::vector<ObjectIndex>& scope) {
         Problems problems;
-        hierarchy::Settings settings;
+        hierarchy::BuildSettings settings;
         settings.scope = scope;
         return hierarchy::build_hierarchy(model, segment::Store(store), settings, problems, {});
     };
@@ -158,10 +158,10 @@ TEST_F(MovedGroups, ComeToTheSameHoweverMuchOfThemWasBuiltBefore) {
 TEST_F(MovedGroups, ThatAPictureDoesNotCallForAreCountedAsLeft) {
     Model model = rooms({Affine{}, turned(0.5, {20, -30, 2}), turned(2, {9, 40, 0})});
     Problems problems;
-    hierarchy::Settings settings;
+    hierarchy::BuildSettings settings;
     settings.demand.emplace();
     settings.demand->share = 0;  // for nothing at all
-    const hierarchy::Report report =
+    const hierarchy::BuildReport report =
         hierarchy::build_hierarchy(model, segment::Store(scratch("left")), settings, problems, {});
     EXPECT_EQ(report.built, 0u);
     EXPECT_EQ(report.left, report.objects);

@@ -11,11 +11,11 @@
 #include <limits>
 
 using namespace lodestone;
-using measure::Deviation;
 using measure::DeviationReference;
+using measure::SurfaceDeviation;
 
 TEST(DeviationOfSolids, AreThoseOfTheirTriangles) {
-    Random random(7);
+    PcgRandom random(7);
     const auto any = [&] {
         return glm::dvec3(random.uniform(), random.uniform(), random.uniform());
     };
@@ -29,11 +29,11 @@ TEST(DeviationOfSolids, AreThoseOfTheirTriangles) {
             const Primitive primitive{bound.center + bound.radius * (0.4 * any() - 0.2),
                                       glm::dmat3(x, y, glm::cross(x, y)),
                                       bound.radius * (0.1 + 0.8 * any())};
-            const Deviation box = reference.of(Solid{true, primitive}, 0, kAny, {});
-            const Deviation same = reference.of(tessellate_box(primitive));
+            const SurfaceDeviation box = reference.of(Solid{true, primitive}, 0, kAny, {});
+            const SurfaceDeviation same = reference.of(tessellate_box(primitive));
             EXPECT_NEAR(box.error, same.error, 1e-6 * bound.radius);
             EXPECT_NEAR(box.max, same.max, 1e-6 * bound.radius);
-            const Deviation ellipsoid = reference.of(Solid{false, primitive}, 0, kAny, {});
+            const SurfaceDeviation ellipsoid = reference.of(Solid{false, primitive}, 0, kAny, {});
             const double fine = reference.of(tessellate_ellipsoid(primitive, 5)).error;
             EXPECT_NEAR(ellipsoid.error, fine, 0.05 * fine);
         }
@@ -47,7 +47,7 @@ TEST(DeviationOfSolids, AreThoseOfTheirTrianglesWhereColorsDiffer) {
     std::vector<Material> materials(2);
     materials[0].base_color = {1, 0, 0};
     materials[1].base_color = {0, 0, 1};
-    measure::Looks looks;
+    measure::LookPalette looks;
     const std::vector<uint16_t> of_finest = looks.of(finest, materials);
     const DeviationReference reference(finest, {2048, 2048, 1}, {of_finest, &looks, nullptr});
     Primitive box;

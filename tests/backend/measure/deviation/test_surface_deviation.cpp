@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards Deviation, the number every choice of detail rests on: known distances, both directions,
+// Guards SurfaceDeviation, the number every choice of detail rests on: known distances, both directions,
 // and that nothing invisible of the finest counts.
 #include "base/parallel.h"
 #include "base/random.h"
@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Deviation;
 using measure::DeviationOptions;
 using measure::DeviationReference;
+using measure::SurfaceDeviation;
 
 namespace {
 
@@ -28,13 +28,13 @@ Mesh shifted(const Mesh& mesh, const glm::dvec3& offset) {
     return moved(mesh, {glm::dmat3(1.0), offset});
 }
 
-Deviation deviation(const Mesh& finest, const Mesh& stand_in) {
+SurfaceDeviation deviation(const Mesh& finest, const Mesh& stand_in) {
     return DeviationReference(finest, {}).of(stand_in);
 }
 
 }  // namespace
 
-TEST(Deviation, EmptyMeshesAreTheOthersDiameterApart) {
+TEST(SurfaceDeviation, EmptyMeshesAreTheOthersDiameterApart) {
     EXPECT_EQ(deviation(Mesh{}, Mesh{}).error, 0);
     const double diameter = std::sqrt(3.0);
     EXPECT_NEAR(deviation(shapes::cube(), Mesh{}).error, diameter, 1e-6);
@@ -42,15 +42,15 @@ TEST(Deviation, EmptyMeshesAreTheOthersDiameterApart) {
     EXPECT_NEAR(deviation(Mesh{}, shapes::cube()).error, diameter, 1e-6);
 }
 
-TEST(Deviation, OfAMeshFromItselfIsNothing) {
+TEST(SurfaceDeviation, OfAMeshFromItselfIsNothing) {
     for (const Mesh& mesh : {shapes::cube(), shapes::sphere(3, 4), shapes::terrain(40),
                              shapes::book(20), shapes::fan()}) {
-        const Deviation out = deviation(mesh, mesh);
+        const SurfaceDeviation out = deviation(mesh, mesh);
         EXPECT_LT(out.max, 1e-6 * bound_of(mesh.positions).radius);
     }
 }
 
-TEST(Deviation, BoxesOnAWideGroundWereMissedRoughlyForEverySecondCornerIsBelow) {
+TEST(SurfaceDeviation, BoxesOnAWideGroundWereMissedRoughlyForEverySecondCornerIsBelow) {
     Mesh finest = shapes::quad(30, 30);
     const Mesh ground = finest;
     for (int i = 0; i < 4; ++i) {
@@ -72,32 +72,32 @@ TEST(Deviation, BoxesOnAWideGroundWereMissedRoughlyForEverySecondCornerIsBelow) 
     }
 }
 
-TEST(Deviation, OfParallelQuadsIsTheirDistance) {
+TEST(SurfaceDeviation, OfParallelQuadsIsTheirDistance) {
     const Mesh quad = shapes::quad(1, 2);
     for (const double d : {1e-4, 0.25, 3.0}) {
-        const Deviation out = deviation(quad, shifted(quad, {0, 0, d}));
+        const SurfaceDeviation out = deviation(quad, shifted(quad, {0, 0, d}));
         EXPECT_NEAR(out.error, d, 1e-6);
         EXPECT_NEAR(out.max, d, 1e-6);
     }
 }
 
-TEST(Deviation, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
-    const Deviation grown = deviation(shapes::sphere(1, 5), shapes::sphere(1.1, 5));
+TEST(SurfaceDeviation, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
+    const SurfaceDeviation grown = deviation(shapes::sphere(1, 5), shapes::sphere(1.1, 5));
     EXPECT_NEAR(grown.error, 0.1, 1e-3);
-    const Deviation shrunk = deviation(shapes::sphere(1.1, 5), shapes::sphere(1, 5));
+    const SurfaceDeviation shrunk = deviation(shapes::sphere(1.1, 5), shapes::sphere(1, 5));
     EXPECT_NEAR(shrunk.error, 0.1, 1e-3);
 }
 
-TEST(Deviation, OfATranslationIsAtMostItsLengthAndNearlySo) {
+TEST(SurfaceDeviation, OfATranslationIsAtMostItsLengthAndNearlySo) {
     const Mesh sphere = shapes::sphere(1, 5);
-    const Deviation out = deviation(sphere, shifted(sphere, {0, 0, 0.05}));
+    const SurfaceDeviation out = deviation(sphere, shifted(sphere, {0, 0, 0.05}));
     EXPECT_LE(out.max, 0.0501);
     EXPECT_NEAR(out.error, 0.05, 1e-3);
     const Mesh box = shapes::box({0, 0, 0}, {1, 2, 3});
     EXPECT_NEAR(deviation(box, shifted(box, {0.01, 0, 0})).error, 0.01, 1e-6);
 }
 
-TEST(Deviation, CountsBothDirections) {
+TEST(SurfaceDeviation, CountsBothDirections) {
     // Missing a part is seen from the finest, adding one from the stand-in.
     const Mesh one = shapes::cube();
     Mesh two = one;
@@ -106,7 +106,7 @@ TEST(Deviation, CountsBothDirections) {
     EXPECT_NEAR(deviation(one, two).error, 5, 0.05);
 }
 
-TEST(Deviation, IgnoresWhatNobodySeesOfTheFinest) {
+TEST(SurfaceDeviation, IgnoresWhatNobodySeesOfTheFinest) {
     const Mesh outer = shapes::box(glm::dvec3(-1), glm::dvec3(1));
     Mesh full = outer;
     append(full, shapes::sphere(0.3, 3), Affine{});
@@ -118,7 +118,7 @@ TEST(Deviation, IgnoresWhatNobodySeesOfTheFinest) {
     EXPECT_NEAR(deviation(outer, full).max, 1, 0.05);
 }
 
-TEST(Deviation, SeesASpikeButNotOneThousandthOfTheWeight) {
+TEST(SurfaceDeviation, SeesASpikeButNotOneThousandthOfTheWeight) {
     // A flat grid with one vertex pulled up: its six triangles are 6 / (2 n n) of the area.
     const auto spiked = [](uint32_t n) {
         Mesh mesh = shapes::terrain(n);
@@ -135,7 +135,7 @@ TEST(Deviation, SeesASpikeButNotOneThousandthOfTheWeight) {
     EXPECT_NEAR(deviation(spiked(10), flat).error, 0.01, 1e-6);
 }
 
-TEST(Deviation, IsExactAsLongAsItIsOfUseAndElseToldToBeMore) {
+TEST(SurfaceDeviation, IsExactAsLongAsItIsOfUseAndElseToldToBeMore) {
     const Mesh finest = shapes::sphere(1, 5);
     const Mesh coarse = shapes::sphere(1, 2);
     const DeviationReference reference(finest, {2048, 2048, 1});
@@ -149,7 +149,7 @@ TEST(Deviation, IsExactAsLongAsItIsOfUseAndElseToldToBeMore) {
     EXPECT_EQ(reference.of(coarse, {}, {}, 0).error, std::numeric_limits<double>::infinity());
 }
 
-TEST(Deviation, WhatSticksOutOfAStandInIsFoundWhereTheOriginalIsNearAllOfIt) {
+TEST(SurfaceDeviation, WhatSticksOutOfAStandInIsFoundWhereTheOriginalIsNearAllOfIt) {
     const Mesh finest = shapes::sphere(1, 4);
     Mesh spoiled = finest;
     append(spoiled, shapes::sphere(0.5, 3), {glm::dmat3(1.0), {3, 0, 0}});
@@ -160,8 +160,8 @@ TEST(Deviation, WhatSticksOutOfAStandInIsFoundWhereTheOriginalIsNearAllOfIt) {
     EXPECT_NEAR(reference.of(spoiled, {}, {}, 10).error, 2.5, 0.05);
 }
 
-TEST(Deviation, FindsTheNearestWantedPointLikeLookingAtAll) {
-    Random random(7);
+TEST(SurfaceDeviation, FindsTheNearestWantedPointLikeLookingAtAll) {
+    PcgRandom random(7);
     const auto point = [&] {
         return glm::dvec3(random.uniform(), random.uniform(), 0.1 * random.uniform());
     };
@@ -187,7 +187,7 @@ TEST(Deviation, FindsTheNearestWantedPointLikeLookingAtAll) {
     EXPECT_EQ(measure::PointTree().nearest({}, 4, [](uint32_t) { return true; }), 4);
 }
 
-TEST(Deviation, SubsampledVerticesGiveTheSameError) {
+TEST(SurfaceDeviation, SubsampledVerticesGiveTheSameError) {
     const Mesh finest = shapes::sphere(1, 5);
     const Mesh coarse = shapes::sphere(1, 2);
     DeviationOptions few;
@@ -201,10 +201,10 @@ TEST(Deviation, SubsampledVerticesGiveTheSameError) {
     EXPECT_EQ(DeviationReference(finest, few).of(coarse).error, 0);
 }
 
-TEST(Deviation, OfAFineStandInIsTheSameForAllSeedsWhereAFewVerticesDecide) {
+TEST(SurfaceDeviation, OfAFineStandInIsTheSameForAllSeedsWhereAFewVerticesDecide) {
     constexpr int kSide = 80;
     const auto at = [](int x, int y) { return static_cast<uint32_t>(y * kSide + x); };
-    Random random(3);
+    PcgRandom random(3);
     Mesh rough;
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
@@ -226,7 +226,7 @@ TEST(Deviation, OfAFineStandInIsTheSameForAllSeedsWhereAFewVerticesDecide) {
     EXPECT_LT(*most, 1.02 * *least);
 }
 
-TEST(Deviation, MovesWithTheMeshesAndGrowsWithTheirSize) {
+TEST(SurfaceDeviation, MovesWithTheMeshesAndGrowsWithTheirSize) {
     const Mesh finest = shapes::sphere(1, 4);
     const Mesh coarse = shapes::sphere(1, 2);
     const double reference = deviation(finest, coarse).error;
@@ -244,7 +244,7 @@ TEST(Deviation, MovesWithTheMeshesAndGrowsWithTheirSize) {
     EXPECT_LT(deviation(box, box).max, 1e-6);
 }
 
-TEST(Deviation, ZeroAreaTrianglesNeitherCountNorCrash) {
+TEST(SurfaceDeviation, ZeroAreaTrianglesNeitherCountNorCrash) {
     Mesh finest = shapes::cube();
     Mesh dirty = finest;
     dirty.normals.clear();
@@ -261,13 +261,13 @@ TEST(Deviation, ZeroAreaTrianglesNeitherCountNorCrash) {
     EXPECT_EQ(deviation(line, line).max, 0);
 }
 
-TEST(Deviation, SameBitsOnOneAndManyThreads) {
+TEST(SurfaceDeviation, SameBitsOnOneAndManyThreads) {
     const Mesh finest = shapes::terrain(60);
     const Mesh coarse = shapes::terrain(13);
     const auto run = [&](int threads) {
         const ThreadLimit limit(threads);
         const DeviationReference reference(finest, {});
-        const Deviation out = reference.of(coarse);
+        const SurfaceDeviation out = reference.of(coarse);
         return std::tuple(out.error, out.max, reference.visible_points());
     };
     const auto once = run(1);
@@ -293,9 +293,9 @@ Mesh field_with_road() {
     return mesh;
 }
 
-Deviation of_looks(const Mesh& finest, const std::vector<Material>& materials, const Mesh& stand_in,
-                   const std::vector<Material>& own) {
-    measure::Looks palette;
+SurfaceDeviation of_looks(const Mesh& finest, const std::vector<Material>& materials,
+                          const Mesh& stand_in, const std::vector<Material>& own) {
+    measure::LookPalette palette;
     const std::vector<uint16_t> looks = palette.of(finest, materials);
     const DeviationReference reference(finest, {}, {looks, &palette, nullptr});
     const std::vector<uint16_t> theirs = palette.of(stand_in, own);
@@ -307,7 +307,7 @@ Deviation of_looks(const Mesh& finest, const std::vector<Material>& materials, c
 TEST(DeviationLooks, RoadThatIsGoneIsAsWrongAsHalfItsWidth) {
     const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.1, 0.1, 0.1)};
     const Mesh finest = field_with_road();
-    const Deviation gone = of_looks(finest, materials, shapes::quad(20, 20), materials);
+    const SurfaceDeviation gone = of_looks(finest, materials, shapes::quad(20, 20), materials);
     EXPECT_NEAR(gone.error, 1, 0.25);
     EXPECT_LT(of_looks(finest, materials, finest, materials).error, 1e-5);
 }
@@ -342,21 +342,21 @@ TEST(DeviationLooks, BoardsAreRepaintedLikeTheTilesThatLayOnThem) {
 TEST(DeviationLooks, OfARepaintedLevelIsTheSameWithWhatRepaintingFound) {
     const std::vector<Material> materials{colored(0.1, 0.5, 0.1), colored(0.1, 0.1, 0.1)};
     const Mesh finest = field_with_road();
-    measure::Looks palette;
+    measure::LookPalette palette;
     const std::vector<uint16_t> looks = palette.of(finest, materials);
     const DeviationReference reference(finest, {2048, 2048, 1}, {looks, &palette, nullptr});
     Mesh level = shapes::quad(20, 20);
     append(level, shapes::quad(3, 20), Affine{}, 1);  // another road, at the edge
     Mesh second = level;
-    const DeviationReference::Repainted known = reference.repaint(level);
+    const DeviationReference::RepaintResult known = reference.repaint(level);
     ASSERT_EQ(known.nearest.size(), reference.visible_points());
     const std::vector<uint16_t> theirs = palette.of(level, materials);
-    const measure::Surface surface{theirs, &palette, nullptr};
+    const measure::SurfaceLooks surface{theirs, &palette, nullptr};
     const double never = std::numeric_limits<double>::infinity();
-    const Deviation told = reference.of(level, surface, known, never, {});
+    const SurfaceDeviation told = reference.of(level, surface, known, never, {});
     EXPECT_NEAR(told.error, reference.of(level, surface).error, 1e-9);
     EXPECT_GT(told.error, 0.5);
-    const Deviation rough = reference.roughly(level, surface, known, never, {});
+    const SurfaceDeviation rough = reference.roughly(level, surface, known, never, {});
     EXPECT_NEAR(rough.error, told.error, 0.2 * told.error);
     EXPECT_GE(rough.max, rough.error);
     // What is no use is left as it is, and nothing else.
@@ -365,14 +365,14 @@ TEST(DeviationLooks, OfARepaintedLevelIsTheSameWithWhatRepaintingFound) {
             Mesh again = second;
             again.positions[0].z += 5;
             const std::vector<uint16_t> before = again.slots;
-            const bool none = reference.repaint(again, nullptr, {}, half, useless).useless;
+            const bool none = reference.repaint(again, nullptr, {}, half, useless).surely_useless;
             EXPECT_EQ(none, useless < 1);
             EXPECT_EQ(none, again.slots == before);
         }
     }
 }
 
-TEST(Deviation, WhatIsHiddenIsToldByTriangleAndNotComparedAt) {
+TEST(SurfaceDeviation, WhatIsHiddenIsToldByTriangleAndNotComparedAt) {
     Mesh nested = shapes::sphere(1, 3);
     const size_t outer = nested.triangles.size();
     append(nested, shapes::sphere(0.5, 3), Affine{});
@@ -385,10 +385,10 @@ TEST(Deviation, WhatIsHiddenIsToldByTriangleAndNotComparedAt) {
     EXPECT_TRUE(DeviationReference(nested, {}).seen_triangles().empty());
 }
 
-TEST(Deviation, NoVertexOfHiddenTrianglesAloneIsVisible) {
+TEST(SurfaceDeviation, NoVertexOfHiddenTrianglesAloneIsVisible) {
     const Mesh sphere = shapes::sphere(1, 2);
-    const ray::Scene scene(sphere);
-    const measure::Sides sides = measure::sides_of(sphere, scene);
+    const ray::MeshScene scene(sphere);
+    const measure::OutsideSides sides = measure::sides_of(sphere, scene);
     const auto visible = [&](const std::vector<uint8_t>& seen) {
         std::vector<measure::SurfaceSample> out;
         measure::add_visible_vertices(sphere, scene, sides, seen,
@@ -403,7 +403,7 @@ TEST(Deviation, NoVertexOfHiddenTrianglesAloneIsVisible) {
     EXPECT_EQ(visible({}), sphere.positions.size());
 }
 
-TEST(Deviation, RoughlyIsNearTheSame) {
+TEST(SurfaceDeviation, RoughlyIsNearTheSame) {
     const Mesh finest = shapes::sphere(1, 4);
     const DeviationReference reference(finest, {2048, 2048, 1});
     const double never = std::numeric_limits<double>::infinity();
@@ -437,7 +437,7 @@ TEST(DeviationLooks, MeanColorIsRightFromWhereTheColorsMix) {
     EXPECT_LT(error, 5);
 }
 
-TEST(Deviation, CancelledJobsStop) {
+TEST(SurfaceDeviation, CancelledJobsStop) {
     const int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
     EXPECT_THROW(DeviationReference(shapes::cube(), {}, {}, job), Error);
@@ -453,11 +453,11 @@ TEST(DeviationLooks, WhatMixesToAColorIsTheSameForTheFirstStandInAndForLaterOnes
     const Mesh coarse = shapes::terrain(5);
     const std::vector<Material> brown{colored(0.35, 0.3, 0.1)};
     const std::vector<Material> dull{colored(0.3, 0.25, 0.1)};
-    measure::Looks palette;
+    measure::LookPalette palette;
     const std::vector<uint16_t> looks = palette.of(finest, materials);
     const auto reference = [&] {
-        return std::make_unique<DeviationReference>(finest, measure::DeviationOptions{},
-                                                    measure::Surface{looks, &palette, nullptr});
+        return std::make_unique<DeviationReference>(
+            finest, measure::DeviationOptions{}, measure::SurfaceLooks{looks, &palette, nullptr});
     };
     const auto error = [&](const DeviationReference& of, const std::vector<Material>& own) {
         const std::vector<uint16_t> theirs = palette.of(coarse, own);

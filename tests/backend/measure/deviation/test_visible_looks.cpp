@@ -9,22 +9,22 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Deviation;
 using measure::DeviationReference;
+using measure::SurfaceDeviation;
 
 namespace {
 
 /// Both with skins, and told apart by looks.
-Deviation of_skins(const Mesh& finest, const std::vector<Material>& materials, const Mesh& stand_in,
-                   const std::vector<Material>& own) {
+SurfaceDeviation of_skins(const Mesh& finest, const std::vector<Material>& materials,
+                          const Mesh& stand_in, const std::vector<Material>& own) {
     image::TexelCache texels;
-    measure::Looks palette;
+    measure::LookPalette palette;
     const std::vector<uint16_t> looks = palette.of(finest, materials);
     const DeviationReference reference(
-        finest, {}, {looks, &palette, std::make_shared<const ray::Skin>(materials, texels)});
+        finest, {}, {looks, &palette, std::make_shared<const ray::MeshSkin>(materials, texels)});
     const std::vector<uint16_t> theirs = palette.of(stand_in, own);
     return reference.of(stand_in,
-                        {theirs, &palette, std::make_shared<const ray::Skin>(own, texels)});
+                        {theirs, &palette, std::make_shared<const ray::MeshSkin>(own, texels)});
 }
 
 /// Stripes of 2 m along x, dark and light, on 16 m.
@@ -52,8 +52,9 @@ TEST(DeviationAlpha, EmptyCornersOfALeafCardAreNeitherMissedNorMatched) {
                            const std::vector<Material>& own) {
         image::TexelCache texels;
         const DeviationReference reference(
-            card, {}, {{}, nullptr, std::make_shared<const ray::Skin>(finest, texels)});
-        return reference.of(other, {{}, nullptr, std::make_shared<const ray::Skin>(own, texels)})
+            card, {}, {{}, nullptr, std::make_shared<const ray::MeshSkin>(finest, texels)});
+        return reference
+            .of(other, {{}, nullptr, std::make_shared<const ray::MeshSkin>(own, texels)})
             .error;
     };
     EXPECT_LT(error(leaf, card, leaf), 1e-6);
@@ -134,7 +135,7 @@ TEST(DeviationTexels, RepaintedTrianglesShowTheRightPartOfTheTexture) {
     carpet.base_color_texture = foliage::texture(atlas);
     const std::vector<Material> materials{Material{}, carpet};
     image::TexelCache texels;
-    const auto skin = std::make_shared<const ray::Skin>(materials, texels);
+    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
     const auto repainted = [&](bool whole) {
         Mesh floor = foliage::card(4, 4);
         for (int i = 0; i < 64; ++i) {
@@ -146,7 +147,7 @@ TEST(DeviationTexels, RepaintedTrianglesShowTheRightPartOfTheTexture) {
             for (const double height : {-0.01, 0.01})
                 append(floor, tile, {glm::dmat3(1.0), {0.5 * (i % 8), 0.5 * row, height}}, 1);
         }
-        measure::Looks palette;
+        measure::LookPalette palette;
         const std::vector<uint16_t> looks = palette.of(floor, materials);
         const DeviationReference reference(floor, {}, {looks, &palette, skin});
         Mesh boards = foliage::card(4, 4);
@@ -178,7 +179,7 @@ TEST(DeviationTexels, SameBitsOnOneAndManyThreads) {
         position.x += 0.01f;
     const auto run = [&](int threads) {
         const ThreadLimit limit(threads);
-        const Deviation out = of_skins(tree, materials, moved, materials);
+        const SurfaceDeviation out = of_skins(tree, materials, moved, materials);
         return std::pair(out.error, out.max);
     };
     EXPECT_EQ(run(1), run(0));

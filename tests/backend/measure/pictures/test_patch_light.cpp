@@ -10,7 +10,7 @@ using namespace lodestone;
 
 namespace {
 
-class Patches : public WithRays {};
+class LightPatches : public WithRays {};
 
 constexpr uint64_t kSeed = 3;
 constexpr double kLeast = 0.05;
@@ -20,12 +20,13 @@ ray::SkinPtr dark_and_bright() {
     image::TexelCache texels;
     const std::vector<Material> materials{models::colored("dark", glm::dvec3(0.1)),
                                           models::colored("bright", glm::dvec3(0.6))};
-    return std::make_shared<const ray::Skin>(materials, texels);
+    return std::make_shared<const ray::MeshSkin>(materials, texels);
 }
 
-measure::Patches patches_of(const Mesh& finest, const ray::Scene& scene, const ray::Skin& skin) {
+measure::LightPatches patches_of(const Mesh& finest, const ray::MeshScene& scene,
+                                 const ray::MeshSkin& skin) {
     const measure::VisibleSampler sampler(finest, scene, kSeed);
-    std::vector<measure::Cast> cast(2048);
+    std::vector<measure::CastPoints> cast(2048);
     for (uint32_t i = 0; i < cast.size(); ++i)
         cast[i].count = sampler.cast(i, cast[i].points);
     return {finest, sampler, skin, cast, kSeed};
@@ -33,9 +34,10 @@ measure::Patches patches_of(const Mesh& finest, const ray::Scene& scene, const r
 
 double unlike(const Mesh& finest, const Mesh& stand_in, bool matched) {
     const ray::SkinPtr skin = dark_and_bright();
-    const ray::Scene scene(finest, skin);
-    const measure::Patches patches = patches_of(finest, scene, *skin);
-    return patches.unlike_up_to(stand_in, ray::Scene(stand_in, skin), *skin, matched, kLeast);
+    const ray::MeshScene scene(finest, skin);
+    const measure::LightPatches patches = patches_of(finest, scene, *skin);
+    return patches.largest_unlike_patch(stand_in, ray::MeshScene(stand_in, skin), *skin, matched,
+                                        kLeast);
 }
 
 /// A wall of 4 x 2 m, with dark bricks that stand `out` of its bright mortar.
@@ -66,19 +68,19 @@ Mesh painted(Mesh mesh, uint16_t slot) {
 
 }  // namespace
 
-TEST_F(Patches, AMeshIsLikeItself) {
+TEST_F(LightPatches, AMeshIsLikeItself) {
     const Mesh mesh = wall(0.01);
     EXPECT_EQ(unlike(mesh, mesh, false), 0);
     EXPECT_EQ(unlike(mesh, mesh, true), 0);
 }
 
-TEST_F(Patches, MortarWithoutItsBricksIsUnlikeTheWall) {
+TEST_F(LightPatches, MortarWithoutItsBricksIsUnlikeTheWall) {
     // Everywhere as near as the bricks are thick, and in each joint the right color.
     const Mesh bare = painted(shapes::box({0, 0, 0}, {4, 0.3, 2}), 1);
     EXPECT_GT(unlike(wall(0.01), bare, false), 4);
 }
 
-TEST_F(Patches, BricksThatSinkIntoTheirMortarAreUnlikeTheWall) {
+TEST_F(LightPatches, BricksThatSinkIntoTheirMortarAreUnlikeTheWall) {
     Mesh sunken = wall(0.01);
     for (glm::vec3& position : sunken.positions) {
         if (position.y < 0)
@@ -90,7 +92,7 @@ TEST_F(Patches, BricksThatSinkIntoTheirMortarAreUnlikeTheWall) {
     EXPECT_EQ(unlike(wall(0.01), wall(0.012), false), 0);
 }
 
-TEST_F(Patches, StripesThatChangePlacesAreUnlikeUpToTheirWidth) {
+TEST_F(LightPatches, StripesThatChangePlacesAreUnlikeUpToTheirWidth) {
     const auto stripes = [](int first) {
         constexpr double kWide = 0.5;
         Mesh mesh;  // both ends are dark in any case
@@ -106,7 +108,7 @@ TEST_F(Patches, StripesThatChangePlacesAreUnlikeUpToTheirWidth) {
     EXPECT_LT(found, 1.5);
 }
 
-TEST_F(Patches, WhatWillBeMadeAsBrightIsNotUnlikeForBeingDarker) {
+TEST_F(LightPatches, WhatWillBeMadeAsBrightIsNotUnlikeForBeingDarker) {
     const Mesh bright = painted(shapes::sphere(1), 1);
     const Mesh dark = painted(shapes::sphere(1), 0);
     EXPECT_GT(unlike(dark, bright, false), 2);
@@ -114,31 +116,32 @@ TEST_F(Patches, WhatWillBeMadeAsBrightIsNotUnlikeForBeingDarker) {
     EXPECT_EQ(unlike(bright, painted(shapes::sphere(1, 3), 1), true), 0);
 }
 
-TEST_F(Patches, NothingIsUnlikeNothing) {
+TEST_F(LightPatches, NothingIsUnlikeNothing) {
     const Mesh sphere = painted(shapes::sphere(1), 0);
     EXPECT_GT(unlike(sphere, Mesh{}, false), 2);
     Mesh point;
     point.positions.resize(3);
     point.triangles = {{0, 1, 2}};
     const ray::SkinPtr skin = dark_and_bright();
-    const ray::Scene scene(point, skin);
+    const ray::MeshScene scene(point, skin);
     const measure::VisibleSampler sampler(point, scene, kSeed);
-    const measure::Patches patches(point, sampler, *skin, {}, kSeed);
-    EXPECT_EQ(patches.unlike_up_to(sphere, ray::Scene(sphere, skin), *skin, false, 0), 0);
+    const measure::LightPatches patches(point, sampler, *skin, {}, kSeed);
+    EXPECT_EQ(patches.largest_unlike_patch(sphere, ray::MeshScene(sphere, skin), *skin, false, 0),
+              0);
 }
 
-TEST_F(Patches, TheSidesOfABookAreNotPaintedAsDarkAsItsCover) {
+TEST_F(LightPatches, TheSidesOfABookAreNotPaintedAsDarkAsItsCover) {
     Mesh book = painted(shapes::box({0, 0, 0}, {1, 1, 0.03}), 0);
     append(book, painted(shapes::box({0, 0, 0.03}, {1, 1, 0.27}), 0), {}, 1);
     append(book, painted(shapes::box({0, 0, 0.27}, {1, 1, 0.3}), 0), {});
     const ray::SkinPtr skin = dark_and_bright();
-    const ray::Scene scene(book, skin);
-    const measure::Patches patches = patches_of(book, scene, *skin);
+    const ray::MeshScene scene(book, skin);
+    const measure::LightPatches patches = patches_of(book, scene, *skin);
     Primitive box;
     box.center = {0.5, 0.5, 0.15};
     box.half_size = {0.5, 0.5, 0.15};
     const Mesh mesh = tessellate_box(box);
-    const std::vector<glm::dvec4> paint = patches.paint_of(mesh, scene);
+    const std::vector<glm::dvec4> paint = patches.fitted_vertex_colors(mesh, scene);
     ASSERT_EQ(paint.size(), mesh.positions.size());
     glm::dvec4 cover(0.0);
     glm::dvec4 sides(0.0);

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Agreement;
 using measure::AgreementReference;
+using measure::PictureAgreement;
 
 namespace {
 
@@ -17,7 +17,7 @@ class Agreements : public WithRays {};
 
 ray::SkinPtr skin(const std::vector<Material>& materials) {
     image::TexelCache texels;
-    return std::make_shared<const ray::Skin>(materials, texels);
+    return std::make_shared<const ray::MeshSkin>(materials, texels);
 }
 
 ray::SkinPtr plain(double brightness) {
@@ -82,7 +82,7 @@ TEST_F(Agreements, NothingAgreesWithNothingAndWithNothingElse) {
 
 TEST_F(Agreements, TheSameThingAgreesAtTheSmallestPixel) {
     const Mesh ball = shapes::sphere(1, 3);
-    const Agreement same = AgreementReference(ball, plain(0.5), 1).of(ball, plain(0.5));
+    const PictureAgreement same = AgreementReference(ball, plain(0.5), 1).of(ball, plain(0.5));
     EXPECT_LT(same.error, 2 * 2 * 1.1 * std::sqrt(3.0) / AgreementReference::kSide * 1.001);
     EXPECT_DOUBLE_EQ(same.coverage, 1);
     EXPECT_DOUBLE_EQ(same.light.y, 1);
@@ -90,7 +90,7 @@ TEST_F(Agreements, TheSameThingAgreesAtTheSmallestPixel) {
 
 TEST_F(Agreements, WhatIsHalfAsBrightNeverAgreesAndTellsByHowMuch) {
     const Mesh ball = shapes::sphere(1, 3);
-    const Agreement dark = AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.3));
+    const PictureAgreement dark = AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.3));
     EXPECT_NEAR(dark.light.x, 2, 1e-6);
     EXPECT_GT(dark.error, 2);
     EXPECT_LT(AgreementReference(ball, plain(0.6), 1).of(ball, plain(0.55)).error, 0.1);
@@ -99,9 +99,9 @@ TEST_F(Agreements, WhatIsHalfAsBrightNeverAgreesAndTellsByHowMuch) {
 TEST_F(Agreements, PicturesTracedOnceServeForEveryPlainColor) {
     const AgreementReference reference(grid(3, 0), plain(0.5), 1);
     const Mesh other = grid(3, 0.1);
-    const AgreementReference::Traced traced = reference.trace(other, plain(0.9));
+    const AgreementReference::TracedPictures traced = reference.trace(other, plain(0.9));
     for (const double brightness : {0.1, 0.5, 0.9}) {
-        const Agreement fresh = reference.of(other, plain(brightness));
+        const PictureAgreement fresh = reference.of(other, plain(brightness));
         EXPECT_EQ(reference.of(traced, plain(brightness)).error, fresh.error);
         EXPECT_EQ(reference.brightness_of(traced, plain(brightness)).light, fresh.light);
     }
@@ -121,7 +121,7 @@ TEST_F(Agreements, MovedPartsAgreeFromAboutAPixelThatIsMuchLargerThanTheMove) {
 
 TEST_F(Agreements, ThinnerFoliageDisagreesAtEverySizeAndIsToldByItsCoverage) {
     const AgreementReference reference(grid(4, 0), nullptr, 1);
-    const Agreement thin = reference.of(grid(4, 0, 0.05), nullptr);
+    const PictureAgreement thin = reference.of(grid(4, 0, 0.05), nullptr);
     EXPECT_NEAR(thin.coverage, 0.3, 0.1);
     EXPECT_GT(thin.error, 2);
 }
@@ -156,7 +156,7 @@ TEST_F(Agreements, BooksThatAreGoneAreSeenThroughTheirGapsAndBooksThatShrinkAreN
         const Mesh full = bookcase(1, 0);
         const AgreementReference reference(full, skin, 1, side);
         const auto gaps = [&](const Mesh& level, double off) {
-            return reference.gaps_of(reference.trace(level, skin), skin, off);
+            return reference.gap_error(reference.trace(level, skin), skin, off);
         };
         EXPECT_EQ(gaps(full, 0.001), 0);
         EXPECT_EQ(gaps(bookcase(1, 0.02), 0.02), 0) << "as near as distances say";
@@ -173,8 +173,8 @@ TEST_F(Agreements, WhatIsFartherBehindIsNoGapWhereItLooksTheSame) {
     const AgreementReference reference(full, same, 1);
     const double apart =
         AgreementReference(full, bookcase_skin(), 1)
-            .gaps_of(reference.trace(half, bookcase_skin()), bookcase_skin(), 0.02);
-    EXPECT_LT(reference.gaps_of(reference.trace(half, same), same, 0.02), 0.7 * apart);
-    EXPECT_EQ(AgreementReference(Mesh{}, same, 1).gaps_of(reference.trace(half, same), same, 0.1),
+            .gap_error(reference.trace(half, bookcase_skin()), bookcase_skin(), 0.02);
+    EXPECT_LT(reference.gap_error(reference.trace(half, same), same, 0.02), 0.7 * apart);
+    EXPECT_EQ(AgreementReference(Mesh{}, same, 1).gap_error(reference.trace(half, same), same, 0.1),
               0);
 }

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Misses;
-using measure::Part;
+using measure::PictureRect;
+using measure::PixelMisses;
 
 namespace {
 
@@ -20,7 +20,7 @@ using Pictures = std::vector<glm::vec4>;
 /// Random light in the columns and rows from `low` to below `high`, nothing elsewhere.
 Pictures shown(const glm::ivec2& low, const glm::ivec2& high, uint64_t seed) {
     Pictures out(kViews * kSide * kSide, glm::vec4(0.0f));
-    Random random(seed, 0);
+    PcgRandom random(seed, 0);
     for (size_t view = 0; view < kViews; ++view) {
         for (int row = low.y; row < high.y; ++row) {
             for (int column = low.x; column < high.x; ++column) {
@@ -35,7 +35,7 @@ Pictures shown(const glm::ivec2& low, const glm::ivec2& high, uint64_t seed) {
     return out;
 }
 
-void expect_same(const Misses& a, const Misses& b) {
+void expect_same(const PixelMisses& a, const PixelMisses& b) {
     EXPECT_EQ(a.covered, b.covered);
     EXPECT_EQ(a.coverage.sum, b.coverage.sum);
     EXPECT_EQ(a.coverage.products, b.coverage.products);
@@ -46,13 +46,13 @@ void expect_same(const Misses& a, const Misses& b) {
 
 }  // namespace
 
-TEST(Misses, PartsHoldAllThatEitherPictureShows) {
+TEST(PixelMisses, PartsHoldAllThatEitherPictureShows) {
     Pictures a(kViews * kSide * kSide, glm::vec4(0.0f));
     Pictures b = a;
     a[7 * kSide + 12].w = 1;
     b[9 * kSide + 3].w = 0.01f;
     b[size_t{2} * kSide * kSide].w = 1;
-    const std::vector<Part> parts = measure::parts_of(a, b, kViews, kSide);
+    const std::vector<PictureRect> parts = measure::picture_rects(a, b, kViews, kSide);
     ASSERT_EQ(parts.size(), kViews);
     EXPECT_EQ(parts[0].low, glm::ivec2(3, 7));
     EXPECT_EQ(parts[0].high, glm::ivec2(13, 10));
@@ -61,25 +61,25 @@ TEST(Misses, PartsHoldAllThatEitherPictureShows) {
     EXPECT_EQ(parts[2].high, glm::ivec2(1, 1));
 }
 
-TEST(Misses, WhatShowsNothingMayBeLeftOut) {
-    const std::vector<Part> whole(kViews, {glm::ivec2(0), glm::ivec2(kSide)});
+TEST(PixelMisses, WhatShowsNothingMayBeLeftOut) {
+    const std::vector<PictureRect> whole(kViews, {glm::ivec2(0), glm::ivec2(kSide)});
     const glm::ivec2 low(4, 11);
     const glm::ivec2 high(9, 26);
     const Pictures a = shown(low, high, 1);
     for (const Pictures& b :
          {shown(low, high, 2), shown({1, 2}, {6, 13}, 3), Pictures(a.size(), glm::vec4(0.0f))}) {
-        const std::vector<Part> parts = measure::parts_of(a, b, kViews, kSide);
+        const std::vector<PictureRect> parts = measure::picture_rects(a, b, kViews, kSide);
         for (const int pixel : {2, 3, 5, 6, 10, 15, 30}) {
-            const Misses all = measure::misses_of(a, b, whole, kSide, pixel);
+            const PixelMisses all = measure::pixel_misses(a, b, whole, kSide, pixel);
             EXPECT_GT(all.covered, 0u);
-            expect_same(measure::misses_of(a, b, parts, kSide, pixel), all);
+            expect_same(measure::pixel_misses(a, b, parts, kSide, pixel), all);
         }
     }
 }
 
-TEST(Misses, EmptyPicturesAgree) {
+TEST(PixelMisses, EmptyPicturesAgree) {
     const Pictures none(kViews * kSide * kSide, glm::vec4(0.0f));
-    const std::vector<Part> parts = measure::parts_of(none, none, kViews, kSide);
-    EXPECT_EQ(measure::misses_of(none, none, parts, kSide, 2).covered, 0u);
-    EXPECT_EQ(measure::misses_of(none, none, parts, kSide, 2).worst(), 0);
+    const std::vector<PictureRect> parts = measure::picture_rects(none, none, kViews, kSide);
+    EXPECT_EQ(measure::pixel_misses(none, none, parts, kSide, 2).covered, 0u);
+    EXPECT_EQ(measure::pixel_misses(none, none, parts, kSide, 2).worst(), 0);
 }

@@ -33,7 +33,7 @@ double reach(const Mesh& mesh, const glm::dvec3& along) {
 
 }  // namespace
 
-TEST(Convexity, NothingAndNonsenseAreNotConvex) {
+TEST(ShapeConvexity, NothingAndNonsenseAreNotConvex) {
     EXPECT_FALSE(convexity_of({}).convex);
     Mesh nowhere = shapes::cube();
     nowhere.positions[3].x = std::numeric_limits<float>::quiet_NaN();
@@ -43,7 +43,7 @@ TEST(Convexity, NothingAndNonsenseAreNotConvex) {
     EXPECT_FALSE(inside(shapes::cube(), {{}, glm::dmat3(1.0), {1, 0, 1}}, false));
 }
 
-TEST(Convexity, ClosedSolidsThatHideNothingAreConvex) {
+TEST(ShapeConvexity, ClosedSolidsThatHideNothingAreConvex) {
     EXPECT_TRUE(convexity_of(shapes::cube()).convex);
     for (int subdivisions = 0; subdivisions < 6; ++subdivisions)
         EXPECT_TRUE(convexity_of(shapes::sphere(1, subdivisions)).convex) << subdivisions;
@@ -52,7 +52,7 @@ TEST(Convexity, ClosedSolidsThatHideNothingAreConvex) {
             .convex);
 }
 
-TEST(Convexity, WhatIsOpenHollowInTwoPartsOrInsideOutIsNot) {
+TEST(ShapeConvexity, WhatIsOpenHollowInTwoPartsOrInsideOutIsNot) {
     EXPECT_FALSE(convexity_of(shapes::quad(1, 1)).convex);
     EXPECT_FALSE(convexity_of(shapes::terrain(4)).convex);
     EXPECT_FALSE(convexity_of(shapes::fan()).convex);
@@ -75,7 +75,7 @@ TEST(Convexity, WhatIsOpenHollowInTwoPartsOrInsideOutIsNot) {
     EXPECT_FALSE(convexity_of(dented).convex);
 }
 
-TEST(Convexity, ImagesAreNoLargerInWhatIsFlatOrConvexAndLooksIt) {
+TEST(ShapeConvexity, ImagesAreNoLargerInWhatIsFlatOrConvexAndLooksIt) {
     EXPECT_TRUE(convexity_of(shapes::quad(2, 1)).flattens);
     EXPECT_TRUE(convexity_of(placed(shapes::quad(2, 1), {turned(0.3), {1, 2, 3}})).flattens);
     EXPECT_TRUE(convexity_of(shapes::sphere(1, 3)).flattens);
@@ -89,25 +89,25 @@ TEST(Convexity, ImagesAreNoLargerInWhatIsFlatOrConvexAndLooksIt) {
     EXPECT_FALSE(convexity_of(bowl).flattens);
 }
 
-TEST(Convexity, ABallInACubeAndACubeInABallAreAsLargeAsTheyShouldBe) {
+TEST(ShapeConvexity, ABallInACubeAndACubeInABallAreAsLargeAsTheyShouldBe) {
     const Primitive unit;
     const double corner = std::sqrt(3.0) / 2;
-    const std::optional<Scaled> ball = inside(shapes::cube(), unit, false);
+    const std::optional<ScaledSolid> ball = inside(shapes::cube(), unit, false);
     ASSERT_TRUE(ball);
     EXPECT_NEAR(ball->scale, 0.5, 1e-5);
     EXPECT_NEAR(ball->gap, 1.03 * (corner - 0.5), 1e-4);
-    const std::optional<Scaled> hull = around(shapes::cube(), unit, false);
+    const std::optional<ScaledSolid> hull = around(shapes::cube(), unit, false);
     ASSERT_TRUE(hull);
     EXPECT_NEAR(hull->scale, corner, 1e-5);
     EXPECT_NEAR(hull->gap, 1.03 * (corner - 0.5), 1e-4);
-    const std::optional<Scaled> same = inside(shapes::cube(), unit, true);
+    const std::optional<ScaledSolid> same = inside(shapes::cube(), unit, true);
     ASSERT_TRUE(same);
     EXPECT_NEAR(same->scale, 0.5, 1e-5);
     EXPECT_LT(same->gap, 1e-5);
     EXPECT_FALSE(inside(shapes::cube(), {{2, 0, 0}, glm::dmat3(1.0), glm::dvec3(1.0)}, false));
 }
 
-TEST(Convexity, OutlinesAreNeverFartherApartThanTheGapFromAnyDirection) {
+TEST(ShapeConvexity, OutlinesAreNeverFartherApartThanTheGapFromAnyDirection) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int round = 0; round < 12; ++round) {
@@ -118,7 +118,7 @@ TEST(Convexity, OutlinesAreNeverFartherApartThanTheGapFromAnyDirection) {
         const Mesh mesh = box ? placed(shapes::cube(), {glm::dmat3(2.0), {}})
                               : shapes::ellipsoid({1, 1.1, 0.9}, 1 + round % 3);
         for (const bool out : {false, true}) {
-            const std::optional<Scaled> fitted =
+            const std::optional<ScaledSolid> fitted =
                 out ? around(mesh, solid, box) : inside(mesh, solid, box);
             ASSERT_TRUE(fitted);
             for (int i = 0; i < 4000; ++i) {

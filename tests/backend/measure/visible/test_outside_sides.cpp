@@ -8,21 +8,21 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Side;
-using measure::Sides;
+using measure::OutsideSides;
+using measure::VisibleSide;
 
 namespace {
 
-Sides sides_of(const Mesh& mesh) {
-    return measure::sides_of(mesh, ray::Scene(mesh));
+OutsideSides sides_of(const Mesh& mesh) {
+    return measure::sides_of(mesh, ray::MeshScene(mesh));
 }
 
 Affine at(double x, double y, double z) {
     return {glm::dmat3(1.0), {x, y, z}};
 }
 
-std::vector<Side> all(const Mesh& mesh, Side side) {
-    std::vector<Side> out(mesh.triangles.size(), side);
+std::vector<VisibleSide> all(const Mesh& mesh, VisibleSide side) {
+    std::vector<VisibleSide> out(mesh.triangles.size(), side);
     return out;
 }
 
@@ -53,57 +53,57 @@ Mesh frame() {
 
 }  // namespace
 
-TEST(Sides, EmptyMeshHasNone) {
-    const Sides none = sides_of(Mesh{});
+TEST(OutsideSides, EmptyMeshHasNone) {
+    const OutsideSides none = sides_of(Mesh{});
     EXPECT_TRUE(none.of.empty());
     EXPECT_EQ(none.parts, 0u);
     EXPECT_FALSE(none.hides_nothing);
 }
 
-TEST(Sides, OfAClosedBodyIsTheOuterOne) {
+TEST(OutsideSides, OfAClosedBodyIsTheOuterOne) {
     Mesh cube = shapes::cube();
-    EXPECT_EQ(sides_of(cube).of, all(cube, Side::Front));
+    EXPECT_EQ(sides_of(cube).of, all(cube, VisibleSide::Front));
     for (Triangle& t : cube.triangles)
         std::swap(t.y, t.z);
-    const Sides turned = sides_of(cube);
-    EXPECT_EQ(turned.of, all(cube, Side::Back));
+    const OutsideSides turned = sides_of(cube);
+    EXPECT_EQ(turned.of, all(cube, VisibleSide::Back));
     EXPECT_TRUE(turned.hides_nothing);
     EXPECT_EQ(turned.parts, 1u);
     EXPECT_FALSE(turned.may_coincide);
 }
 
-TEST(Sides, OfAnOpenSheetAreBoth) {
+TEST(OutsideSides, OfAnOpenSheetAreBoth) {
     const Mesh quad = shapes::quad(2, 1);
-    EXPECT_EQ(sides_of(quad).of, all(quad, Side::Both));
+    EXPECT_EQ(sides_of(quad).of, all(quad, VisibleSide::Both));
     EXPECT_TRUE(sides_of(quad).hides_nothing);
     EXPECT_FALSE(sides_of(shapes::terrain(8)).hides_nothing) << "not flat";
     EXPECT_TRUE(sides_of(shapes::fan()).may_coincide) << "not manifold";
 }
 
-TEST(Sides, AreFoundPartByPart) {
+TEST(OutsideSides, AreFoundPartByPart) {
     Mesh mesh = shapes::cube();
     append(mesh, shapes::quad(1, 1), at(5, 0, 0));
-    const Sides sides = sides_of(mesh);
+    const OutsideSides sides = sides_of(mesh);
     EXPECT_EQ(sides.parts, 2u);
     EXPECT_TRUE(sides.may_coincide);
     EXPECT_FALSE(sides.hides_nothing);
     for (size_t i = 0; i < 12; ++i)
-        EXPECT_EQ(sides.of[i], Side::Front) << i;
-    EXPECT_EQ(sides.of[12], Side::Both);
+        EXPECT_EQ(sides.of[i], VisibleSide::Front) << i;
+    EXPECT_EQ(sides.of[12], VisibleSide::Both);
 }
 
-TEST(Sides, OnlyConvexBodiesHideNothing) {
+TEST(OutsideSides, OnlyConvexBodiesHideNothing) {
     EXPECT_TRUE(sides_of(shapes::sphere(1, 5)).hides_nothing);
     EXPECT_TRUE(sides_of(shapes::ellipsoid({3, 1, 0.2}, 4)).hides_nothing);
-    const Sides ring = sides_of(frame());
-    EXPECT_EQ(ring.of, all(frame(), Side::Front));
+    const OutsideSides ring = sides_of(frame());
+    EXPECT_EQ(ring.of, all(frame(), VisibleSide::Front));
     EXPECT_FALSE(ring.hides_nothing);
     Mesh dented = shapes::sphere(1, 3);
     dented.positions[7] *= 0.8f;
     EXPECT_FALSE(sides_of(dented).hides_nothing);
 }
 
-TEST(Sides, TinyAndFarBodiesAreJudgedAlike) {
+TEST(OutsideSides, TinyAndFarBodiesAreJudgedAlike) {
     for (const double scale : {1e-12, 1e12}) {
         Mesh mesh;
         append(mesh, shapes::sphere(1, 3), {glm::dmat3(scale), {}});
@@ -115,7 +115,7 @@ TEST(Sides, TinyAndFarBodiesAreJudgedAlike) {
 }
 
 // The tips of turned shapes were holes of a nanometre, and both sides of all of it counted.
-TEST(Sides, TipWithAHoleOfNoSizeIsClosed) {
+TEST(OutsideSides, TipWithAHoleOfNoSizeIsClosed) {
     Mesh cone;
     for (int i = 0; i < 16; ++i) {
         const float x = std::cos(0.3926991f * static_cast<float>(i));
@@ -132,32 +132,32 @@ TEST(Sides, TipWithAHoleOfNoSizeIsClosed) {
             cone.triangles.emplace_back(a + ring, b + ring + 1, b + ring);
         }
     }
-    const Sides sides = sides_of(cone);
+    const OutsideSides sides = sides_of(cone);
     EXPECT_TRUE(sides.hides_nothing);
-    EXPECT_EQ(sides.of[0], Side::Front);
+    EXPECT_EQ(sides.of[0], VisibleSide::Front);
 }
 
-TEST(Sides, OfWhatRaysPassThroughAreBoth) {
+TEST(OutsideSides, OfWhatRaysPassThroughAreBoth) {
     const Mesh cube = shapes::cube();
     Material veil;
     veil.alpha_mode = AlphaMode::Blend;
     veil.alpha = 0.5;
     image::TexelCache texels;
     const std::vector<Material> materials{veil};
-    const ray::Scene scene(cube, std::make_shared<const ray::Skin>(materials, texels));
-    const Sides sides = measure::sides_of(cube, scene);
-    EXPECT_EQ(sides.of, all(cube, Side::Both));
+    const ray::MeshScene scene(cube, std::make_shared<const ray::MeshSkin>(materials, texels));
+    const OutsideSides sides = measure::sides_of(cube, scene);
+    EXPECT_EQ(sides.of, all(cube, VisibleSide::Both));
     EXPECT_FALSE(sides.hides_nothing);
 }
 
-TEST(Sides, BrokenTrianglesDoNoHarm) {
+TEST(OutsideSides, BrokenTrianglesDoNoHarm) {
     Mesh mesh = shapes::cube();
     mesh.normals.clear();
     mesh.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f);
     const auto last = static_cast<uint32_t>(mesh.positions.size() - 1);
     mesh.triangles.emplace_back(0, 1, last);
     mesh.triangles.emplace_back(0, 0, 1);
-    EXPECT_EQ(sides_of(mesh).of[0], Side::Front) << "they are not there";
+    EXPECT_EQ(sides_of(mesh).of[0], VisibleSide::Front) << "they are not there";
     Mesh nothing;
     nothing.positions.assign(3, mesh.positions[last]);
     nothing.triangles = {{0, 1, 2}};

@@ -17,7 +17,7 @@ TEST(SeenFromOutside, BoardBetweenTilesIsSeenThroughTheirGaps) {
             append(mesh, shapes::quad(kTile, kTile),
                    {glm::dmat3(1.0), {i % kSide, i / kSide, height}});
     }
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     for (const uint64_t seed : {1u, 2u, 3u}) {
         const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, scene, 24, seed);
         EXPECT_EQ(seen, std::vector<uint8_t>(seen.size(), 1)) << seed;
@@ -30,7 +30,7 @@ TEST(SeenFromOutside, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
     append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0.5, 0.5, 0.25}});
     append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {5, 5, 5}});
     mesh.triangles.emplace_back(0, 0, 0);
-    const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, ray::Scene(mesh), 16, 1);
+    const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, ray::MeshScene(mesh), 16, 1);
     const size_t sphere = 1280;
     for (size_t i = 0; i < 12; ++i)
         EXPECT_EQ(seen[i], 1) << i;

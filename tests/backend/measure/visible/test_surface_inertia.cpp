@@ -95,11 +95,11 @@ Mesh prism(uint32_t n, double radius, double height, bool only_cap) {
 }  // namespace
 
 TEST(SurfaceInertia, EmptyAndDegenerateMeshesHaveNone) {
-    EXPECT_TRUE(measure::of_mesh(Mesh{}).empty());
+    EXPECT_TRUE(measure::inertia_of_mesh(Mesh{}).empty());
     Mesh line;
     line.positions = {{0, 0, 0}, {1, 1, 1}};
     line.triangles = {{0, 1, 1}, {0, 0, 1}};
-    EXPECT_TRUE(measure::of_mesh(line).empty());
+    EXPECT_TRUE(measure::inertia_of_mesh(line).empty());
     EXPECT_EQ(measure::principal_variances({}).values, glm::dvec3(0));
     EXPECT_TRUE(measure::combined({}, {}).empty());
 }
@@ -108,7 +108,7 @@ TEST(SurfaceInertia, OneTriangleIsFourPointMasses) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
     mesh.triangles = {{0, 1, 2}};
-    const SurfaceInertia out = measure::of_mesh(mesh);
+    const SurfaceInertia out = measure::inertia_of_mesh(mesh);
     EXPECT_DOUBLE_EQ(out.area, 3);
     EXPECT_NEAR(glm::length(out.center - glm::dvec3(2.0 / 3, 1, 0)), 0, 1e-15);
     // Variance of a side's coordinate over a triangle: a^2 / 18.
@@ -118,7 +118,7 @@ TEST(SurfaceInertia, OneTriangleIsFourPointMasses) {
 }
 
 TEST(SurfaceInertia, UnitCubeHasTensorFiveThirds) {
-    const SurfaceInertia cube = measure::of_mesh(shapes::cube());
+    const SurfaceInertia cube = measure::inertia_of_mesh(shapes::cube());
     EXPECT_NEAR(cube.area, 6, 1e-14);
     EXPECT_NEAR(cube.inertia()[0][0], 5.0 / 3, 1e-14);
     EXPECT_NEAR(cube.inertia()[0][1], 0, 1e-14);
@@ -126,8 +126,8 @@ TEST(SurfaceInertia, UnitCubeHasTensorFiveThirds) {
 }
 
 TEST(SurfaceInertia, BoxMeshEqualsTheBox) {
-    const SurfaceInertia mesh =
-        measure::of_mesh(shapes::box(glm::dvec3(-1.5, -1, -0.25), glm::dvec3(1.5, 1, 0.25)));
+    const SurfaceInertia mesh = measure::inertia_of_mesh(
+        shapes::box(glm::dvec3(-1.5, -1, -0.25), glm::dvec3(1.5, 1, 0.25)));
     EXPECT_LT(difference(mesh, closed_forms::of_box(3, 2, 0.5)), 1e-14);
     EXPECT_NEAR(glm::length(mesh.center), 0, 1e-15);
 }
@@ -219,25 +219,26 @@ TEST(SurfaceInertia, TessellationsConvergeAtSecondOrder) {
         EXPECT_NEAR(std::log2(fine / finer), 2, 0.1) << what;
     };
     check_order(
-        "sphere", [](int i) { return measure::of_mesh(shapes::sphere(1.5, 2 + i)); },
+        "sphere", [](int i) { return measure::inertia_of_mesh(shapes::sphere(1.5, 2 + i)); },
         closed_forms::of_sphere(1.5));
     check_order(
         "ellipsoid",
         [](int i) {
-            return measure::of_mesh(shapes::ellipsoid({1.5, 1, 0.7}, 3 + i));
+            return measure::inertia_of_mesh(shapes::ellipsoid({1.5, 1, 0.7}, 3 + i));
         },
         closed_forms::of_ellipsoid({1.5, 1, 0.7}));
     check_order(
-        "cylinder", [](int i) { return measure::of_mesh(prism(16u << i, 0.7, 2, false)); },
+        "cylinder", [](int i) { return measure::inertia_of_mesh(prism(16u << i, 0.7, 2, false)); },
         closed_forms::of_closed_cylinder(0.7, 2));
     check_order(
-        "disc", [](int i) { return measure::of_mesh(prism(16u << i, 0.7, 0, true)); },
+        "disc", [](int i) { return measure::inertia_of_mesh(prism(16u << i, 0.7, 0, true)); },
         closed_forms::of_disc(0.7));
 }
 
 TEST(SurfaceInertia, ScalingByThreeMultipliesTheTensorBy81) {
-    const SurfaceInertia cube = measure::of_mesh(shapes::cube());
-    const SurfaceInertia large = measure::of_mesh(shapes::box(glm::dvec3(-1.5), glm::dvec3(1.5)));
+    const SurfaceInertia cube = measure::inertia_of_mesh(shapes::cube());
+    const SurfaceInertia large =
+        measure::inertia_of_mesh(shapes::box(glm::dvec3(-1.5), glm::dvec3(1.5)));
     EXPECT_NEAR(large.inertia()[0][0] / cube.inertia()[0][0], 81, 1e-12);
     const SurfaceInertia scaled = measure::transformed(cube, {glm::dmat3(3.0), {}});
     EXPECT_LT(difference(scaled, large), 1e-14);
@@ -250,9 +251,9 @@ TEST(SurfaceInertia, TransformedEqualsTheTransformedMesh) {
         const Affine placed{1.75 * glm::dmat3(mirror * x, glm::cross(z, x), z), {4, -5, 6}};
         Mesh mesh;
         append(mesh, shapes::terrain(8), placed);
-        const SurfaceInertia expected = measure::of_mesh(mesh);
+        const SurfaceInertia expected = measure::inertia_of_mesh(mesh);
         const SurfaceInertia found =
-            measure::transformed(measure::of_mesh(shapes::terrain(8)), placed);
+            measure::transformed(measure::inertia_of_mesh(shapes::terrain(8)), placed);
         EXPECT_LT(difference(found, expected), 1e-6);
         EXPECT_NEAR(glm::length(found.center - expected.center), 0, 1e-6);
     }
@@ -274,8 +275,9 @@ TEST(SurfaceInertia, CompositionEqualsTheMeshOfBoth) {
     const Mesh b = shapes::box({5, -1, 0.5}, {6, 1, 1});
     Mesh both = a;
     append(both, b, Affine{});
-    const SurfaceInertia found = measure::combined(measure::of_mesh(a), measure::of_mesh(b));
-    const SurfaceInertia expected = measure::of_mesh(both);
+    const SurfaceInertia found =
+        measure::combined(measure::inertia_of_mesh(a), measure::inertia_of_mesh(b));
+    const SurfaceInertia expected = measure::inertia_of_mesh(both);
     EXPECT_LT(difference(found, expected), 1e-13);
     EXPECT_NEAR(glm::length(found.center - expected.center), 0, 1e-14);
 }
@@ -285,7 +287,8 @@ TEST(SurfaceInertia, PrincipalAxesOfATurnedBoxAreItsOwn) {
     const glm::dvec3 x = glm::normalize(glm::cross(z, glm::dvec3(0, 1, 0)));
     const glm::dmat3 axes(x, glm::cross(z, x), z);
     const SurfaceInertia box = closed_forms::of_box(3, 2, 1);
-    const Eigen out = measure::principal_variances(measure::transformed(box, {axes, {1, 2, 3}}));
+    const SymmetricEigen out =
+        measure::principal_variances(measure::transformed(box, {axes, {1, 2, 3}}));
     for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(std::abs(glm::dot(out.axes[i], axes[i])), 1, 1e-12);
         EXPECT_NEAR(out.values[i], box.moments[i][i] / box.area, 1e-12);
@@ -296,23 +299,23 @@ TEST(SurfaceInertia, FarFromTheOriginAndTinyAndHugeKeepTheirDigits) {
     Mesh far = shapes::cube();
     for (glm::vec3& position : far.positions)
         position += 0x1p20f;
-    EXPECT_LT(difference(measure::of_mesh(far), closed_forms::of_box(1, 1, 1)), 1e-9);
+    EXPECT_LT(difference(measure::inertia_of_mesh(far), closed_forms::of_box(1, 1, 1)), 1e-9);
     for (const double s : {0x1p-20, 0x1p20, 0x1p-60, 0x1p60}) {
         Mesh scaled = shapes::box({-1.5 * s, -s, -0.5 * s}, {1.5 * s, s, 0.5 * s});
-        const SurfaceInertia out = measure::of_mesh(scaled);
+        const SurfaceInertia out = measure::inertia_of_mesh(scaled);
         EXPECT_LT(difference(out, closed_forms::of_box(3 * s, 2 * s, s)), 1e-12);
-        const Eigen eigen = measure::principal_variances(out);
+        const SymmetricEigen eigen = measure::principal_variances(out);
         EXPECT_NEAR(std::abs(eigen.axes[0].x), 1, 1e-12) << s;
     }
 }
 
 TEST(SurfaceInertia, OpenSheetsCountTwiceWhenAsked) {
     const Mesh quad = shapes::quad(2, 1);
-    EXPECT_DOUBLE_EQ(measure::of_mesh(quad).area, 2);
-    EXPECT_DOUBLE_EQ(measure::of_mesh(quad, true).area, 4);
-    EXPECT_DOUBLE_EQ(measure::of_mesh(quad, true).moments[0][0],
-                     2 * measure::of_mesh(quad).moments[0][0]);
-    EXPECT_NEAR(measure::of_mesh(shapes::cube(), true).area, 6, 1e-14);
+    EXPECT_DOUBLE_EQ(measure::inertia_of_mesh(quad).area, 2);
+    EXPECT_DOUBLE_EQ(measure::inertia_of_mesh(quad, true).area, 4);
+    EXPECT_DOUBLE_EQ(measure::inertia_of_mesh(quad, true).moments[0][0],
+                     2 * measure::inertia_of_mesh(quad).moments[0][0]);
+    EXPECT_NEAR(measure::inertia_of_mesh(shapes::cube(), true).area, 6, 1e-14);
 }
 
 TEST(SurfaceInertia, TrianglesWithNonFiniteVerticesCountNothing) {
@@ -320,7 +323,7 @@ TEST(SurfaceInertia, TrianglesWithNonFiniteVerticesCountNothing) {
     mesh.normals.clear();
     mesh.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0, 0);
     mesh.triangles.emplace_back(0, 1, static_cast<uint32_t>(mesh.positions.size() - 1));
-    EXPECT_NEAR(measure::of_mesh(mesh).area, 6, 1e-14);
+    EXPECT_NEAR(measure::inertia_of_mesh(mesh).area, 6, 1e-14);
 }
 
 TEST(SurfaceInertia, AttributesFollowPlacementsThatKeepShapesAndRefuseOthers) {

@@ -74,7 +74,7 @@ TEST(VisibleAlpha, ClearShellsAreKnownAsWellAsSolidOnes) {
     // The same by lines.
     VisibleOptions lines;
     lines.rays = uint64_t{1} << 18u;
-    lines.casting = measure::Casting::FromBound;
+    lines.casting = measure::CastMethod::FromBound;
     EXPECT_NEAR(
         measure_visible(balls, std::vector<Material>{clear}, lines).attributes.visible_area /
             once.visible_area,
@@ -140,7 +140,7 @@ TEST(VisibleTexels, NumbersVertexColorsAndEmissionAreLookedUp) {
     Material material;
     material.base_color = {0.5, 0.5, 0.5};
     material.vertex_colors = true;
-    material.roughness_texture = foliage::texture(ramp, Channel::Red);
+    material.roughness_texture = foliage::texture(ramp, TextureChannel::Red);
     material.emission_texture = foliage::texture(ramp);
     material.emission_texture.scale = glm::dvec3(10);
     Mesh mesh = foliage::card(1, 1);
@@ -181,7 +181,7 @@ TEST(Opacity, IsTheMeanOverTheSurface) {
     image::TexelCache texels;
     const Mesh card = foliage::card(1, 2);
     const auto opacity = [&](const Mesh& mesh, const std::vector<Material>& materials) {
-        return measure::mean_opacity(mesh, ray::Skin(materials, texels), 1);
+        return measure::mean_opacity(mesh, ray::MeshSkin(materials, texels), 1);
     };
     EXPECT_EQ(opacity(Mesh{}, {}), 1);
     EXPECT_EQ(opacity(card, {Material{}}), 1);

@@ -19,7 +19,7 @@
 
 using namespace lodestone;
 using measure::measure_visible;
-using measure::Visible;
+using measure::VisibleAttributes;
 using measure::VisibleOptions;
 
 namespace {
@@ -64,7 +64,7 @@ Mesh clutter() {
 
 }  // namespace
 
-TEST(Visible, EmptyAndDegenerateMeshesHaveEmptyAttributes) {
+TEST(VisibleAttributes, EmptyAndDegenerateMeshesHaveEmptyAttributes) {
     EXPECT_TRUE(attributes_of(Mesh{}).empty());
     Mesh line;
     line.positions = {{0, 0, 0}, {1, 1, 1}};
@@ -75,13 +75,13 @@ TEST(Visible, EmptyAndDegenerateMeshesHaveEmptyAttributes) {
     EXPECT_EQ(none.surface_area, 0);
     EXPECT_EQ(none.radius_of_gyration(), 0);
     EXPECT_TRUE(attributes_of(shapes::cube(), 0).empty());
-    EXPECT_TRUE(measure::seen_from_outside(Mesh{}, ray::Scene(Mesh{}), 4, 1).empty());
+    EXPECT_TRUE(measure::seen_from_outside(Mesh{}, ray::MeshScene(Mesh{}), 4, 1).empty());
 }
 
-TEST(Visible, SobolPointsFillEveryPairOfCellsOnce) {
+TEST(VisibleAttributes, SobolPointsFillEveryPairOfCellsOnce) {
     // In each dimension 256 points have one in each 256th; in the first two, one in each cell of
     // 16 x 16: that is what makes them evener than random ones.
-    const measure::Sobol sobol(42);
+    const measure::SobolPoints sobol(42);
     std::array<std::vector<int>, 4> lines;
     lines.fill(std::vector<int>(256, 0));
     std::vector<int> cells(256, 0);
@@ -99,7 +99,7 @@ TEST(Visible, SobolPointsFillEveryPairOfCellsOnce) {
     EXPECT_EQ(cells, std::vector<int>(256, 1));
 }
 
-TEST(Visible, OneQuadIsSeenFromBothSides) {
+TEST(VisibleAttributes, OneQuadIsSeenFromBothSides) {
     const Attributes quad = attributes_of(shapes::quad(2, 1));
     EXPECT_NEAR(quad.visible_area, 4, 0.02);
     EXPECT_NEAR(quad.surface_area, 4, 1e-12);
@@ -109,7 +109,7 @@ TEST(Visible, OneQuadIsSeenFromBothSides) {
     EXPECT_NEAR(quad.normal_moment, 1, 1e-6);
 }
 
-TEST(Visible, ConvexShapesShowAllTheirArea) {
+TEST(VisibleAttributes, ConvexShapesShowAllTheirArea) {
     for (const uint64_t seed : {1u, 2u, 3u}) {
         const Mesh box = shapes::box({0, 0, 0}, {3, 2, 1});
         EXPECT_NEAR(attributes_of(box, 4096, seed).visible_area / 22, 1, 0.005);
@@ -122,7 +122,7 @@ TEST(Visible, ConvexShapesShowAllTheirArea) {
     }
 }
 
-TEST(Visible, MomentsOfABoxAreItsInertia) {
+TEST(VisibleAttributes, MomentsOfABoxAreItsInertia) {
     const Attributes box = attributes_of(shapes::box({1, 1, 1}, {4, 3, 2}), 16384);
     const measure::SurfaceInertia exact = closed_forms::of_box(3, 2, 1);
     const double radius = box.radius_of_gyration();
@@ -134,12 +134,12 @@ TEST(Visible, MomentsOfABoxAreItsInertia) {
         EXPECT_NEAR(std::abs(box.axes[i][i]), 1, 1e-3);
 }
 
-TEST(Visible, FourthNormalMomentTellsABoxFromASphere) {
+TEST(VisibleAttributes, FourthNormalMomentTellsABoxFromASphere) {
     EXPECT_NEAR(attributes_of(shapes::sphere(1, 4)).normal_moment, 0.6, 0.02);
     EXPECT_NEAR(attributes_of(shapes::cube()).normal_moment, 1, 1e-3);
 }
 
-TEST(Visible, EqualVariancesAreSettledByTheNormals) {
+TEST(VisibleAttributes, EqualVariancesAreSettledByTheNormals) {
     // A cube's eigenvectors are noise; a square bar's are in one plane.
     for (const glm::dvec3& half : {glm::dvec3(1, 1, 1), glm::dvec3(3, 1, 1), glm::dvec3(2, 2, 1)}) {
         const Mesh box = moved(shapes::box(-half, half), {turn(), {5, 6, 7}});
@@ -150,7 +150,7 @@ TEST(Visible, EqualVariancesAreSettledByTheNormals) {
     }
 }
 
-TEST(Visible, AxesAreTurnedOnlyWhenNormalsRiseByMoreThanATwentieth) {
+TEST(VisibleAttributes, AxesAreTurnedOnlyWhenNormalsRiseByMoreThanATwentieth) {
     // Normals all round one axis: no frame in that plane is better than another.
     measure::NormalMoments round;
     for (int i = 0; i < 360; ++i)
@@ -174,7 +174,7 @@ TEST(Visible, AxesAreTurnedOnlyWhenNormalsRiseByMoreThanATwentieth) {
     EXPECT_NEAR(glm::determinant(measure::principal_axes(glm::dmat3(0.0), square)), 1, 1e-9);
 }
 
-TEST(Visible, BookIsMeasuredByRaysAndOverestimatedByTraversal) {
+TEST(VisibleAttributes, BookIsMeasuredByRaysAndOverestimatedByTraversal) {
     const int pages = 200;
     const Mesh book = shapes::book(pages);
     const double truth = attributes_of(book, uint64_t{1} << 20u, 99).visible_area;
@@ -190,12 +190,12 @@ TEST(Visible, BookIsMeasuredByRaysAndOverestimatedByTraversal) {
     }
     // Traversal counts every page, both sides.
     const double all = 2 * pages * 1.0 * 1.4;
-    EXPECT_NEAR(measure::of_mesh(book, true).area / all, 1, 1e-6);
+    EXPECT_NEAR(measure::inertia_of_mesh(book, true).area / all, 1, 1e-6);
     EXPECT_NEAR(attributes_of(book).surface_area / all, 1, 1e-6);
-    EXPECT_NEAR(measure::of_mesh(book, true).area / truth, all / outer, 0.01 * all / outer);
+    EXPECT_NEAR(measure::inertia_of_mesh(book, true).area / truth, all / outer, 0.01 * all / outer);
 }
 
-TEST(Visible, HalfHiddenFloorHasItsClosedForm) {
+TEST(VisibleAttributes, HalfHiddenFloorHasItsClosedForm) {
     // Two parallel squares: what one hides of the other's inner side is their form factor.
     Mesh mesh = shapes::quad(1, 1);
     append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, 1}});
@@ -209,21 +209,21 @@ TEST(Visible, HalfHiddenFloorHasItsClosedForm) {
     EXPECT_NEAR(attributes_of(mesh, 65536).visible_area / exact, 1, 0.005);
 }
 
-TEST(Visible, BothWaysOfCastingAgree) {
+TEST(VisibleAttributes, BothWaysOfCastingAgree) {
     // The sampler takes lines for the book and surface rays for the flock; a shape between.
     Mesh flock;
     for (int i = 0; i < 12; ++i)
         append(flock, shapes::sphere(0.1, 2),
                {glm::dmat3(1.0), {std::cos(i * 1.7) * 3, std::sin(i * 2.3) * 3, 0.5 * i}});
     const Mesh book = shapes::book(200);
-    EXPECT_TRUE(measure::VisibleSampler(flock, ray::Scene(flock), 1).from_surface());
-    EXPECT_FALSE(measure::VisibleSampler(book, ray::Scene(book), 1).from_surface());
+    EXPECT_TRUE(measure::VisibleSampler(flock, ray::MeshScene(flock), 1).from_surface());
+    EXPECT_FALSE(measure::VisibleSampler(book, ray::MeshScene(book), 1).from_surface());
     // Twelve separate spheres hide next to nothing of each other.
     const double alone = surface_area(flock);
     EXPECT_NEAR(attributes_of(flock).visible_area / alone, 1, 0.01);
 }
 
-TEST(Visible, ErrorsAreAsLargeAsTheyAreSaidToBe) {
+TEST(VisibleAttributes, ErrorsAreAsLargeAsTheyAreSaidToBe) {
     const Mesh mesh = clutter();
     const double truth = attributes_of(mesh, uint64_t{1} << 19u, 77).visible_area;
     VisibleOptions options;
@@ -241,10 +241,10 @@ TEST(Visible, ErrorsAreAsLargeAsTheyAreSaidToBe) {
     options.most_rays = 1000;
     const uint64_t rays = measure_visible(mesh, {}, options).attributes.rays;
     EXPECT_LE(rays, 1000u);
-    EXPECT_GT(rays, 1000u - measure::Strata::kStep);
+    EXPECT_GT(rays, 1000u - measure::StratifiedPoints::kStep);
 }
 
-TEST(Visible, MovingTurningAndScalingMoveTurnAndScaleTheAttributes) {
+TEST(VisibleAttributes, MovingTurningAndScalingMoveTurnAndScaleTheAttributes) {
     const Mesh mesh = clutter();
     const Attributes before = attributes_of(mesh, 65536);
     const double scale = 2.5;
@@ -259,7 +259,7 @@ TEST(Visible, MovingTurningAndScalingMoveTurnAndScaleTheAttributes) {
     EXPECT_NEAR(after.normal_moment, before.normal_moment, 0.02);
 }
 
-TEST(Visible, FarFromTheOriginAndTinyAndHugeMeasureTheSame) {
+TEST(VisibleAttributes, FarFromTheOriginAndTinyAndHugeMeasureTheSame) {
     const Mesh mesh = shapes::book(20, 0.125f);
     const Attributes reference = attributes_of(mesh);
     for (const double s : {1e-6, 1e6, 1e-12}) {
@@ -276,7 +276,7 @@ TEST(Visible, FarFromTheOriginAndTinyAndHugeMeasureTheSame) {
     EXPECT_NEAR(out.moments[0][0], 5.0 / 6, 0.02);
 }
 
-TEST(Visible, SurfacePropertiesAreMeansOverTheVisibleArea) {
+TEST(VisibleAttributes, SurfacePropertiesAreMeansOverTheVisibleArea) {
     // White pages between red covers: from outside it is the covers' red and the pages' edges.
     Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
     append(mesh, shapes::sphere(0.4, 3), {glm::dmat3(1.0), glm::dvec3(0.5)}, 1);
@@ -302,14 +302,14 @@ TEST(Visible, SurfacePropertiesAreMeansOverTheVisibleArea) {
     EXPECT_NEAR(glm::length(plain.color - glm::dvec3(0.8)), 0, 1e-12);
 }
 
-TEST(Visible, TagsTellWhichChildWasSeen) {
+TEST(VisibleAttributes, TagsTellWhichChildWasSeen) {
     Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
     std::vector<uint32_t> tags(mesh.triangles.size(), 0);
     append(mesh, shapes::box(glm::dvec3(0.25), glm::dvec3(0.75)), Affine{});
     tags.resize(mesh.triangles.size(), 1);
     append(mesh, shapes::box({0, 0, 3}, {1, 1, 4}), Affine{});
     tags.resize(mesh.triangles.size(), 2);
-    const Visible out = measure_visible(mesh, {}, {}, tags);
+    const VisibleAttributes out = measure_visible(mesh, {}, {}, tags);
     ASSERT_EQ(out.hits_by_tag.size(), 3u);
     EXPECT_GT(out.hits_by_tag[0], 1000u);
     EXPECT_EQ(out.hits_by_tag[1], 0u);
@@ -321,7 +321,7 @@ TEST(Visible, TagsTellWhichChildWasSeen) {
     EXPECT_THROW(measure_visible(mesh, {}, {}, tags), Error);
 }
 
-TEST(Visible, CrossingSheetsAreMeasured) {
+TEST(VisibleAttributes, CrossingSheetsAreMeasured) {
     // Two crossed squares: from surface rays and from lines, 4 minus what they hide.
     Mesh mesh = shapes::quad(1, 1);
     Affine upright;
@@ -342,15 +342,15 @@ TEST(Visible, CrossingSheetsAreMeasured) {
     EXPECT_NEAR(attributes_of(mesh, 65536).visible_area / exact, 1, 0.005);
 }
 
-TEST(Visible, SameBitsOnOneAndManyThreadsAndOnEveryRun) {
+TEST(VisibleAttributes, SameBitsOnOneAndManyThreadsAndOnEveryRun) {
     const Mesh mesh = clutter();
     const auto run = [&](int threads) {
         const ThreadLimit limit(threads);
         VisibleOptions options;
         options.relative_error = 0.01;
-        const Visible out =
+        const VisibleAttributes out =
             measure_visible(mesh, {}, options, std::vector<uint32_t>(mesh.triangles.size(), 3));
-        const ray::Scene scene(mesh);
+        const ray::MeshScene scene(mesh);
         return std::tuple(out.attributes.visible_area, out.attributes.centroid,
                           out.attributes.moments, out.attributes.axes, out.attributes.normal_moment,
                           out.attributes.rays, out.hits_by_tag,
@@ -361,7 +361,7 @@ TEST(Visible, SameBitsOnOneAndManyThreadsAndOnEveryRun) {
     EXPECT_EQ(once, run(2));
 }
 
-TEST(Visible, InsideOutPartsAndNonFiniteVerticesDoNoHarm) {
+TEST(VisibleAttributes, InsideOutPartsAndNonFiniteVerticesDoNoHarm) {
     Mesh inside_out = shapes::cube();
     for (Triangle& t : inside_out.triangles)
         std::swap(t.y, t.z);
@@ -377,23 +377,23 @@ TEST(Visible, InsideOutPartsAndNonFiniteVerticesDoNoHarm) {
     EXPECT_NEAR(attributes_of(broken).visible_area, 6, 0.05);
 }
 
-TEST(Visible, CancelledJobsStop) {
+TEST(VisibleAttributes, CancelledJobsStop) {
     const int32_t cancel = 1;
     const Job job(&cancel, nullptr, nullptr);
     const Mesh mesh = shapes::cube();
     EXPECT_THROW(measure_visible(mesh, {}, {}, {}, job), Error);
-    EXPECT_THROW(measure::seen_from_outside(mesh, ray::Scene(mesh), 4, 1, job), Error);
+    EXPECT_THROW(measure::seen_from_outside(mesh, ray::MeshScene(mesh), 4, 1, job), Error);
 }
 
-TEST(Visible, SceneOfAnotherMeshIsRefused) {
-    const ray::Scene scene(shapes::quad(1, 1));
+TEST(VisibleAttributes, SceneOfAnotherMeshIsRefused) {
+    const ray::MeshScene scene(shapes::quad(1, 1));
     EXPECT_THROW(measure_visible(shapes::cube(), scene, {}, {}), Error);
     EXPECT_THROW(measure::seen_from_outside(shapes::cube(), scene, 4, 1), Error);
 }
 
-TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {
+TEST(VisibleAttributes, SamplersAndSidesMadeBeforeChangeNothing) {
     const Mesh mesh = clutter();
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     VisibleOptions options;
     options.seed = 9;
     const measure::VisibleSampler sampler(mesh, scene, options.seed);
@@ -405,12 +405,12 @@ TEST(Visible, SamplersAndSidesMadeBeforeChangeNothing) {
               measure::seen_from_outside(mesh, scene, 4, 9));
 }
 
-TEST(Visible, AreaAloneIsWhatAllAttributesTell) {
+TEST(VisibleAttributes, AreaAloneIsWhatAllAttributesTell) {
     std::vector<Mesh> meshes{clutter(), shapes::cube(), shapes::book(8), Mesh{}};
     meshes.push_back(shapes::sphere(0.1, 1));
     append(meshes.back(), meshes[0], {glm::dmat3(1.0), {40, 0, 0}});
     for (const Mesh& mesh : meshes) {
-        const ray::Scene scene(mesh);
+        const ray::MeshScene scene(mesh);
         VisibleOptions options;
         options.rays = 1000;
         options.seed = 4;
@@ -420,7 +420,7 @@ TEST(Visible, AreaAloneIsWhatAllAttributesTell) {
     }
 }
 
-TEST(Visible, RaysEndOnceTheyChangeLittle) {
+TEST(VisibleAttributes, RaysEndOnceTheyChangeLittle) {
     constexpr uint64_t kSeeds = 16;
     constexpr double kShare = 0.004;
     const Mesh mesh = clutter();
@@ -450,14 +450,14 @@ TEST(Visible, RaysEndOnceTheyChangeLittle) {
     EXPECT_EQ(settled(1, 1).rays, 4096u);
 }
 
-TEST(Visible, RaysThatWereCastBeforeAreNotCastAgain) {
+TEST(VisibleAttributes, RaysThatWereCastBeforeAreNotCastAgain) {
     const Mesh mesh = clutter();
-    const ray::Scene scene(mesh);
+    const ray::MeshScene scene(mesh);
     VisibleOptions options;
     options.seed = 9;
     const measure::VisibleSampler sampler(mesh, scene, options.seed);
     std::vector<measure::SurfaceSample> samples;
-    std::vector<measure::Cast> known =
+    std::vector<measure::CastPoints> known =
         measure::add_visible_points(mesh, sampler, {}, 1500, {}, samples);
     EXPECT_GE(known.size(), 750u);
     EXPECT_LE(known.size(), 3000u);
@@ -467,7 +467,7 @@ TEST(Visible, RaysThatWereCastBeforeAreNotCastAgain) {
     EXPECT_EQ(told.moments, cast.moments);
     EXPECT_EQ(told.centroid, cast.centroid);
     // What is told is believed.
-    for (measure::Cast& ray : known)
+    for (measure::CastPoints& ray : known)
         ray.count = 0;
     const Attributes less = measure_visible(mesh, sampler, nullptr, options, {}, known).attributes;
     EXPECT_LT(less.visible_area, 0.9 * cast.visible_area);

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 using namespace lodestone;
-using measure::Casting;
-using measure::Strata;
-using measure::Visible;
+using measure::CastMethod;
+using measure::StratifiedPoints;
+using measure::VisibleAttributes;
 using measure::VisibleOptions;
 
 namespace {
@@ -64,7 +64,7 @@ Attributes attributes_of(const Mesh& mesh, VisibleOptions options) {
     return measure::measure_visible(mesh, {}, options).attributes;
 }
 
-double area_by(const Mesh& mesh, Casting casting, double error = 0.005) {
+double area_by(const Mesh& mesh, CastMethod casting, double error = 0.005) {
     VisibleOptions options;
     options.casting = casting;
     options.relative_error = error;
@@ -73,9 +73,9 @@ double area_by(const Mesh& mesh, Casting casting, double error = 0.005) {
 
 }  // namespace
 
-TEST(Strata, PairsShareACellAndCellsFillTheSpace) {
+TEST(StratifiedPoints, PairsShareACellAndCellsFillTheSpace) {
     const uint32_t count = 256;
-    const Strata strata(7, count);
+    const StratifiedPoints strata(7, count);
     std::vector<int> cells(count / 2, 0);
     for (uint32_t i = 0; i < count; ++i) {
         const std::array<double, 4> u = strata.point(i);
@@ -89,15 +89,15 @@ TEST(Strata, PairsShareACellAndCellsFillTheSpace) {
         ++cells[cell];
     }
     EXPECT_EQ(cells, std::vector<int>(count / 2, 2));
-    EXPECT_NE(Strata(8, count).point(0), strata.point(0));
-    EXPECT_EQ(Strata(7, count).point(9), strata.point(9));
+    EXPECT_NE(StratifiedPoints(8, count).point(0), strata.point(0));
+    EXPECT_EQ(StratifiedPoints(7, count).point(9), strata.point(9));
 }
 
 TEST(VisibleSampler, BothKindsOfRaysFindTheSameArea) {
     for (const Mesh& mesh : {chair(), fence(), leaves()}) {
-        const double lines = area_by(mesh, Casting::FromBound);
-        EXPECT_NEAR(area_by(mesh, Casting::FromSurface) / lines, 1, 0.01);
-        EXPECT_NEAR(area_by(mesh, Casting::Best) / lines, 1, 0.01);
+        const double lines = area_by(mesh, CastMethod::FromBound);
+        EXPECT_NEAR(area_by(mesh, CastMethod::FromSurface) / lines, 1, 0.01);
+        EXPECT_NEAR(area_by(mesh, CastMethod::Best) / lines, 1, 0.01);
     }
 }
 
@@ -105,16 +105,16 @@ TEST(VisibleSampler, BothKindsOfRaysFindTheSameArea) {
 TEST(VisibleSampler, SurfacesInOnePlaceCountOnce) {
     Mesh twice = shapes::cube();
     add_box(twice, glm::dvec3(-0.5), {0.5, 0.5, 0});
-    EXPECT_NEAR(area_by(twice, Casting::FromSurface), 6, 0.05);
+    EXPECT_NEAR(area_by(twice, CastMethod::FromSurface), 6, 0.05);
     Mesh sheets = shapes::quad(1, 1);
     append(sheets, shapes::quad(1, 1), Affine{});
     append(sheets, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, 3}});
-    EXPECT_NEAR(area_by(sheets, Casting::FromSurface) / area_by(sheets, Casting::FromBound), 1,
-                0.01);
+    EXPECT_NEAR(area_by(sheets, CastMethod::FromSurface) / area_by(sheets, CastMethod::FromBound),
+                1, 0.01);
     // Faces that touch, back to back, are both inside.
     Mesh stack = shapes::cube();
     append(stack, shapes::cube(), {glm::dmat3(1.0), {0, 0, 1}});
-    EXPECT_NEAR(area_by(stack, Casting::FromSurface), 10, 0.1);
+    EXPECT_NEAR(area_by(stack, CastMethod::FromSurface), 10, 0.1);
 }
 
 TEST(VisibleSampler, WhatHidesNothingIsExact) {
@@ -122,7 +122,7 @@ TEST(VisibleSampler, WhatHidesNothingIsExact) {
     options.relative_error = 0.01;
     std::vector<uint32_t> tags(12, 0);
     tags[0] = tags[1] = 1;
-    const Visible box =
+    const VisibleAttributes box =
         measure::measure_visible(shapes::box({0, 0, 0}, {3, 2, 1}), {}, options, tags);
     const measure::SurfaceInertia exact = closed_forms::of_box(3, 2, 1);
     EXPECT_NEAR(box.attributes.visible_area, 22, 1e-5);
@@ -153,8 +153,8 @@ TEST(VisibleSampler, AreasAreWithinTheStatedErrorAsOftenAsPromised) {
     constexpr int kSeeds = 30;
     int inside = 0;
     for (const Mesh& mesh : {chair(), fence(), leaves()}) {
-        const double truth = area_by(mesh, Casting::Best, 0.003);
-        const ray::Scene scene(mesh);
+        const double truth = area_by(mesh, CastMethod::Best, 0.003);
+        const ray::MeshScene scene(mesh);
         int here = 0;
         for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
             VisibleOptions options;
@@ -190,6 +190,6 @@ TEST(VisibleSampler, MostRaysAreNeverExceeded) {
         options.most_rays = most;
         const Attributes out = attributes_of(chair(), options);
         EXPECT_LE(out.rays, most);
-        EXPECT_EQ(out.empty(), most < Strata::kStep);
+        EXPECT_EQ(out.empty(), most < StratifiedPoints::kStep);
     }
 }

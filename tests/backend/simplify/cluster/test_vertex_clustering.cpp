@@ -13,7 +13,7 @@
 #include <set>
 
 using namespace lodestone;
-using simplify::cluster;
+using simplify::cluster_vertices;
 using namespace lodestone::shapes;
 
 namespace {
@@ -64,23 +64,23 @@ double off_sphere(const Mesh& mesh, double radius) {
 }  // namespace
 
 TEST(Cluster, NothingStaysNothing) {
-    EXPECT_TRUE(cluster(Mesh{}, 10).empty());
+    EXPECT_TRUE(cluster_vertices(Mesh{}, 10).empty());
 }
 
 TEST(Cluster, ATargetOfZeroAndBadMeshesAreRefused) {
-    EXPECT_THROW(cluster(cube(), 0), Error);
+    EXPECT_THROW(cluster_vertices(cube(), 0), Error);
     Mesh bad = cube();
     bad.triangles[0].x = 1000;
-    EXPECT_THROW(cluster(bad, 4), Error);
+    EXPECT_THROW(cluster_vertices(bad, 4), Error);
 }
 
 TEST(Cluster, ATargetNotBelowTheInputReturnsIt) {
-    EXPECT_EQ(hash_of(cluster(cube(), 12)), hash_of(cube()));
+    EXPECT_EQ(hash_of(cluster_vertices(cube(), 12)), hash_of(cube()));
 }
 
 TEST(Cluster, TwoTrianglesBecomeOne) {
     const Mesh mesh = quad(2, 1);
-    expect_sound(cluster(mesh, 1), mesh, 1);
+    expect_sound(cluster_vertices(mesh, 1), mesh, 1);
 }
 
 TEST(Cluster, EveryTargetIsKeptAndComeNearTo) {
@@ -88,7 +88,7 @@ TEST(Cluster, EveryTargetIsKeptAndComeNearTo) {
     ASSERT_GT(mesh.triangles.size(), 5000u);
     for (const double part : {0.9, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005}) {
         const auto target = static_cast<size_t>(part * static_cast<double>(mesh.triangles.size()));
-        const Mesh level = cluster(mesh, target);
+        const Mesh level = cluster_vertices(mesh, target);
         expect_sound(level, mesh, target);
         expect_each_once(level);
         EXPECT_GE(level.triangles.size() + 8, target * 9 / 10) << target;
@@ -97,13 +97,13 @@ TEST(Cluster, EveryTargetIsKeptAndComeNearTo) {
 
 TEST(Cluster, ASphereStaysASphere) {
     const Mesh mesh = without_normals(sphere(1, 5));
-    EXPECT_LT(off_sphere(cluster(mesh, mesh.triangles.size() / 4), 1), 0.002);
-    EXPECT_LT(off_sphere(cluster(mesh, mesh.triangles.size() / 40), 1), 0.02);
+    EXPECT_LT(off_sphere(cluster_vertices(mesh, mesh.triangles.size() / 4), 1), 0.002);
+    EXPECT_LT(off_sphere(cluster_vertices(mesh, mesh.triangles.size() / 40), 1), 0.02);
 }
 
 TEST(Cluster, ACubesEdgesStayWhereTheyAre) {
     const Mesh mesh = without_normals(fine_cube(40));
-    const Mesh level = cluster(mesh, mesh.triangles.size() / 10);
+    const Mesh level = cluster_vertices(mesh, mesh.triangles.size() / 10);
     expect_sound(level, mesh, mesh.triangles.size() / 10);
     Box3 box;
     for (const glm::vec3& p : level.positions)
@@ -117,7 +117,7 @@ TEST(Cluster, ACubesEdgesStayWhereTheyAre) {
 
 TEST(Cluster, AnOpenSheetKeepsItsBorder) {
     const Mesh mesh = grid(60);
-    const Mesh level = cluster(mesh, 200);
+    const Mesh level = cluster_vertices(mesh, 200);
     expect_sound(level, mesh, 200);
     EXPECT_NEAR(surface_area(level), 1, 0.03);
 }
@@ -127,7 +127,7 @@ TEST(Cluster, TheBorderBetweenSlotsStays) {
     for (const Triangle& t : mesh.triangles)
         mesh.slots.push_back(
             mesh.positions[t.x].x + mesh.positions[t.y].x + mesh.positions[t.z].x < 1.5f ? 3 : 4);
-    const Mesh level = cluster(mesh, 300);
+    const Mesh level = cluster_vertices(mesh, 300);
     expect_sound(level, mesh, 300);
     std::array<double, 5> areas{};
     for (size_t i = 0; i < level.triangles.size(); ++i)
@@ -138,7 +138,7 @@ TEST(Cluster, TheBorderBetweenSlotsStays) {
 
 TEST(Cluster, NormalsAndTextureCoordinatesAreThoseOfTheSurface) {
     const Mesh mesh = seamed_cylinder(96, 96);
-    const Mesh level = cluster(mesh, mesh.triangles.size() / 8);
+    const Mesh level = cluster_vertices(mesh, mesh.triangles.size() / 8);
     expect_sound(level, mesh, mesh.triangles.size() / 8);
     for (size_t v = 0; v < level.positions.size(); ++v) {
         const glm::vec3& p = level.positions[v];
@@ -156,7 +156,7 @@ TEST(Cluster, NormalsAndTextureCoordinatesAreThoseOfTheSurface) {
 
 TEST(Cluster, SharpEdgesStaySharp) {
     const Mesh mesh = fine_cube(24);
-    const Mesh level = cluster(mesh, 700);
+    const Mesh level = cluster_vertices(mesh, 700);
     expect_sound(level, mesh, 700);
     size_t off = 0;
     for (const glm::vec3& n : level.normals)
@@ -168,7 +168,7 @@ TEST(Cluster, ColorsAreMixedNotInvented) {
     Mesh mesh = grid(40);
     for (const glm::vec3& p : mesh.positions)
         mesh.colors.emplace_back(p.x, p.y, 0.25f, 1.0f);
-    const Mesh level = cluster(mesh, 200);
+    const Mesh level = cluster_vertices(mesh, 200);
     expect_sound(level, mesh, 200);
     for (size_t v = 0; v < level.positions.size(); ++v) {
         EXPECT_NEAR(level.colors[v].x, level.positions[v].x, 0.1);
@@ -187,41 +187,42 @@ TEST(Cluster, SplitVerticesAreJoinedAsIfTheyWereOne) {
         soup.triangles.emplace_back(first, first + 1, first + 2);
     }
     const size_t target = whole.triangles.size() / 5;
-    EXPECT_LT(off_sphere(cluster(soup, target), 1), 1.1 * off_sphere(cluster(whole, target), 1));
+    EXPECT_LT(off_sphere(cluster_vertices(soup, target), 1),
+              1.1 * off_sphere(cluster_vertices(whole, target), 1));
 }
 
 TEST(Cluster, FarFromTheOriginAndTinyItIsTheSame) {
     const Mesh mesh = without_normals(sphere(1, 4));
     const size_t target = mesh.triangles.size() / 6;
-    const Mesh near = cluster(mesh, target);
+    const Mesh near = cluster_vertices(mesh, target);
     for (const double scale : {1e-18, 0.25, 1e18}) {
         Mesh scaled = mesh;
         for (glm::vec3& p : scaled.positions)
             p *= static_cast<float>(scale);
-        const Mesh level = cluster(scaled, target);
+        const Mesh level = cluster_vertices(scaled, target);
         ASSERT_NEAR(static_cast<double>(level.triangles.size()),
                     static_cast<double>(near.triangles.size()), 8);
         EXPECT_NEAR(surface_area(level) / (scale * scale), surface_area(near), 0.02);
     }
     const Mesh far = moved(mesh, {4096, -4096, 2048});
-    EXPECT_NEAR(surface_area(cluster(far, target)), surface_area(near), 0.05);
+    EXPECT_NEAR(surface_area(cluster_vertices(far, target)), surface_area(near), 0.05);
 }
 
 TEST(Cluster, TrianglesThatAreNotNumbersAreLeftOut) {
     Mesh mesh = terrain(20);
     mesh.positions[5].x = std::numeric_limits<float>::quiet_NaN();
     mesh.positions[77].z = std::numeric_limits<float>::infinity();
-    expect_sound(cluster(mesh, 100), mesh, 100);
+    expect_sound(cluster_vertices(mesh, 100), mesh, 100);
     for (glm::vec3& p : mesh.positions)
         p.y = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(cluster(mesh, 100).empty());
+    EXPECT_TRUE(cluster_vertices(mesh, 100).empty());
 }
 
 TEST(Cluster, WhatHasNoExtentOrIsAllSpecksIsNeverEmpty) {
     Mesh point = grid(10);
     for (glm::vec3& p : point.positions)
         p = {3, 4, 5};
-    EXPECT_EQ(cluster(point, 7).triangles.size(), 7u);
+    EXPECT_EQ(cluster_vertices(point, 7).triangles.size(), 7u);
     Mesh specks;  // each far below the grid's resolution
     for (int i = 0; i < 200; ++i) {
         Affine far;
@@ -229,11 +230,11 @@ TEST(Cluster, WhatHasNoExtentOrIsAllSpecksIsNeverEmpty) {
         far.offset = {i * 1.0, i * 7 % 50, i * 3 % 20};
         append(specks, quad(1, 1), far);
     }
-    expect_sound(cluster(specks, 50), specks, 50);
+    expect_sound(cluster_vertices(specks, 50), specks, 50);
     Mesh line = grid(10);
     for (glm::vec3& p : line.positions)
         p = {p.x + p.y, 0, 0};
-    EXPECT_FALSE(cluster(line, 20).empty());
+    EXPECT_FALSE(cluster_vertices(line, 20).empty());
 }
 
 TEST(Cluster, TrianglesWithoutAreaGoWithTheirVertices) {
@@ -250,7 +251,7 @@ TEST(Cluster, TrianglesWithoutAreaGoWithTheirVertices) {
     };
     add(50, 1.1f, 0.02f, 2);   // a line, whose triangles stay between cells of their own
     add(400, 0.0f, 1e-7f, 3);  // all within one cell: nothing else needs to go
-    const Mesh level = cluster(mesh, 350);
+    const Mesh level = cluster_vertices(mesh, 350);
     expect_sound(level, mesh, 350);
     EXPECT_GT(level.triangles.size(), 100u);
     std::set<uint32_t> used;
@@ -264,7 +265,7 @@ TEST(Cluster, TrianglesWithoutAreaGoWithTheirVertices) {
 }
 
 TEST(Cluster, AnyIndicesAndScalesSurvive) {
-    Random random(7);
+    PcgRandom random(7);
     for (int round = 0; round < 60; ++round) {
         Mesh mesh;
         const auto vertices = static_cast<uint32_t>(3 + random.next() % 400);
@@ -287,7 +288,7 @@ TEST(Cluster, AnyIndicesAndScalesSurvive) {
         if (round % 4 == 0)
             mesh.normals.assign(vertices, glm::vec3(0, 0, 1));
         const size_t target = random.next() % count + 1;
-        const Mesh level = cluster(mesh, target);
+        const Mesh level = cluster_vertices(mesh, target);
         expect_sound(level, mesh, std::max(target, size_t{1}));
     }
 }
@@ -301,7 +302,7 @@ TEST(Cluster, WhatReachesToTheEdgeOfNumbersStaysFinite) {
             p = glm::clamp(p * (1 + 0.02f * static_cast<float>(i)), glm::vec3(-1), glm::vec3(1)) *
                 std::numeric_limits<float>::max();
         for (const size_t target : {8, 20, 60, 200})
-            expect_sound(cluster(ball, target), ball, target);
+            expect_sound(cluster_vertices(ball, target), ball, target);
     }
 }
 
@@ -309,22 +310,22 @@ TEST(Cluster, TheSameBitsOnAnyNumberOfThreads) {
     const Mesh mesh = terrain(150);
     const Hash one = [&] {
         const ThreadLimit limit(1);
-        return hash_of(cluster(mesh, 4000));
+        return hash_of(cluster_vertices(mesh, 4000));
     }();
-    EXPECT_EQ(one, hash_of(cluster(mesh, 4000)));
+    EXPECT_EQ(one, hash_of(cluster_vertices(mesh, 4000)));
     const ThreadLimit limit(3);
-    EXPECT_EQ(one, hash_of(cluster(mesh, 4000)));
+    EXPECT_EQ(one, hash_of(cluster_vertices(mesh, 4000)));
 }
 
 TEST(Cluster, ACancelledJobStops) {
     const volatile int32_t cancel = 1;
-    EXPECT_THROW(cluster(terrain(50), 100, Job(&cancel, nullptr, nullptr)), Error);
+    EXPECT_THROW(cluster_vertices(terrain(50), 100, Job(&cancel, nullptr, nullptr)), Error);
 }
 
 TEST(Cluster, AMillionVerticesUseTheFinerGrid) {
     const Mesh mesh = terrain(1100);  // above 2^20 vertices
     const size_t half = mesh.triangles.size() / 2;
-    const Mesh level = cluster(mesh, half);
+    const Mesh level = cluster_vertices(mesh, half);
     EXPECT_LE(level.triangles.size(), half);
     EXPECT_GE(level.triangles.size(), half * 9 / 10);
     EXPECT_NEAR(surface_area(level), surface_area(mesh), 1e-3 * surface_area(mesh));

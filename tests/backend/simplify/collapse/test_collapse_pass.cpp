@@ -89,13 +89,13 @@ TEST(Collapse, ModesThatAreNoneAreRefused) {
 }
 
 TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
-    Random random(3);
+    PcgRandom random(3);
     const auto number = [&] { return 2 * random.uniform() - 1; };
     const auto vector = [&] { return glm::dvec3(number(), number(), number()); };
     constexpr size_t kCount = simplify::EdgeBlock::kSize;
     simplify::EdgeBlock block{};
     std::vector<simplify::VertexAround> ends(2 * kCount);
-    std::vector<geometry::Optimum> expected(kCount);
+    std::vector<geometry::CollapseOptimum> expected(kCount);
     std::vector<glm::dvec3> froms(kCount);
     for (size_t i = 0; i < kCount; ++i) {
         geometry::EdgeEnd a{vector(), {}, {}};
@@ -132,9 +132,9 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
                        held == -1 ? -1.0f : (held == 1 ? 1.0f : 0.0f)};
         froms[i] = a.point;
         if (held == -1 || held == 1)
-            expected[i].cost = cost_at(a, b, held == -1 ? a.point : b.point);
+            expected[i].cost = collapse_cost(a, b, held == -1 ? a.point : b.point);
         else
-            expected[i] = best_point(a, b, shared);
+            expected[i] = optimal_collapse(a, b, shared);
     }
     edge_costs(block);
     for (size_t i = 0; i < kCount; ++i) {
@@ -158,7 +158,7 @@ TEST(Collapse, CostsOfManyEdgesAreThoseOfEach) {
 }
 
 TEST(Collapse, FansAreFoundAndPutInOrder) {
-    using simplify::Neighbors;
+    using simplify::VertexNeighbors;
     // Around vertex 0: triangles (0, a, b), in no order.
     const auto around = [](const std::vector<std::pair<uint32_t, uint32_t>>& pairs) {
         simplify::CollapseMesh mesh;
@@ -173,46 +173,49 @@ TEST(Collapse, FansAreFoundAndPutInOrder) {
                            bool& single) {
         ring.resize(mesh.triangles.size());
         std::iota(ring.begin(), ring.end(), 0u);
-        Neighbors neighbors;
-        const Neighbors::Fan fan = neighbors.find_fan(mesh, ring, 0);
-        single = fan != Neighbors::Fan::None && neighbors.order(ring);
+        VertexNeighbors neighbors;
+        const VertexNeighbors::FanKind fan = neighbors.find_fan(mesh, ring, 0);
+        single = fan != VertexNeighbors::FanKind::None && neighbors.order(ring);
         return fan;
     };
     std::vector<uint32_t> ring;
     bool single = false;
-    EXPECT_EQ(fan_of(around({}), ring, single), Neighbors::Fan::None);
-    EXPECT_EQ(fan_of(around({{1, 2}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_EQ(fan_of(around({}), ring, single), VertexNeighbors::FanKind::None);
+    EXPECT_EQ(fan_of(around({{1, 2}}), ring, single), VertexNeighbors::FanKind::Open);
     EXPECT_TRUE(single);
     const auto closed = around({{1, 2}, {4, 1}, {2, 3}, {3, 4}});
-    EXPECT_EQ(fan_of(closed, ring, single), Neighbors::Fan::Closed);
+    EXPECT_EQ(fan_of(closed, ring, single), VertexNeighbors::FanKind::Closed);
     ASSERT_TRUE(single);
     for (size_t i = 0; i < ring.size(); ++i)
         EXPECT_EQ(simplify::ends_of(closed.triangles[ring[i]], 0).last,
                   simplify::ends_of(closed.triangles[ring[(i + 1) % ring.size()]], 0).next);
     const auto open = around({{3, 4}, {1, 2}, {2, 3}});
-    EXPECT_EQ(fan_of(open, ring, single), Neighbors::Fan::Open);
+    EXPECT_EQ(fan_of(open, ring, single), VertexNeighbors::FanKind::Open);
     EXPECT_TRUE(single);
     EXPECT_EQ(ring, (std::vector<uint32_t>{1, 2, 0}));
     // Two closed fans, one of them next to all there are; an open and a closed one; turned over;
     // three on an edge.
     EXPECT_EQ(fan_of(around({{1, 2}, {4, 5}, {2, 3}, {5, 6}, {3, 1}, {6, 4}}), ring, single),
-              Neighbors::Fan::Closed);
+              VertexNeighbors::FanKind::Closed);
     EXPECT_FALSE(single);
-    EXPECT_EQ(fan_of(around({{7, 8}, {1, 2}, {2, 3}, {3, 1}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_EQ(fan_of(around({{7, 8}, {1, 2}, {2, 3}, {3, 1}}), ring, single),
+              VertexNeighbors::FanKind::Open);
     EXPECT_FALSE(single);
-    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {7, 8}, {3, 1}}), ring, single), Neighbors::Fan::Open);
+    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {7, 8}, {3, 1}}), ring, single),
+              VertexNeighbors::FanKind::Open);
     EXPECT_FALSE(single);
     // Neighbors whose lowest bits are the same, as far as they are looked up by these.
     EXPECT_EQ(fan_of(around({{1, 2}, {2, 1 + (1u << 20)}, {1 + (1u << 20), 1}}), ring, single),
-              Neighbors::Fan::Closed);
+              VertexNeighbors::FanKind::Closed);
     EXPECT_TRUE(single);
-    EXPECT_EQ(fan_of(around({{1, 2}, {3, 2}}), ring, single), Neighbors::Fan::None);
-    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {2, 4}}), ring, single), Neighbors::Fan::None);
+    EXPECT_EQ(fan_of(around({{1, 2}, {3, 2}}), ring, single), VertexNeighbors::FanKind::None);
+    EXPECT_EQ(fan_of(around({{1, 2}, {2, 3}, {2, 4}}), ring, single),
+              VertexNeighbors::FanKind::None);
 }
 
 TEST(Collapse, CompactingFillsTheListsThatBuildingMakes) {
     const Mesh mesh = hills(20);
-    simplify::CollapseMesh working = simplify::open(mesh, {});
+    simplify::CollapseMesh working = simplify::open_collapse_mesh(mesh, {});
     for (size_t i = 0; i < working.triangles.size(); i += i % 7 + 2)
         working.triangles[i].x = simplify::kNone;
     simplify::Adjacency filled;
@@ -363,7 +366,7 @@ TEST(Collapse, CustomNormalsAndUvsStayTrueInBothModes) {
 }
 
 TEST(Collapse, FuzzedMeshesEndWithinTheirTargets) {
-    Random random(11);
+    PcgRandom random(11);
     const auto below = [&](uint32_t count) {
         return static_cast<uint32_t>(random.uniform() * count);
     };

@@ -41,9 +41,9 @@ TEST(Pinches, SolidsThatShareAnEdgeGetOneEach) {
     mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
     add_tetrahedron(mesh, 0, 1, 2, 3);
     add_tetrahedron(mesh, 0, 1, 4, 5);
-    CollapseMesh open_mesh = open(mesh, {});
+    CollapseMesh open_mesh = open_collapse_mesh(mesh, {});
     ASSERT_EQ(edges_by_uses(open_mesh), (std::map<int, int>{{2, 10}, {4, 1}}));
-    cut_pinches(open_mesh, false);
+    cut_tunnels(open_mesh, false);
     EXPECT_EQ(edges_by_uses(open_mesh), (std::map<int, int>{{2, 12}}));
     EXPECT_EQ(open_mesh.points.size(), 8u);
     EXPECT_EQ(open_mesh.ids.size(), 8u);
@@ -76,9 +76,9 @@ TEST(Pinches, RowsOfEdgesAreCutFromTheirEnds) {
         mesh.triangles.emplace_back(at(0, 0), at(0, 2), at(0, 1));
         mesh.triangles.emplace_back(at(3, 0), at(3, 1), at(3, 2));
     }
-    CollapseMesh open_mesh = open(mesh, {});
+    CollapseMesh open_mesh = open_collapse_mesh(mesh, {});
     ASSERT_EQ(edges_by_uses(open_mesh)[4], 3);
-    cut_pinches(open_mesh, false);
+    cut_tunnels(open_mesh, false);
     EXPECT_EQ(edges_by_uses(open_mesh), (std::map<int, int>{{2, 60}}));
     EXPECT_EQ(open_mesh.points.size(), 24u);
 }
@@ -87,8 +87,8 @@ TEST(Pinches, WallsThatCrossStayTogether) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
     mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {1, 0, 5}};
-    CollapseMesh open_mesh = open(mesh, {});
-    cut_pinches(open_mesh, false);
+    CollapseMesh open_mesh = open_collapse_mesh(mesh, {});
+    cut_tunnels(open_mesh, false);
     EXPECT_EQ(open_mesh.points.size(), 6u);
     EXPECT_EQ(edges_by_uses(open_mesh)[4], 1);
 }
@@ -104,18 +104,18 @@ TEST(Pinches, ShellsThatTouchAlongALoopPartIntoSolids) {
                                   Triangle(i, next, 6)})
             mesh.triangles.push_back(t);
     }
-    CollapseMesh open_mesh = open(mesh, {});
+    CollapseMesh open_mesh = open_collapse_mesh(mesh, {});
     ASSERT_EQ(edges_by_uses(open_mesh), (std::map<int, int>{{2, 12}, {4, 3}}));
     Adjacency adjacency;
     adjacency.build(open_mesh);
-    EXPECT_TRUE(has_pinches(open_mesh, adjacency));
-    cut_pinches(open_mesh, false);
+    EXPECT_TRUE(has_tunnels(open_mesh, adjacency));
+    cut_tunnels(open_mesh, false);
     EXPECT_EQ(edges_by_uses(open_mesh)[4], 3);
-    cut_pinches(open_mesh, true);
+    cut_tunnels(open_mesh, true);
     EXPECT_EQ(edges_by_uses(open_mesh), (std::map<int, int>{{2, 18}}));
     EXPECT_EQ(open_mesh.points.size(), 10u);
     adjacency.build(open_mesh);
-    EXPECT_FALSE(has_pinches(open_mesh, adjacency));
+    EXPECT_FALSE(has_tunnels(open_mesh, adjacency));
     // The upper shell has the upper apexes of both.
     for (const Triangle& t : open_mesh.triangles) {
         for (const Triangle& other : open_mesh.triangles) {
@@ -172,7 +172,7 @@ TEST(Pinches, PlatesFullOfHolesGetNoEdgesOfMoreThanTwoTriangles) {
             }
         }
     }
-    ASSERT_EQ(edges_by_uses(open(mesh, {})).size(), 1u);
+    ASSERT_EQ(edges_by_uses(open_collapse_mesh(mesh, {})).size(), 1u);
     for (const size_t part : {10, 20, 50}) {
         const Mesh level = simplify_mesh(mesh, mesh.triangles.size() / part);
         for (const auto& [uses, count] : edges_by_uses(level))

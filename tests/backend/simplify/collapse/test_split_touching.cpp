@@ -195,7 +195,7 @@ TEST(Topology, EdgeAcrossAFoldFlipsOntoIt) {
             sheet.triangles.emplace_back(a, a + kSide + 1, a + kSide);
         }
     }
-    simplify::CollapseMesh mesh = simplify::open(sheet, {});
+    simplify::CollapseMesh mesh = simplify::open_collapse_mesh(sheet, {});
     const std::vector<glm::dvec3> points = mesh.points;
     const uint32_t corners[4] = {0, kSide - 1, kSide * kSide - 1, kSide * (kSide - 1)};
     for (uint32_t v = 0; v < mesh.merged.size(); ++v)

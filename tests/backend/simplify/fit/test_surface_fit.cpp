@@ -50,10 +50,10 @@ std::vector<glm::vec3> corners_of(const Mesh& mesh) {
 /// Mean distance of samples of the original from a mesh brought to a target and fitted.
 double mean_after(const Mesh& source, size_t target, const FitOptions& options) {
     Adjacency adjacency;
-    CollapseMesh mesh = open(source, {}, {}, &adjacency);
-    Reducer(mesh, {}).reduce(
+    CollapseMesh mesh = open_collapse_mesh(source, {}, {}, &adjacency);
+    CollapseReducer(mesh, {}).reduce(
         target, {}, [] {}, adjacency);
-    fit(mesh, source, adjacency, options, {});
+    fit_surface(mesh, source, adjacency, options, {});
     adjacency.build(mesh);
     const FitPlaces places(mesh, source);
     FitSamples samples;
@@ -84,8 +84,8 @@ TEST(Fit, TrianglesWithVerticesOfTheirOwnAreFittedLikeWeldedOnes) {
 TEST(Fit, BothSidesOfATextureSeamHaveTheirPlace) {
     const Mesh mesh = shapes::seamed_cylinder(64, 40);
     Adjacency adjacency;
-    CollapseMesh working = open(mesh, {}, {}, &adjacency);
-    Reducer(working, {})
+    CollapseMesh working = open_collapse_mesh(mesh, {}, {}, &adjacency);
+    CollapseReducer(working, {})
         .reduce(
             800, {}, [] {}, adjacency);
     const FitPlaces places(working, mesh);

@@ -30,13 +30,13 @@ struct Reduced {
     std::unique_ptr<FitPlaces> places;
 
     Reduced(const Mesh& from, size_t target)
-        : source(from), mesh(open(source, {}, {}, &adjacency)) {
+        : source(from), mesh(open_collapse_mesh(source, {}, {}, &adjacency)) {
         SimplifyOptions options;
         options.mode = SimplifyMode::Best;
-        Reducer(mesh, options)
+        CollapseReducer(mesh, options)
             .reduce(
                 target, {}, [] {}, adjacency);
-        fit(mesh, source, adjacency, {20, 1, 1, 1, 3, false}, {});
+        fit_surface(mesh, source, adjacency, {20, 1, 1, 1, 3, false}, {});
         refresh();
     }
     void refresh() {
@@ -45,9 +45,9 @@ struct Reduced {
         sample_surface(*places, adjacency, source.triangles.size(), 0, {}, samples);
     }
     double worst() const {
-        const Strays strays(*places, adjacency, samples, {});
+        const DistanceOutliers strays(*places, adjacency, samples, {});
         float most = 0;
-        for (Stray stray : strays.list(mesh.triangles.size(), {})) {
+        for (DistanceOutlier stray : strays.list_farthest(mesh.triangles.size(), {})) {
             if (strays.confirm(stray))
                 most = std::max(most, stray.square);
         }
@@ -99,10 +99,11 @@ TEST(Insert, WhatMissesMostMissesLessAfterwards) {
 
 TEST(Insert, TheWorstAreTheSameWhenOnlyTheseAreLookedFor) {
     const Reduced reduced(ridges(120), 700);
-    const Strays strays(*reduced.places, reduced.adjacency, reduced.samples, {});
-    const std::vector<Stray> all = strays.list(reduced.mesh.triangles.size(), {});
+    const DistanceOutliers strays(*reduced.places, reduced.adjacency, reduced.samples, {});
+    const std::vector<DistanceOutlier> all =
+        strays.list_farthest(reduced.mesh.triangles.size(), {});
     for (const size_t most : {1u, 20u, 300u}) {
-        const std::vector<Stray> some = strays.list(most, {});
+        const std::vector<DistanceOutlier> some = strays.list_farthest(most, {});
         ASSERT_GE(some.size(), most);
         for (size_t i = 0; i < most; ++i) {
             EXPECT_EQ(some[i].square, all[i].square) << most << ' ' << i;
@@ -177,7 +178,7 @@ TEST(Insert, OneThreadAndManyInsertTheSame) {
 }
 
 TEST(Insert, SoupOfAnythingIsSurvived) {
-    Random random(11);
+    PcgRandom random(11);
     Mesh mesh;
     for (int i = 0; i < 300; ++i)
         mesh.positions.emplace_back(random.uniform(), random.uniform(), random.uniform());
