@@ -162,7 +162,7 @@ def unknown_room(name: str) -> str | None:
     """The folder of a file of core or bridge, when it is no room that has a height."""
     parts = name.removeprefix("blender_addon/lodestone/").split("/")
     known = ADDON_ROOMS.get(parts[0])
-    folder = "/".join(parts[1:-1])
+    folder = parts[1] if len(parts) > 2 else ""
     return folder if known is not None and folder not in known else None
 
 

@@ -3,7 +3,6 @@
 
 import contextlib
 import json
-import os
 import resource
 import signal
 import sys
@@ -19,31 +18,25 @@ if __name__ == "__main__":  # never enabled in any preferences: registered from 
     sys.path.insert(0, str(PACKAGE.parent))
 
 import lodestone  # noqa: E402
-from lodestone.batch_blender import picture_files  # noqa: E402
+from lodestone.batch_blender.picture_work import BlenderPictureWork, SceneFolders  # noqa: E402
 from lodestone.bridge import quality_settings  # noqa: E402
 from lodestone.bridge.checks import blend_check, picture_requirements  # noqa: E402
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
 from lodestone.bridge.scene import deforming_poses  # noqa: E402
 from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
-from lodestone.core import file_names, progress_text, run_report  # noqa: E402
+from lodestone.core import progress_text, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch import blend_header, input_stamps, process_session  # noqa: E402
 from lodestone.core.batch.file_jobs import FileJob, PictureRequest  # noqa: E402
+from lodestone.core.batch.verbs import verb_of  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
-from lodestone.core.picture import compare_pictures, unseen_detail  # noqa: E402
-from lodestone.core.picture.picture_maker import SceneFolder, Settings, cut_and_export  # noqa: E402
-from lodestone.core.picture.picture_maker import make_picture, remove_others  # noqa: E402
-from lodestone.core.picture.picture_maker import used_files  # noqa: E402
+from lodestone.core.picture import unseen_detail  # noqa: E402
+from lodestone.core.picture.picture_maker import remove_others, used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.store import motion_file, store_path  # noqa: E402
 from lodestone.engines import extract_engine  # noqa: E402
-
-
-NO_LEVELS = (
-    "Pixel Error 0 renders the originals: there is nothing to compare; give another --pixel-error"
-)
 
 
 class FileRun:
@@ -51,6 +44,7 @@ class FileRun:
 
     def __init__(self, job: FileJob) -> None:
         self.job = job
+        self.verb = verb_of(job.verb)
         self.result = run_report.file_report(job.verb, job.file, ExitCode.DONE)
         self.problems = Problems()
         self.work = Work()
@@ -58,8 +52,7 @@ class FileRun:
         self._said = 0.0
         self._still = None
         self._poses: deforming_poses.Poses | None = None
-        self._folders = contextlib.ExitStack()
-        self._shared: SceneFolder | None = None
+        self._folders = SceneFolders(job)
         self._told = 0  # problems
 
     def run(self) -> ExitCode:
@@ -67,8 +60,7 @@ class FileRun:
         try:
             self._check_outputs()
             self._open()
-            with self._folders:
-                self._folders.callback(self._close_poses)
+            with contextlib.closing(self), self._folders:
                 self._frames()
         except (Stopped, KeyboardInterrupt):
             code, text = ExitCode.CANCELLED, "cancelled"
@@ -96,16 +88,7 @@ class FileRun:
     def _check_outputs(self) -> None:
         """Hours of work must not end at a folder that cannot be written."""
         for picture in self.job.pictures:
-            folder = Path(picture.out)
-            folder = folder if self.job.verb == "export" else folder.parent
-            try:
-                folder.mkdir(parents=True, exist_ok=True)
-            except OSError as error:
-                raise Failed(ExitCode.FAILED, f"cannot make the folder of {picture.out}: {error}")
-            if not os.access(folder, os.W_OK | os.X_OK):
-                raise Failed(ExitCode.FAILED, f"cannot write into {folder}")
-            if Path(picture.out).is_dir() and self.job.verb != "export":
-                raise Failed(ExitCode.FAILED, f"{picture.out} is a folder, not a picture")
+            self.verb.check_output(picture.out)
 
     def _open(self) -> None:
         try:
@@ -128,7 +111,7 @@ class FileRun:
         scene = bpy.context.scene
         first, last = self.job.frames or (scene.frame_current, scene.frame_current)
         pictures: list[dict] = []
-        if self.job.verb in ("render", "compare"):
+        if self.verb.runs_povray:
             picture_requirements.post_processing(scene, self.problems)
         if self.job.frames:
             # The same frames whichever part of the scene's range this process renders
@@ -162,9 +145,8 @@ class FileRun:
 
     def _frame(self, scene, requests: tuple[PictureRequest, ...]) -> list[dict]:
         requests = tuple(_filled_up(scene, picture) for picture in requests)
-        if self.job.verb == "compare" and not all(picture.levels for picture in requests):
-            raise Failed(ExitCode.FAILED, NO_LEVELS)
-        builds = self._builds(requests)
+        self.verb.check_requests(requests)
+        builds = self.verb.builds_levels(requests)
         request = extract_engine.Request(
             cameras=[(picture.camera, picture.size) for picture in requests],
             tick=self._tick,
@@ -179,7 +161,7 @@ class FileRun:
             if request.with_poses:
                 self._poses = request.poses
         self.problems.extend(extraction.problems)
-        if self.job.verb != "build":
+        if self.verb.asks_for_pictures:
             picture_requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
@@ -200,22 +182,23 @@ class FileRun:
                 seen = zip(requests, request.frames, request.modifiers)
                 for picture, (view, size), modifiers in seen:
                     modifiers = _asked(modifiers, picture)
-                    part = self._picture(scene, model, store, picture, view, size, modifiers)
-                    made.append({**part, **built})
+                    work = BlenderPictureWork(
+                        self.job, picture, scene, model, view, size, modifiers,
+                        store, self._folders, self.work, self._say,
+                    )  # fmt: skip
+                    made.append({**work.about, **self.verb.make(work), **built})
                     self.problems.extend_native(model.problems())
                     self._tell_picture(picture.out, made[-1])
-                    if self._shared is not None:
-                        used |= used_files(self._shared.path)
-                if self._shared is not None:
-                    remove_others(self._shared.path, used)
+                    if self._folders.shared is not None:
+                        used |= used_files(self._folders.shared.path)
+                if self._folders.shared is not None:
+                    remove_others(self._folders.shared.path, used)
             finally:
                 self.problems.extend_native(model.problems())
         return made
 
-    def _builds(self, requests: tuple[PictureRequest, ...]) -> bool:
-        return self.job.verb == "build" or any(p.levels for p in requests)
-
-    def _close_poses(self) -> None:
+    def close(self) -> None:
+        """Frees the poses that levels follow."""
         if self._poses is not None:
             self._poses.close()
 
@@ -230,70 +213,6 @@ class FileRun:
         part = run_report.build_part(done)
         self.result.setdefault("build", part)
         return part
-
-    def _picture(
-        self, scene, model, store: Path, picture: PictureRequest, view, size, modifiers
-    ) -> dict:
-        settings = Settings(
-            pixel_error=picture.pixel_error,
-            overrides=picture.overrides,
-            budget=picture.budget,
-            modifiers=modifiers,
-            false_color=picture.false_color,
-            covered_only=picture.covered_only,
-            threads=self.job.threads,
-            program=self.job.program,
-        )
-        about = {
-            "camera": view.name,
-            "antialias": settings.quality.antialias.lower(),
-            "size": list(size),
-            "pixel_error": picture.pixel_error,
-        }
-        if self.job.verb == "export":
-            folder = Path(picture.out)
-            new_job = self.work.new_job
-            parts, _ = self._long(
-                lambda: cut_and_export(model, view, size, settings, folder, new_job("Export"))
-            )
-            return {**about, **parts, "scene": str(folder / "scene.pov")}
-        kept = store_path.scene_folder(store)
-        if self.job.keep == "always" and self.job.many_pictures:
-            kept = kept / file_names.folder_name(picture.out)
-        compares = self.job.verb == "compare"
-        make = compare_pictures.compare if compares else make_picture
-        with self._scene_folder(kept) as folder:
-            try:
-                made = self._long(
-                    lambda: make(model, view, size, settings, folder.path, self.work.new_job, store)
-                )
-            except native.LodestoneError as error:
-                if error.status == native.Status.POVRAY_FAILED:
-                    where = f" (its files: {folder.path})" if self.job.keep != "never" else ""
-                    raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
-                raise
-            if compares:
-                about.update(picture_files.save_compared(scene, made, Path(picture.out), settings))
-            else:
-                with_alpha = picture.covered_only
-                picture_files.save(
-                    scene, made.path, Path(picture.out), with_alpha, settings.stamp()
-                )
-            if self.job.keep_exr:
-                picture_files.copy_exr(made.path, Path(picture.out).with_suffix(".exr"))
-        if self.job.thumbnail and not os.path.exists(self.job.thumbnail):
-            picture_files.save_thumbnail(picture.out, self.job.thumbnail)
-        return {**about, **made.parts, "picture": picture.out}
-
-    def _scene_folder(self, kept: Path):
-        """A context. One folder serves all pictures, so that what did not change is not written
-        again; scenes that are to be looked at afterwards have one each."""
-        keep = self.job.keep.upper()
-        if keep == "ALWAYS" and self.job.many_pictures:
-            return SceneFolder(kept, keep)
-        if self._shared is None:
-            self._shared = self._folders.enter_context(SceneFolder(kept, keep))
-        return contextlib.nullcontext(self._shared)
 
     # ---- What is told at once, for the case that this process does not live to its report ----
 

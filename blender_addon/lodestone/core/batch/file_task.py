@@ -19,12 +19,13 @@ from ..file_names import fitting
 from ..locked_folder import LockedFolder
 from ..problems import ERROR, Problem
 from ..store import store_path
-from ..store.store_levels import INDEX
 from . import blend_header, earlier_runs, input_stamps, png_check
 from .child_log import ChildLog
 from .child_process import CANCELLED, Child
 from .earlier_runs import Found
 from .file_jobs import FileJob
+from .verbs import verb_of
+from .verbs.picture_verb import result_of
 
 CRASH, NOT_BEGUN = "crash", "not_begun"
 PROGRESS = "Lodestone: progress: "
@@ -207,7 +208,7 @@ class FileTask:
                     key=self.job.picture_key(*next(wanted)),
                     inputs=input_stamps.identity(self._inputs),
                     out=out,
-                    outputs=earlier_runs.outputs([_result(made)]),
+                    outputs=earlier_runs.outputs([result_of(made)]),
                     made=made,
                 )
 
@@ -294,7 +295,7 @@ class FileTask:
             file=job.file,
             key=job.key(),
             inputs=inputs,
-            outputs=earlier_runs.outputs(_results(job, made)),
+            outputs=earlier_runs.outputs(verb_of(job.verb).results(made)),
             report={k: v for k, v in made.items() if k != "log_tail"},
         )
         self.around.done(self)
@@ -318,16 +319,6 @@ def _take_over_problems(
         code = ExitCode.FAILED if job.strict else ExitCode.INCOMPLETE
         text = f"the picture is incomplete: {wrong[0].sentence}"
         made.update(run_report.file_report(job.verb, job.file, code, text))
-
-
-def _results(job: FileJob, made: dict[str, Any]) -> list[str]:
-    if job.verb == "build":
-        return [os.path.join(made["store"], INDEX)] if "store" in made else []
-    return [_result(picture) for picture in made.get("pictures", [made]) if _result(picture)]
-
-
-def _result(made: dict[str, Any]) -> str:
-    return made.get("picture") or made.get("scene") or ""
 
 
 def _signal_name(number: int) -> str:
