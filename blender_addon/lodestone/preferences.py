@@ -5,9 +5,12 @@ import bpy
 from bpy.props import StringProperty
 
 from .core.native import lodestone_native as native
+from .core.session.addon_session import addon_session
 from .core.store import store_path
 
-_status_cache: dict[str, list[tuple[str, str]]] = {}
+
+class FoundPrograms(dict[str, list[tuple[str, str]]]):
+    """The lines of status() by program; part of the session."""
 
 
 def povray_program() -> str:
@@ -38,7 +41,7 @@ def status(program: str) -> list[tuple[str, str]]:
 
 
 def _program_changed(self, context):
-    _status_cache.clear()
+    addon_session().drop(FoundPrograms)
 
 
 class LODESTONE_AP_preferences(bpy.types.AddonPreferences):
@@ -56,24 +59,15 @@ class LODESTONE_AP_preferences(bpy.types.AddonPreferences):
         layout.use_property_split = True
         layout.prop(self, "povray")
         program = povray_program()
-        if program not in _status_cache:
-            _status_cache[program] = status(program)
+        found = addon_session().part(FoundPrograms)
+        if program not in found:
+            found[program] = status(program)
         column = layout.column(align=True)
-        for icon, text in _status_cache[program]:
+        for icon, text in found[program]:
             column.label(text=text, icon=icon)
         folder = store_path.store_folder(bpy.data.filepath)
         column.label(text=f"Levels of this file: {folder}", icon="FILE_FOLDER")
 
 
 _CLASSES = (LODESTONE_AP_preferences,)
-_register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
-
-
-def register():
-    _status_cache.clear()
-    _register()
-
-
-def unregister():
-    _unregister()
-    _status_cache.clear()
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 import bpy
-from lodestone.core.session import last_render
+from lodestone.core.session.addon_session import addon_session
 
 PICTURES = (  # name, Pixel Error, Build on Render
     ("full", 0.0, "NONE"),
@@ -56,7 +56,7 @@ def main():
         wall, cpu = time.perf_counter(), cpu_seconds()
         press()
         found[name] = {"cpu_s": cpu_seconds() - cpu, "wall_s": time.perf_counter() - wall}
-        drawn = last_render.get(scene.name) if build is not None else None
+        drawn = addon_session().renders.get(scene.name) if build is not None else None
         found[name]["triangles"] = drawn.triangles if drawn else None
     Path(report).write_text(json.dumps(found), "utf-8")
 

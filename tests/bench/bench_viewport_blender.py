@@ -74,7 +74,13 @@ def steps():
                 and not levels_preview._busy(state)
             ):
                 break
-        print(state.view.line(), state.batches, "batches", levels_preview._pool.bytes, flush=True)
+        print(
+            state.view.line(),
+            state.batches,
+            "batches",
+            levels_preview.preview().pool.bytes,
+            flush=True,
+        )
     found = {
         "first_s": time.monotonic() - start,
         "first_cpu_s": time.process_time() - cpu,

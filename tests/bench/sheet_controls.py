@@ -95,7 +95,7 @@ def rows_of(image):
 
 def render(scene):
     """(rows, CPU seconds, what last_render knows)"""
-    from lodestone.core.session import last_render
+    from lodestone.core.session.addon_session import addon_session
 
     before = used()
     bpy.ops.render.render(write_still=True)
@@ -103,7 +103,7 @@ def render(scene):
     image = bpy.data.images.load(scene.render.filepath)
     rows = rows_of(image)
     bpy.data.images.remove(image)
-    return rows, took, last_render.get(scene.name)
+    return rows, took, addon_session().renders.get(scene.name)
 
 
 def beside(cells):

@@ -124,7 +124,7 @@ class Decisions(Case):
         self.assertNotIn("lodestone", floor)
 
     def test_deciding_about_a_thing_is_not_taken_for_another_shape(self):
-        from lodestone.core.session import changed_shapes
+        from lodestone.core.session.addon_session import addon_session
 
         mesh = scenes.cube_mesh()
         cube, twin = scenes.cube("Cube", data=mesh), scenes.cube("Twin", (3, 0, 0), data=mesh)
@@ -137,14 +137,14 @@ class Decisions(Case):
             lambda: setattr(cube.lodestone, "use_pin_viewport", True),
             lambda: object_decisions.copy(other, cube),
         ):
-            changed_shapes.clear()
+            addon_session().changed_shapes.clear()
             change()
             bpy.context.view_layer.update()
-            self.assertEqual(changed_shapes.names(), set())
+            self.assertEqual(addon_session().changed_shapes.names(), set())
         mesh.vertices[0].co.z += 1.0
         mesh.update()
         bpy.context.view_layer.update()
-        self.assertEqual(changed_shapes.names(), {cube.name, twin.name})
+        self.assertEqual(addon_session().changed_shapes.names(), {cube.name, twin.name})
 
     def test_copied_to_the_selected_and_taken_back(self):
         source = scenes.cube("Source")
@@ -194,10 +194,10 @@ class Pictures(unittest.TestCase):
         bpy.ops.wm.save_as_mainfile(filepath=os.fspath(Path(folder.name) / "balls.blend"))
 
     def triangles(self):
-        from lodestone.core.session import last_render
+        from lodestone.core.session.addon_session import addon_session
 
         bpy.ops.render.render()
-        return last_render.get(self.scene.name).triangles
+        return addon_session().renders.get(self.scene.name).triangles
 
     def test_always_original_is_drawn_so_however_far(self):
         self.assertLess(self.triangles(), 320)

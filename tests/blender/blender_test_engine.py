@@ -14,7 +14,7 @@ import bpy
 
 import blender_scenes as scenes
 from lodestone.core import egl_library
-from lodestone.core.session import last_check, last_render
+from lodestone.core.session.addon_session import addon_session
 
 
 class Engine(unittest.TestCase):
@@ -52,7 +52,7 @@ class Engine(unittest.TestCase):
         return bpy.context.object
 
     def problems(self, code):
-        found = last_check.get(self.scene.name).problems
+        found = addon_session().checks.get(self.scene.name).problems
         return [problem for problem in found if problem.code == code]
 
     def refused(self, text):
@@ -180,7 +180,7 @@ class Engine(unittest.TestCase):
 
     def drawn(self, **render):
         bpy.ops.render.render(**render)
-        return last_render.get(self.scene.name)
+        return addon_session().renders.get(self.scene.name)
 
     def test_before_a_still_only_what_helps_it_is_built(self):
         scenes.sun()
@@ -238,7 +238,7 @@ class Engine(unittest.TestCase):
         second = self.scene.view_layers.new("Second")
         second.layer_collection.children["Held"].exclude = True
         self.assertEqual(max(pixel[3] for row in self.render() for pixel in row), 1.0)
-        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        codes = [problem.code for problem in addon_session().checks.get(self.scene.name).problems]
         self.assertIn("nothing_shown", codes)
 
     def test_grease_pencil_in_a_layer_with_depth_crashed_blender(self):
@@ -250,7 +250,9 @@ class Engine(unittest.TestCase):
         self.assertEqual(found, without)  # Blender has drawn it over the picture
         bpy.context.object.hide_render = True
         self.assertNotEqual(found, self.render())
-        severities = {problem.severity for problem in last_check.get(self.scene.name).problems}
+        severities = {
+            problem.severity for problem in addon_session().checks.get(self.scene.name).problems
+        }
         self.assertNotIn("error", severities)
 
     def test_grease_pencil_ended_blender_where_libegl_is_missing(self):

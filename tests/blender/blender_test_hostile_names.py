@@ -121,7 +121,7 @@ class HostileNames(unittest.TestCase):
 
     def rendered(self, blend, names, stems, pixel_error):
         """(pixels, problems, paths that were made) of one field in a folder of its own."""
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
         from lodestone.operators.check_scene import check_scene
 
         folder = self.folder / str(len(list(self.folder.iterdir())))
@@ -136,7 +136,9 @@ class HostileNames(unittest.TestCase):
         checked = [problem.code for problem in check_scene(bpy.context).problems]
         bpy.ops.render.render(write_still=True)
         made = {os.path.relpath(path, folder) for path in self.every_path() - before}
-        found = [problem.code for problem in last_check.get(bpy.context.scene.name).problems]
+        found = [
+            problem.code for problem in addon_session().checks.get(bpy.context.scene.name).problems
+        ]
         self.assertEqual(sorted(checked), sorted(found))
         image = bpy.data.images.load(str(folder / "picture.png"))
         pixels = list(image.pixels)
@@ -239,7 +241,7 @@ class OtherNames(unittest.TestCase):
         return pixels
 
     def test_a_picture_does_not_depend_on_names_that_are_no_text(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         self.dressed()
         path = self.folder / "damaged.blend"
@@ -253,9 +255,9 @@ class OtherNames(unittest.TestCase):
         with self.assertRaises(UnicodeDecodeError):
             [item.name for item in bpy.data.objects]
         bpy.ops.lodestone.check_scene()
-        checked = [problem.message for problem in last_check.get("Scene").problems]
+        checked = [problem.message for problem in addon_session().checks.get("Scene").problems]
         self.assertTrue(self.rendered() == expected)
-        found = [problem.message for problem in last_check.get("Scene").problems]
+        found = [problem.message for problem in addon_session().checks.get("Scene").problems]
         self.assertEqual(sorted(checked), sorted(found))
         self.assertIn(
             r'"Cube.caf\xe9\xff\xed\xa0\x80" has a name that is not valid text (UTF-8) in the file',
@@ -295,14 +297,14 @@ class OtherNames(unittest.TestCase):
         return scenes.link(target.objects[0])
 
     def test_a_library_at_a_path_of_any_bytes_may_be_missing(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         os.unlink(self.linked().library.filepath)
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "user.blend"))
         bpy.ops.wm.open_mainfile(filepath=str(self.folder / "user.blend"))
         bpy.ops.render.render(write_still=True)
         self.assertTrue((self.folder / "picture.png").is_file())
-        found = last_check.get(bpy.context.scene.name).problems
+        found = addon_session().checks.get(bpy.context.scene.name).problems
         (problem,) = [problem for problem in found if problem.code == "library_missing"]
         self.assertIn("/caf\ufffd\ufffd", problem.message)
 

@@ -17,6 +17,7 @@ from lodestone.bridge.live import live_view
 from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems
+from lodestone.core.session.addon_session import addon_session
 from lodestone.operators import screen_lenses
 
 HAVE_POVRAY = shutil.which(os.environ.get("LODESTONE_POVRAY", "povray")) is not None
@@ -231,10 +232,10 @@ class Drawn(unittest.TestCase):
 
     def chosen(self):
         """{group's name: triangles drawn of it}."""
-        from lodestone.core.store import store_levels, store_path
+        from lodestone.core.store import store_path
 
         bpy.context.view_layer.update()
-        store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+        store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
         settings = live_view.settings_of(self.scene, quality_lenses.parts_stored(store.model))
         frame = lenses_frame(self.scene)
         found = {}

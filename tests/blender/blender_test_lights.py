@@ -218,9 +218,9 @@ class Lights(unittest.TestCase):
         return made
 
     def glows(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
-        found = last_check.get(self.scene.name).problems
+        found = addon_session().checks.get(self.scene.name).problems
         return [problem.message for problem in found if problem.code == "glow"]
 
     def test_a_panel_that_glows_lights_both_of_its_sides(self):

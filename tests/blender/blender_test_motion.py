@@ -331,11 +331,12 @@ class Followed(unittest.TestCase):
         bpy.ops.render.render(write_still=True)
         self.assertEqual(scene.frame_current, 7)
         self.assertTrue((self.folder / "picture.png").is_file())
-        from lodestone.core.session import last_render
+        from lodestone.core.session.addon_session import addon_session
         from lodestone.engines import render_engine
 
-        self.assertEqual(render_engine._poses, {})
-        used = last_render.get(scene.name)
+        poses = addon_session().part(render_engine.RenderState).poses
+        self.assertEqual(poses, {})
+        used = addon_session().renders.get(scene.name)
         self.assertEqual(used.triangles_placed, 1280)
         self.assertLess(used.triangles, 200)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 import blender_scenes as scenes
-from lodestone.core.session import last_check
+from lodestone.core.session.addon_session import addon_session
 
 
 def png_text(path):
@@ -134,14 +134,18 @@ class Output(unittest.TestCase):
         bpy.context.view_layer.use_pass_z = True
         layer, composite = tree.nodes["Render Layers"], tree.nodes["Composite"]
         self.render()
-        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        codes = [problem.code for problem in addon_session().checks.get(self.scene.name).problems]
         self.assertNotIn("empty_pass", codes)
         tree.links.new(layer.outputs["Depth"], composite.inputs["Image"])
         self.render()
-        found = [p for p in last_check.get(self.scene.name).problems if p.code == "empty_pass"]
+        found = [
+            p
+            for p in addon_session().checks.get(self.scene.name).problems
+            if p.code == "empty_pass"
+        ]
         self.assertRegex(found[0].message, '"Depth"')
         bpy.ops.lodestone.check_scene()
-        codes = [problem.code for problem in last_check.get(self.scene.name).problems]
+        codes = [problem.code for problem in addon_session().checks.get(self.scene.name).problems]
         self.assertIn("empty_pass", codes)
 
     def test_the_file_says_how_it_was_made(self):

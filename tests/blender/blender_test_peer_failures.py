@@ -82,9 +82,9 @@ class PeerFailures(Case):
 
     def found(self):
         """Codes of the last render's problems."""
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
-        problems = last_check.get(self.scene.name).problems
+        problems = addon_session().checks.get(self.scene.name).problems
         return sorted((problem.object, problem.code) for problem in problems)
 
     def povray(self, script):

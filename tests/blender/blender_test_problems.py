@@ -107,7 +107,7 @@ class Problems(unittest.TestCase):
         self.assertEqual(found.exact_materials[0], 0)  # the second slot has no face
 
     def test_what_povray_cannot_do_of_lights_is_found_as_by_a_render(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         scenes.cube("Cube")
         kinds = {"Softbox": "AREA", "Dot": "AREA", "Lamp": "SPOT", "Ball": "POINT"}
@@ -125,7 +125,7 @@ class Problems(unittest.TestCase):
         self.scene.render.resolution_x, self.scene.render.resolution_y = 8, 8
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         bpy.ops.render.render()
-        self.assertEqual(told(last_check.get(self.scene.name).problems), found)
+        self.assertEqual(told(addon_session().checks.get(self.scene.name).problems), found)
 
     def test_texts_curves_and_metaballs_wear_materials_too(self):
         for kind, data in (
@@ -231,7 +231,7 @@ class Problems(unittest.TestCase):
         self.assertEqual(names, {"By nodes", "Grass", "Pebble paint"})
 
     def test_every_view_layer_that_renders_is_checked(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         for name in ("A", "B", "C"):
             kept = scenes.collection(name, self.scene.collection)
@@ -247,7 +247,7 @@ class Problems(unittest.TestCase):
         self.scene.render.engine = "LODESTONE_POVRAY"
         self.scene.render.resolution_x, self.scene.render.resolution_y = 8, 8
         bpy.ops.render.render()
-        rendered = last_check.get(self.scene.name)
+        rendered = addon_session().checks.get(self.scene.name)
         self.assertEqual(told(rendered.problems), told(found.problems))
         self.assertEqual(rendered.users, found.users)
         self.scene.render.use_single_layer = True
@@ -316,23 +316,23 @@ class Problems(unittest.TestCase):
     # ---- F12 ----
 
     def test_a_render_leaves_its_check_even_when_it_is_refused(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         wearing(scenes.cube(), odd_material("Bark"))
         self.scene.render.engine = "LODESTONE_POVRAY"
         self.scene.render.resolution_x, self.scene.render.resolution_y = 8, 8
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         checked = check()
-        last_check.clear()
+        addon_session().checks.clear()
         bpy.ops.render.render()
-        rendered = last_check.get(self.scene.name)
+        rendered = addon_session().checks.get(self.scene.name)
         self.assertEqual(told(rendered.problems), told(checked.problems))
         self.assertEqual(rendered.users, checked.users)
         self.assertFalse(self.scene.is_property_set("lodestone"), "rendering writes nothing")
         self.with_environment("LODESTONE_POVRAY", "/nowhere/povray")
         with self.assertRaisesRegex(RuntimeError, "/nowhere/povray"):
             bpy.ops.render.render()
-        refused = last_check.get(self.scene.name)
+        refused = addon_session().checks.get(self.scene.name)
         self.assertEqual([p.code for p in refused.problems], ["povray_missing"])
 
     # ---- Buttons ----
@@ -410,12 +410,12 @@ class Problems(unittest.TestCase):
         self.assertIn("ignored warning: ", text_of(bpy.context))
 
     def test_another_file_has_not_been_checked(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         wearing(scenes.cube(), odd_material())
         check()
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        self.assertIsNone(last_check.get(self.scene_name()))
+        self.assertIsNone(addon_session().checks.get(self.scene_name()))
 
     def scene_name(self):
         return bpy.context.scene.name

@@ -175,10 +175,12 @@ class Pins(unittest.TestCase):
         bpy.ops.wm.save_as_mainfile(filepath=os.fspath(Path(folder.name) / "balls.blend"))
 
     def in_use(self):
-        from lodestone.core.session import last_render
+        from lodestone.core.session.addon_session import addon_session
 
         bpy.ops.render.render()
-        return [lod for found in last_render.get("Scene").in_use.values() for lod in found]
+        return [
+            lod for found in addon_session().renders.get("Scene").in_use.values() for lod in found
+        ]
 
     def test_a_pinned_level_is_drawn_near_and_far(self):
         for item, level in zip(self.balls, (0, 1)):

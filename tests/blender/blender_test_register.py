@@ -39,6 +39,22 @@ class Register(unittest.TestCase):
             addon_utils.disable("lodestone", default_set=True)
             self.assertEqual(traces(), [])
 
+    def test_disabling_forgets_the_session(self):
+        from lodestone.core.session.addon_session import addon_session
+
+        blender_scenes.enable()
+        blender_scenes.fresh()
+        blender_scenes.cube()
+        bpy.ops.lodestone.check_scene()
+        session = addon_session()
+        session.changed_shapes.note(["Cube"])
+        self.assertIn("Scene", session.checks)
+        addon_utils.disable("lodestone", default_set=True)
+        self.assertIsNot(addon_session(), session)
+        blender_scenes.enable()
+        self.assertEqual(addon_session().checks, {})
+        self.assertEqual(addon_session().changed_shapes.names(), set())
+
     def test_a_part_that_fails_leaves_nothing_and_is_seen(self):
         addon_utils.disable("lodestone", default_set=True)
         addon = importlib.import_module("lodestone")

@@ -30,11 +30,17 @@ class Seeing(unittest.TestCase):
         bpy.context.view_layer.update()
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "file.blend"))
         self.scene = bpy.context.scene
-        from lodestone.core.picture import compare_plan
-        from lodestone.core.session import kept_model, last_render
+        from lodestone.core.session.addon_session import addon_session
 
-        self.plans, self.kept, self.renders = compare_plan, kept_model, last_render
-        self.addCleanup(kept_model.clear)
+        session = addon_session()
+        self.comparisons, self.renders = session.comparisons, session.renders
+        self.kept = session.kept_models
+        self.addCleanup(self.kept.clear)
+
+    def compares(self):
+        from lodestone.engines import render_engine
+
+        return render_engine.is_comparing()
 
     def everything(self):
         """What a comparison may not change."""
@@ -47,7 +53,7 @@ class Seeing(unittest.TestCase):
             render.engine,
             render.filepath,
             len(bpy.data.images),
-            slots.active_index if self.plans.get(self.scene.name) is None else 0,
+            slots.active_index if self.comparisons.get(self.scene.name) is None else 0,
             self.left_over(),
         )
 
@@ -61,7 +67,7 @@ class Seeing(unittest.TestCase):
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_compare_fills_three_slots_and_names_what_differs(self):
         self.assertEqual(self.compare(), {"FINISHED"})
-        found = self.plans.get(self.scene.name)
+        found = self.comparisons.get(self.scene.name)
         self.assertEqual(found.pixel_error, 16.0)
         self.assertGreater(found.pixels, 100)
         self.assertGreater(found.max, 0.0)
@@ -84,7 +90,7 @@ class Seeing(unittest.TestCase):
         self.assertLess(max(pictures[2][0:3]), 0.01)
         self.assertGreater(max(pictures[2][0::4]) + max(pictures[2][2::4]), 0.1)
         self.assertEqual(self.left_over(), [])
-        self.assertIsNone(self.plans.current())
+        self.assertFalse(self.compares())
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_compare_of_a_border_counts_the_border_alone(self):
@@ -93,7 +99,7 @@ class Seeing(unittest.TestCase):
         render.border_min_x, render.border_max_x = 0.5, 0.75
         render.border_min_y, render.border_max_y = 0.0, 1.0
         self.assertEqual(self.compare(), {"FINISHED"})
-        self.assertLessEqual(self.plans.get(self.scene.name).pixels, 16 * 36)
+        self.assertLessEqual(self.comparisons.get(self.scene.name).pixels, 16 * 36)
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_failing_comparison_leaves_everything_as_it_was(self):
@@ -118,7 +124,7 @@ class Seeing(unittest.TestCase):
                 os.environ["LODESTONE_POVRAY"] = old
         self.assertEqual(self.everything(), before)
         self.assertEqual(slots.active_index, 4)
-        self.assertIsNone(self.plans.current())
+        self.assertFalse(self.compares())
 
     def test_what_cannot_be_compared_is_refused_with_a_reason(self):
         from lodestone.operators import compare
@@ -204,8 +210,8 @@ class Seeing(unittest.TestCase):
         self.assertNotIn("0 px: nothing finer can be drawn", found.lines[0])
         self.assertTrue(false_color_overlay.refresh(bpy.context, self.scene, "ERROR"))
         self.addCleanup(false_color_overlay.forget)
-        self.assertNotIn("Pixel Error 0:", false_color_overlay._shown.lines[0])
-        self.assertNotEqual(false_color_overlay._shown.legend[-1][0], "above 0 px")
+        self.assertNotIn("Pixel Error 0:", false_color_overlay.drawn().shown.lines[0])
+        self.assertNotEqual(false_color_overlay.drawn().shown.legend[-1][0], "above 0 px")
 
     @unittest.skipUnless(HAVE_POVRAY, "POV-Ray is not installed")
     def test_a_picture_tells_why_and_what_it_took(self):
@@ -313,7 +319,7 @@ class Seeing(unittest.TestCase):
 
         bpy.ops.lodestone.read_levels()
         self.assertTrue(false_color_overlay.refresh(bpy.context, self.scene, "LEVEL"))
-        shown = false_color_overlay._shown
+        shown = false_color_overlay.drawn().shown
         self.assertGreater(shown.triangles, 2000)
         self.assertEqual(len(shown._arrays[0]), 9 * shown.triangles)
         self.assertEqual(len(shown._arrays[1]), 12 * shown.triangles)

@@ -162,7 +162,7 @@ class Images(TextureCase):
         self.assertEqual(shown(11), "0002")
 
     def test_checking_called_a_sequence_missing_that_does_not_refresh_by_itself(self):
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
         (self.folder / "clip 0002.png").write_bytes(png(0, 255, 0))
         node = self.node("ShaderNodeTexImage", ("Color", self.base))
@@ -174,11 +174,11 @@ class Images(TextureCase):
         bpy.ops.mesh.primitive_plane_add()
         bpy.context.object.data.materials.append(self.material)
         bpy.ops.lodestone.check_scene()
-        codes = {problem.code for problem in last_check.get(scene.name).problems}
+        codes = {problem.code for problem in addon_session().checks.get(scene.name).problems}
         self.assertNotIn("image_missing", codes)
         os.remove(self.folder / "clip 0002.png")
         bpy.ops.lodestone.check_scene()
-        codes = {problem.code for problem in last_check.get(scene.name).problems}
+        codes = {problem.code for problem in addon_session().checks.get(scene.name).problems}
         self.assertIn("image_missing", codes)
 
     def test_of_tiles_the_first_is_drawn_and_named(self):

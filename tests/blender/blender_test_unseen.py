@@ -16,7 +16,7 @@ from lodestone.bridge.live import live_view
 from lodestone.bridge.scene_settings import SceneSettings
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import unseen_detail
-from lodestone.core.session import last_render
+from lodestone.core.session.addon_session import addon_session
 from lodestone.panels import unseen as panel
 
 BOTH = int(native.Rays.SHADOW | native.Rays.REFLECTION)
@@ -174,7 +174,9 @@ class Originals(unittest.TestCase):
         for error in (1.0, 0.0):
             scene.lodestone.pixel_error_render = error
             bpy.ops.render.render()
-            drawn, found = last_render.get(scene.name), live_view.statistics(bpy.context)
+            drawn, found = addon_session().renders.get(scene.name), live_view.statistics(
+                bpy.context
+            )
             self.assertEqual(found.pixel_error, error)
             self.assertEqual(found.kinds, drawn.kinds)
             self.assertEqual(found.triangles, drawn.triangles)

@@ -83,9 +83,10 @@ class UpdateLevels(unittest.TestCase):
     def levels(self, item):
         """What the panel shows of an object or a collection."""
         from lodestone.bridge import object_decisions
-        from lodestone.core.store import store_levels, store_path
+        from lodestone.core.session.addon_session import addon_session
+        from lodestone.core.store import store_path
 
-        store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+        store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
         self.assertEqual(store.problem, "")
         return next(filter(None, map(store.levels, object_decisions.levels_uids(item))), ())
 

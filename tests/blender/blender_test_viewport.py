@@ -166,23 +166,25 @@ class Viewport(unittest.TestCase):
 
     def test_statistics_of_the_viewport_follow_its_pins(self):
         from lodestone.bridge.live import live_view
-        from lodestone.core.store import store_levels, store_path
+        from lodestone.core.session.addon_session import addon_session
+        from lodestone.core.store import store_path
 
-        store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+        store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
         live_view.forget()
         self.other.lodestone.use_pin_viewport = True
-        live_view._pinned.follow(store, self.scene)
-        first = live_view._pinned.decided()
+        pinned = addon_session().part(live_view.LiveStatistics).pinned
+        pinned.follow(store, self.scene)
+        first = pinned.decided()
         self.assertEqual(len(first), 1)
         from lodestone import lodestone_native as native
 
         camera = native.Camera("c", False, (0, 0, 5000), (0, 0, -1), (1, 0, 0), (0, 0.6, 0), 0.1)
         view = native.View(camera, 640, 384, 4.0)
-        with native.Cut(live_view._pinned.model, view) as cut:
+        with native.Cut(pinned.model, view) as cut:
             self.assertEqual([c.world[3] for c in cut.choices() if c.lod == 0], [3.0])
         self.other.lodestone.use_pin_viewport = False
-        self.assertEqual(live_view._pinned.decided(), ())
-        with native.Cut(live_view._pinned.model, view) as cut:
+        self.assertEqual(pinned.decided(), ())
+        with native.Cut(pinned.model, view) as cut:
             self.assertEqual([c for c in cut.choices() if c.lod == 0], [])
         live_view.forget()
 

@@ -73,9 +73,9 @@ class Visibility(Case):
         self.assertEqual([leaf.materials for leaf in extraction.leaves], [("Clay",)] * 2)
         self.assertIn(("Clay", "no_surface"), self.codes(extraction))
         bpy.ops.lodestone.check_scene()
-        from lodestone.core.session import last_check
+        from lodestone.core.session.addon_session import addon_session
 
-        found = last_check.get(self.scene.name).problems
+        found = addon_session().checks.get(self.scene.name).problems
         self.assertIn("no_surface", [problem.code for problem in found])
 
     def test_ray_visibility_becomes_flags_of_the_placement(self):

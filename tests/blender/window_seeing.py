@@ -40,11 +40,11 @@ def overlay():
 
 
 def shown():
-    return overlay()._shown._batch is not None
+    return overlay().drawn().shown._batch is not None
 
 
 def colors_are_drawn_and_follow_the_camera():
-    from lodestone.core.session import kept_model
+    from lodestone.core.session.addon_session import addon_session
 
     row_of_balls()
     with steps.window():
@@ -52,7 +52,7 @@ def colors_are_drawn_and_follow_the_camera():
         bpy.ops.lodestone.read_levels("INVOKE_DEFAULT")
 
     def read():
-        return kept_model.get("Scene") is not None
+        return addon_session().kept_models.get("Scene") is not None
 
     yield from steps.wait_until(read)
     chosen = bpy.context.window_manager.lodestone_overlay
@@ -61,18 +61,18 @@ def colors_are_drawn_and_follow_the_camera():
         chosen.mode = mode
 
         def drawn():
-            return shown() and overlay()._shown.key[2] == mode
+            return shown() and overlay().drawn().shown.key[2] == mode
 
         yield from steps.wait_until(drawn)
         assert chosen.mode == mode, "an exception while it was drawn turns it off"
         assert painted == {item.name: tuple(item.color) for item in bpy.data.objects}
-    before = overlay()._shown._batch
+    before = overlay().drawn().shown._batch
     with steps.window():
         bpy.ops.ed.undo_push(message="Before")
     bpy.context.scene.camera.location.y = -40.0
 
     def follows():
-        return shown() and overlay()._shown._batch is not before
+        return shown() and overlay().drawn().shown._batch is not before
 
     yield from steps.wait_until(follows)
     with steps.window():
@@ -81,7 +81,7 @@ def colors_are_drawn_and_follow_the_camera():
         bpy.ops.ed.redo()
     for _ in range(4):
         yield
-    assert kept_model.get("Scene").outdated
+    assert addon_session().kept_models.get("Scene").outdated
     assert bpy.context.window_manager.lodestone_overlay.mode == "COST"
 
 
@@ -93,7 +93,8 @@ def it_is_off_when_another_file_is_opened():
 
 
 def compare_fills_the_slots():
-    from lodestone.core.picture import compare_plan
+    from lodestone.core.session.addon_session import addon_session
+    from lodestone.engines import render_engine
 
     scene = bpy.context.scene
     scene.lodestone.pixel_error_render = 4.0
@@ -102,13 +103,13 @@ def compare_fills_the_slots():
         assert bpy.ops.lodestone.compare("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
     def compared():  # Blender refuses to change anything until its job is over, a little later
-        ended = compare_plan.get("Scene") is not None and compare_plan.current() is None
+        ended = "Scene" in addon_session().comparisons and not render_engine.is_comparing()
         return ended and not bpy.app.is_job_running("RENDER")
 
     yield from steps.wait_until(compared, 120.0)
     assert bpy.data.images["Render Result"].render_slots.active_index == 2
     assert scene.render.use_compositing == before
-    assert compare_plan.get("Scene").pixels > 100
+    assert addon_session().comparisons.get("Scene").pixels > 100
 
 
 def a_screen_lens_is_dragged_in_the_camera_view():

@@ -104,7 +104,7 @@ def pixels_are_red(area):
     from lodestone.viewport import levels_preview
 
     region = next(r for r in area.regions if r.type == "WINDOW")
-    texture = levels_preview._canvases[region.as_pointer()]._offscreen.texture_color
+    texture = levels_preview.preview().canvases[region.as_pointer()]._offscreen.texture_color
     pixels = texture.read()
     pixels.dimensions = len(pixels) * len(pixels[0]) * 4
     values = list(pixels)
@@ -168,7 +168,7 @@ def moved_hidden_and_new_things_follow():
 def preview_pool():
     from lodestone.viewport import levels_preview
 
-    return levels_preview._pool
+    return levels_preview.preview().pool
 
 
 def what_is_edited_is_drawn_as_it_is():
@@ -244,7 +244,7 @@ def an_exception_is_told_once_and_nothing_breaks():
     from lodestone.viewport import levels_preview
 
     area, before = area_now(), levels_preview._show
-    printed = len(levels_preview._told)
+    printed = len(levels_preview.preview().told)
 
     def broken(*_):
         raise RuntimeError("broken on purpose")
@@ -255,7 +255,7 @@ def an_exception_is_told_once_and_nothing_breaks():
             area.tag_redraw()
             yield
         assert "broken on purpose" in state(area).view.problem
-        assert len(levels_preview._told) == printed + 1
+        assert len(levels_preview.preview().told) == printed + 1
     finally:
         levels_preview._show = before
 
@@ -270,7 +270,7 @@ def disabling_the_add_on_ends_it():
         yield
     assert not [t for t in threading.enumerate() if t.name == "Lodestone viewport"]
     assert levels_preview._on_change not in bpy.app.handlers.depsgraph_update_post
-    assert not levels_preview._canvases and not levels_preview._sources
+    assert not levels_preview.preview().canvases and not levels_preview.preview().sources
 
 
 STEPS = (

@@ -15,7 +15,7 @@ import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core.preview import preview_tree, preview_worker, viewport_state
 from lodestone.core.preview.preview_tree import IDENTITY, Change, Names
 from lodestone.core.preview.preview_worker import Made, Picture, Things, Wanted
-from lodestone.core.session import changed_shapes
+from lodestone.core.session.changed_shapes import ChangedShapes
 from lodestone_native import Camera, Cut, MeshBuffers, Model, View
 
 ROOT, GROUP, LEAF = "r" * 16, "c" * 16, "a" * 16
@@ -368,14 +368,15 @@ class Views(unittest.TestCase):
 
 class Edits(unittest.TestCase):
     def test_only_what_was_changed_after_the_last_reading_is_left(self):
-        changed_shapes.clear()
-        changed_shapes.note(["Before"])
-        changed_shapes.reading()
-        changed_shapes.note(["While"])
-        self.assertEqual(changed_shapes.names(), {"Before", "While"})
-        changed_shapes.settle()
-        self.assertEqual(changed_shapes.names(), {"While"})
-        changed_shapes.clear()
+        shapes = ChangedShapes()
+        shapes.note(["Before"])
+        shapes.reading()
+        shapes.note(["While"])
+        self.assertEqual(shapes.names(), {"Before", "While"})
+        shapes.settle()
+        self.assertEqual(shapes.names(), {"While"})
+        shapes.clear()
+        self.assertEqual(shapes.names(), set())
 
 
 if __name__ == "__main__":

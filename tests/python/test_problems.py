@@ -164,9 +164,6 @@ class ByCause(unittest.TestCase):
 
 
 class Checks(unittest.TestCase):
-    def tearDown(self):
-        last_check.clear()
-
     def test_exact_are_those_that_nothing_is_said_about(self):
         used = users(**{f"M{i}": ["Cube"] for i in range(342)})
         found = [material(f"M{i}", "grey", INFO) for i in range(24)]
@@ -175,14 +172,6 @@ class Checks(unittest.TestCase):
         self.assertEqual(check.exact_materials, (318, 342))
         self.assertEqual(problem_causes.exact_line(318, 342), "318 of 342 materials exact (93 %)")
         self.assertEqual(problem_causes.exact_line(341, 342), "341 of 342 materials exact (99 %)")
-
-    def test_each_scene_has_its_own_until_the_file_changes(self):
-        check = last_check.Check(())
-        last_check.put("A", check)
-        self.assertIs(last_check.get("A"), check)
-        self.assertIsNone(last_check.get("B"))
-        last_check.clear()
-        self.assertIsNone(last_check.get("A"))
 
     def test_rows_are_made_once_for_the_same_decisions(self):
         problem = material("A", "grey")

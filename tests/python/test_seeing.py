@@ -78,16 +78,18 @@ class Cost(unittest.TestCase):
     def test_ratios_are_kept_beside_the_levels_and_survive_nonsense(self):
         with tempfile.TemporaryDirectory() as folder:
             store = Path(folder)
-            self.assertEqual(cost_model.read(store), cost_model.Ratios())
-            cost_model.write(store, cost_model.Ratios(2.0, 0.5, 1.0))
-            cost_model._last.clear()
-            self.assertEqual(cost_model.read(store), cost_model.Ratios(2.0, 0.5, 1.0))
+            costs = cost_model.CostMemory().of(store)
+            self.assertEqual(costs.read(), cost_model.Ratios())
+            costs.write(cost_model.Ratios(2.0, 0.5, 1.0))
+            later = cost_model.CostMemory().of(store)
+            self.assertEqual(later.read(), cost_model.Ratios(2.0, 0.5, 1.0))
             for text in ("", "[]", '{"parse": 1e9, "trace": "x", "memory": NaN}', "9" * 5000):
                 (store / cost_model.FILE).write_text(text)
-                cost_model._last.clear()
-                self.assertEqual(cost_model.read(store), cost_model.Ratios(), text[:20])
-        cost_model.write(store, cost_model.Ratios(3.0))  # the folder is gone: still known here
-        self.assertEqual(cost_model.read(store).parse, 3.0)
+                later = cost_model.CostMemory().of(store)
+                self.assertEqual(later.read(), cost_model.Ratios(), text[:20])
+        memory = cost_model.CostMemory()
+        memory.of(store).write(cost_model.Ratios(3.0))  # the folder is gone: still known here
+        self.assertEqual(memory.of(store).read().parse, 3.0)
 
 
 class Blame(unittest.TestCase):

@@ -33,6 +33,7 @@ from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
 from lodestone.core.native import lodestone_native as native  # noqa: E402
 from lodestone.core.picture import unseen_detail  # noqa: E402
+from lodestone.core.picture.cost_model import CostMemory  # noqa: E402
 from lodestone.core.picture.picture_maker import remove_others, used_files  # noqa: E402
 from lodestone.core.problems import Problems  # noqa: E402
 from lodestone.core.store import motion_file, store_path  # noqa: E402
@@ -53,6 +54,7 @@ class FileRun:
         self._still = None
         self._poses: deforming_poses.Poses | None = None
         self._folders = SceneFolders(job)
+        self._costs = CostMemory()
         self._told = 0  # problems
 
     def run(self) -> ExitCode:
@@ -184,7 +186,7 @@ class FileRun:
                     modifiers = _asked(modifiers, picture)
                     work = BlenderPictureWork(
                         self.job, picture, scene, model, view, size, modifiers,
-                        store, self._folders, self.work, self._say,
+                        store, self._costs, self._folders, self.work, self._say,
                     )  # fmt: skip
                     made.append({**work.about, **self.verb.make(work), **built})
                     self.problems.extend_native(model.problems())

@@ -11,6 +11,7 @@ from ..core import file_names
 from ..core.background_calls import Work
 from ..core.batch.file_jobs import FileJob, PictureRequest
 from ..core.picture.compare_pictures import Compared
+from ..core.picture.cost_model import CostMemory
 from ..core.picture.picture_maker import Picture, SceneFolder, Settings
 from ..core.store import store_path
 from . import picture_files
@@ -46,11 +47,11 @@ class BlenderPictureWork:
 
     def __init__(
         self, job: FileJob, request: PictureRequest, scene, model, camera, size, modifiers,
-        store: Path, folders: SceneFolders, work: Work, say,
+        store: Path, costs: CostMemory, folders: SceneFolders, work: Work, say,
     ) -> None:  # fmt: skip
         self.job, self.request = job, request
         self.model, self.camera, self.size = model, camera, size
-        self.store = store
+        self.store, self.costs = store, costs.of(store)
         self.settings = Settings(
             pixel_error=request.pixel_error,
             overrides=request.overrides,

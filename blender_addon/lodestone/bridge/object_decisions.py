@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 
 from ..core import stable_ids
-from ..core.session import changed_shapes
+from ..core.session.addon_session import addon_session
 from . import datablock_ids, quality_settings
 from .datablock_ids import name_of
 
@@ -124,7 +124,7 @@ def tag(item: Any) -> None:
     """Tells the depsgraph that something else is decided: writing to a property group may not. It
     will say that there is another shape, too, which must not be believed."""
     if isinstance(item, bpy.types.Object):
-        changed_shapes.decided(*filter(None, edits_of(item)))
+        addon_session().changed_shapes.decided(*filter(None, edits_of(item)))
     item.update_tag()
 
 

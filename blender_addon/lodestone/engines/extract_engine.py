@@ -19,9 +19,7 @@ from ..core.background_calls import Stopped
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence, valid
 from ..core.problems import Problems
-from ..core.session import changed_shapes
-
-_request = None
+from ..core.session.addon_session import addon_session
 
 
 class Request:
@@ -51,13 +49,19 @@ class Request:
         self.error = None
 
 
+class ExtractState:
+    """The extraction that runs; part of the session."""
+
+    request = None
+
+
 class LODESTONE_RE_extract(bpy.types.RenderEngine):
     bl_idname = "LODESTONE_EXTRACT"
     bl_label = "Lodestone (reading the scene)"
     bl_use_preview = False
 
     def render(self, depsgraph):
-        request = _request
+        request = addon_session().part(ExtractState).request
         if request is None or request.extraction is not None or request.error is not None:
             return  # further view layers: the first one counts
 
@@ -150,15 +154,14 @@ def _modifiers(depsgraph, frame_set, request, extraction):
 @contextlib.contextmanager
 def prepared(target, request):
     """Makes a render of the scene `target` an extraction for `request`; all is put back after."""
-    global _request
-    render = target.render
+    render, state = target.render, addon_session().part(ExtractState)
     request.without_camera = target.camera is None
-    changed_shapes.reading()
+    addon_session().changed_shapes.reading()
     names = ("engine", "use_compositing", "use_sequencer")
     before = {name: getattr(render, name) for name in names}
     camera_before, stand_in = target.camera, None
     bpy.utils.register_class(LODESTONE_RE_extract)
-    _request = request
+    state.request = request
     try:
         if target.camera is None:  # Blender renders nothing without one
             data = bpy.data.cameras.new("Lodestone")
@@ -168,7 +171,7 @@ def prepared(target, request):
         render.use_compositing = render.use_sequencer = False
         yield
     finally:
-        _request = None
+        state.request = None
         for name, value in before.items():
             setattr(render, name, value)
         if stand_in is not None:

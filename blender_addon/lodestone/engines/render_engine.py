@@ -29,7 +29,10 @@ from ..core.picture.picture_maker import Settings, make_identities, make_picture
 from ..core.picture.render_folder import RenderFolder
 from ..core.printable_text import printable, sentence, valid
 from ..core.problems import ERROR, Problems
-from ..core.session import changed_shapes, kept_model, last_check, last_render
+from ..core.session import kept_model
+from ..core.session.addon_session import addon_session, end_session
+from ..core.session.last_check import Check
+from ..core.session.last_render import LastRender
 from ..core.store import motion_file, store_path
 from ..viewport import levels_preview
 from . import render_job
@@ -37,11 +40,40 @@ from . import render_job
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
 _SHARES["Coverage"] = (1.0, 0.0)
-# Of the render that is running
-_folder = RenderFolder()
-_poses = {}  # by scene and view layer
-_hidden_pencil = hidden_grease_pencil.HiddenGreasePencil()
 _leaving = False  # the add-on is disabled: what runs is to stop
+
+
+class RenderState:
+    """What is kept from one picture of a render to the next; part of the session."""
+
+    def __init__(self):
+        self.folder = RenderFolder()
+        self.poses = {}  # by scene and view layer
+        self.plan = None  # of Compare Levels, whose steps the pictures are
+        self.hidden_pencil = hidden_grease_pencil.HiddenGreasePencil()
+
+    def close(self):
+        """A render begins or is over: what was read may be another thing in the next one."""
+        self.folder.close()
+        for held in self.poses.values():
+            held.close()
+        self.poses.clear()
+
+
+@contextlib.contextmanager
+def comparing(plan):
+    """Pictures that are made meanwhile are steps of this comparison."""
+    state = addon_session().part(RenderState)
+    state.plan = plan
+    try:
+        yield
+    finally:
+        state.plan = None
+
+
+def is_comparing():
+    """Whether a comparison has pictures made."""
+    return addon_session().part(RenderState).plan is not None
 
 
 class Refused(Exception):
@@ -73,7 +105,7 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
-            run = _Run(self, depsgraph)
+            run = _Run(self, depsgraph, addon_session().part(RenderState))
             if run.failed_before:
                 return
             try:
@@ -96,11 +128,12 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
 class _Run:
     """One call of render(): one view layer of one frame."""
 
-    def __init__(self, engine, depsgraph):
+    def __init__(self, engine, depsgraph, state):
         self.engine = engine
+        self.state = state
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
-        changed_shapes.reading()
+        addon_session().changed_shapes.reading()
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
         self.coarser = settings.use_levels and settings.coarser_moving_dark
@@ -119,10 +152,10 @@ class _Run:
         self.problems = Problems()
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))
         self.ignored = ignored_problems.keys(depsgraph.scene)
-        self.problems.extend(_hidden_pencil.problems)
+        self.problems.extend(state.hidden_pencil.problems)
         self.users = {}
         self.poses = deforming_poses.Poses()
-        self.plan = compare_plan.current()
+        self.plan = state.plan
         if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
             self.settings = self.settings.of_originals()
             self.ray_classes = 0
@@ -177,7 +210,7 @@ class _Run:
                 kept = kept_model.Kept(
                     model, self.settings.view(view, size), extraction.parts, self.frame
                 )
-                kept_model.put(name_of(self.scene), kept)
+                addon_session().kept_models.put(name_of(self.scene), kept)
         self._remember(totals, made)
         self._hand_over(layer, image)
         self._report()
@@ -203,12 +236,12 @@ class _Run:
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""
         key = (name_of(self.scene), name_of(self.depsgraph.view_layer_eval))
-        if key not in _poses:
-            _poses[key] = deforming_poses.read(
+        if key not in self.state.poses:
+            self.state.poses[key] = deforming_poses.read(
                 self.depsgraph, self.engine.frame_set, still, self._tick
             )
             self.scene = self.depsgraph.scene_eval
-        self.poses = _poses[key]
+        self.poses = self.state.poses[key]
 
     def _required(self):
         """The camera. What a picture cannot do without is looked for before hours of work."""
@@ -232,12 +265,13 @@ class _Run:
             options = self._build_options(self.settings.view(view, size))
             self.left = model.build(str(self.store), options, self.work.new_job("Levels")).left
             if self.left == 0:
-                changed_shapes.settle()
+                addon_session().changed_shapes.settle()
         try:
             kept = store_path.scene_folder(self.store)
-            with _folder.use(kept, self.keep, self.frame) as folder:
+            costs = addon_session().costs.of(self.store)
+            with self.state.folder.use(kept, self.keep, self.frame) as folder:
                 made = make_picture(
-                    model, view, size, self.settings, folder.path, self.work.new_job, self.store
+                    model, view, size, self.settings, folder.path, self.work.new_job, costs
                 )
                 if self.plan is not None and not self.plan.has_this:
                     shown = make_identities(
@@ -300,21 +334,18 @@ class _Run:
 
     def _remember(self, totals, made):
         cut = made.parts["cut"]
-        last_render.put(
-            name_of(self.scene),
-            last_render.LastRender(
-                totals.triangles_placed,
-                cut["triangles"],
-                cut["kinds"],
-                cut["largest_error_px"],
-                cut["largest_error_name"],
-                made.in_use,
-                self.left,
-                made.predicted.wall_s,
-                made.parts["povray"]["wall_s"],
-                made.predicted.peak_bytes,
-                made.parts["povray"]["peak_bytes"],
-            ),
+        addon_session().renders[name_of(self.scene)] = LastRender(
+            totals.triangles_placed,
+            cut["triangles"],
+            cut["kinds"],
+            cut["largest_error_px"],
+            cut["largest_error_name"],
+            made.in_use,
+            self.left,
+            made.predicted.wall_s,
+            made.parts["povray"]["wall_s"],
+            made.predicted.peak_bytes,
+            made.parts["povray"]["peak_bytes"],
         )
 
     @property
@@ -341,7 +372,7 @@ class _Run:
         every.extend(self.problems)
         found = tuple(every)
         self.engine.lodestone_found = (frame, found, self.users)
-        last_check.put(name_of(self.scene), last_check.Check(found, self.users))
+        addon_session().checks[name_of(self.scene)] = Check(found, self.users)
         return problems
 
     def fail(self, code, text):
@@ -365,11 +396,7 @@ class _Run:
 
 @bpy.app.handlers.persistent
 def _forget(*_):
-    """A render begins or is over: what was read may be another thing in the next one."""
-    _folder.close()
-    for held in _poses.values():
-        held.close()
-    _poses.clear()
+    addon_session().part(RenderState).close()
 
 
 @bpy.app.handlers.persistent
@@ -377,12 +404,13 @@ def _hide_pencil(rendered, *_):
     """A picture begins: grease pencil is hidden while it is made, where drawing it ends Blender."""
     ours = rendered.render.engine == LODESTONE_RE_povray.bl_idname
     if ours and bpy.app.background and len(bpy.data.grease_pencils) and egl_library.missing():
-        _hidden_pencil.hide(bpy.data, rendered, bpy.context.view_layer)
+        hidden = addon_session().part(RenderState).hidden_pencil
+        hidden.hide(bpy.data, rendered, bpy.context.view_layer)
 
 
 @bpy.app.handlers.persistent
 def _show_pencil(*_):
-    _hidden_pencil.put_back()
+    addon_session().part(RenderState).hidden_pencil.put_back()
 
 
 _ENDS = ("render_complete", "render_cancel")
@@ -400,20 +428,18 @@ def register():
         _register()
     _leaving = False
     handlers.add(_HANDLERS)
-    atexit.register(_folder.close)
+    atexit.register(_forget)
 
 
 def unregister():
     global _leaving
     _leaving = True
-    atexit.unregister(_folder.close)
+    atexit.unregister(_forget)
     handlers.remove(_HANDLERS)
     render_job.when_none_runs(_leave)
 
 
 def _leave():
-    _forget()
-    kept_model.clear()
-    last_render.clear()
-    last_check.clear()
+    """No render runs any more that could use what is remembered."""
+    end_session()
     _unregister()

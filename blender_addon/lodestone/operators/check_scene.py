@@ -10,7 +10,7 @@ from ..core import problem_causes
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
 from ..core.problems import Problems
-from ..core.session import last_check, last_render
+from ..core.session.addon_session import addon_session
 from ..core.store import store_path
 from .polled import Polled
 
@@ -24,7 +24,7 @@ def check_scene(context):
     picture_requirements.libraries(bpy.data.libraries, bpy.data.filepath, problems)
     depsgraph = context.evaluated_depsgraph_get()
     found = scene_check.check(scene, context.view_layer, depsgraph, problems)
-    last_check.put(datablock_ids.name_of(scene), found)
+    addon_session().checks[datablock_ids.name_of(scene)] = found
     return found
 
 
@@ -66,8 +66,8 @@ _register, _unregister = bpy.utils.register_classes_factory(_CLASSES)
 
 @bpy.app.handlers.persistent
 def _on_load(*_):
-    last_check.clear()
-    last_render.clear()
+    addon_session().checks.clear()
+    addon_session().renders.clear()
 
 
 _HANDLERS = (("load_pre", _on_load),)

@@ -5,15 +5,15 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..bridge import object_decisions
-from ..core.session import last_render
-from ..core.store import store_levels, store_path
+from ..core.session.addon_session import addon_session
+from ..core.store import store_path
 from .polled import Polled
 
 
 def clear_levels(with_decisions):
     """Removes the file's store and every uid, with_decisions roles too. Returns how many
     datablocks were cleared and whether there was a store. Raises OSError."""
-    removed = store_levels.remove(store_path.store_folder(bpy.data.filepath))
+    removed = addon_session().stores.remove(store_path.store_folder(bpy.data.filepath))
     local = [item for item in (*bpy.data.collections, *bpy.data.objects) if not item.library]
     cleared = sum(object_decisions.forget(item, with_decisions) for item in local)
     for scene in bpy.data.scenes:
@@ -21,7 +21,7 @@ def clear_levels(with_decisions):
             if with_decisions:
                 cleared += object_decisions.forget_linked(scene)
             object_decisions.drop_empty(scene)
-    last_render.clear()
+    addon_session().renders.clear()
     return cleared, removed
 
 

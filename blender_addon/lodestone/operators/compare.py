@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compare: the frame by its originals, by its levels, and their difference, in three render slots.
 
-No setting is touched: the engine asks core/picture/compare_plan.py what the picture is to be. The
+No setting is touched: the engine is given a plan, of which the pictures are the steps. The
 compositor alone, which would work on the difference, is off while that is shown.
 """
 
@@ -17,7 +17,8 @@ from ..bridge import quality_settings
 from ..bridge.scene_settings import SceneSettings
 from ..core import progress_text
 from ..core.picture import compare_plan
-from ..panels import ENGINE
+from ..core.session.addon_session import addon_session
+from ..engines import render_engine
 from . import session as sessions
 from .polled import Polled
 
@@ -42,7 +43,8 @@ class Comparing:
         slots = _slots()
         self._slot = slots.active_index if slots is not None else 0
         self._done = False
-        compare_plan.start(self.plan)
+        self._handed = contextlib.ExitStack()
+        self._handed.enter_context(render_engine.comparing(self.plan))
 
     @property
     def _scene(self):
@@ -70,14 +72,18 @@ class Comparing:
         if not self.plan.finished_step:
             raise NotMade
 
+    def pause(self):
+        """Puts back the settings that are another for the step, until the next one."""
+        self._step.close()
+
     def finish(self):
         """Of the last step: the Comparison, also for the panel."""
         self._done = True
-        compare_plan.put(self.scene, self.plan.comparison)
+        addon_session().comparisons[self.scene] = self.plan.comparison
         return self.plan.comparison
 
     def close(self):
-        compare_plan.end()
+        self._handed.close()
         try:
             self._step.close()
         except ReferenceError:  # the scene is gone, with its settings
@@ -109,7 +115,7 @@ def compare(scene):
 def refusal(context):
     """Why nothing can be compared now; "" when it can."""
     scene = context.scene
-    if scene.render.engine != ENGINE:
+    if scene.render.engine != render_engine.LODESTONE_RE_povray.bl_idname:
         return "Set the render engine to Lodestone POV-Ray"
     if scene.camera is None:
         return "Set a scene camera"
@@ -120,12 +126,25 @@ def refusal(context):
         return "Pixel Error 0 renders the originals: there is nothing to compare"
     if scene.render.use_sequencer and scene.sequence_editor and scene.sequence_editor.sequences:
         return "The sequencer makes this scene's picture: turn it off in Output > Post Processing"
-    if compare_plan.current() is not None:
+    if render_engine.is_comparing():
         return "Already running (Esc to cancel)"
     return sessions.refusal()
 
 
-_running = None
+class RunningComparison:
+    """The comparison that runs in the window; part of the session."""
+
+    run = None
+
+    def close(self):
+        """Ends it, leaving everything as it was."""
+        run, self.run = self.run, None
+        if run is not None:
+            run.close()
+
+
+def _running():
+    return addon_session().part(RunningComparison)
 
 
 class LODESTONE_OT_compare(Polled, bpy.types.Operator):
@@ -157,10 +176,9 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context, event):
-        global _running
         try:
-            _running = Comparing(context.scene)
-            _running.render(0, ("INVOKE_DEFAULT",))
+            run = _running().run = Comparing(context.scene)
+            run.render(0, ("INVOKE_DEFAULT",))
         except (OSError, RuntimeError) as error:
             self.report({"ERROR"}, str(error).strip())
             return self._end(context, {"CANCELLED"})
@@ -170,22 +188,23 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        if _running is None:  # a file was loaded, the add-on disabled
+        run = _running().run
+        if run is None:  # a file was loaded, the add-on disabled
             return self._end(context, {"CANCELLED"})
         # Esc reaches the render job, which then leaves no picture
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        step = _running.plan.step
+        step = run.plan.step
         if bpy.app.is_job_running("RENDER"):
             word = compare_plan.WORDS[step]
             sessions.status(context, progress_text.comparing(step + 1, SLOTS, word))
             return {"PASS_THROUGH"}
         try:
-            _running.rendered()
+            run.rendered()
             if step + 1 < SLOTS:
-                _running.render(step + 1, ("INVOKE_DEFAULT",))
+                run.render(step + 1, ("INVOKE_DEFAULT",))
                 return {"PASS_THROUGH"}
-            self.report({"INFO"}, _running.finish().sentence)
+            self.report({"INFO"}, run.finish().sentence)
             return self._end(context, {"FINISHED"})
         except NotMade:
             return self._end(context, {"CANCELLED"})
@@ -194,7 +213,7 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
             return self._end(context, {"CANCELLED"})
 
     def _end(self, context, outcome):
-        stop()
+        _running().close()
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -206,25 +225,18 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         return outcome
 
 
-def stop():
-    """Ends what runs, leaving everything as it was."""
-    global _running
-    run, _running = _running, None
-    if run is not None:
-        run.close()
-
-
 @bpy.app.handlers.persistent
 def _on_load(*_):
-    stop()
-    compare_plan.clear()
+    _running().close()
+    addon_session().comparisons.clear()
 
 
 @bpy.app.handlers.persistent
 def _on_save(*_):
     """A file must not remember that the compositor is off for a moment."""
-    if _running is not None:
-        _running._step.close()
+    run = _running().run
+    if run is not None:
+        run.pause()
 
 
 def _draw_menu(self, context):
@@ -243,8 +255,7 @@ def register():
 
 
 def unregister():
-    stop()
-    compare_plan.clear()
+    addon_session().drop(RunningComparison)
     handlers.remove(_HANDLERS)
     bpy.types.TOPBAR_MT_render.remove(_draw_menu)
     _unregister()

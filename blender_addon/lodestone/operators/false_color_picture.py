@@ -19,7 +19,7 @@ from ..core.native import lodestone_native as native
 from ..core.picture import false_colors, legend_strip, overview_camera
 from ..core.picture.picture_maker import PICTURE
 from ..core.printable_text import sentence
-from ..core.session import kept_model
+from ..core.session.addon_session import addon_session
 from . import read_levels
 from . import session as sessions
 
@@ -140,7 +140,7 @@ class _Session(read_levels.Reading):
 
     def start_picture(self, context):
         scene = context.scene
-        kept = kept_model.get(scene.name)
+        kept = addon_session().kept_models.get(scene.name)
         asked = kept_model_view.now(kept, scene, context.evaluated_depsgraph_get())
         self._outcome = {}
         self.picturing = True
@@ -180,7 +180,7 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
         scene = context.scene
         try:
             request = self._asked(context)
-            kept = kept_model.get(scene.name)
+            kept = addon_session().kept_models.get(scene.name)
             if kept is None or kept_model_view.old(kept, scene):
                 kept = read_levels.read_levels(scene)
             asked = kept_model_view.now(kept, scene, context.evaluated_depsgraph_get())

@@ -6,13 +6,13 @@ from bpy.props import StringProperty
 
 from ..bridge import datablock_ids, ignored_problems
 from ..core import problem_causes
-from ..core.session import last_check
+from ..core.session.addon_session import addon_session
 from .polled import InObjectMode, Polled
 
 
 def split(context):
     """The last check of the scene by cause; None before the first."""
-    check = last_check.get(context.scene.name)
+    check = addon_session().checks.get(context.scene.name)
     return check.split(ignored_problems.keys(context.scene)) if check else None
 
 
@@ -139,7 +139,9 @@ def text_of(context, key=""):
         return "".join(cause.report + "\n" for cause in found.shown if cause.key == key)
     lines = [cause.report for cause in found.shown]
     lines += [f"ignored {cause.report}" for cause in found.ignored]
-    exact = problem_causes.exact_line(*last_check.get(context.scene.name).exact_materials)
+    exact = problem_causes.exact_line(
+        *addon_session().checks.get(context.scene.name).exact_materials
+    )
     return "\n".join([*lines, *([exact] if exact else [])]) + "\n"
 
 

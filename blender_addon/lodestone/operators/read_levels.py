@@ -18,6 +18,7 @@ from ..core.store import motion_file, store_path
 from ..core.store.store_levels import is_store
 from ..engines import extract_engine
 from . import session as sessions
+from ..core.session.addon_session import addon_session
 from .polled import Polled
 
 FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing)
@@ -54,7 +55,7 @@ def read_levels(scene):
             raise
     finally:
         asked.poses.close()
-    kept_model.put(scene.name, kept)
+    addon_session().kept_models.put(scene.name, kept)
     return kept
 
 
@@ -80,7 +81,7 @@ class Reading(sessions.Session):
         """Call when working() is False. Raises what failed."""
         kept = self.worked()
         self.request.extraction = None  # its model is the kept one's from now on
-        kept_model.put(self._scene, kept)
+        addon_session().kept_models.put(self._scene, kept)
         return kept
 
 
@@ -137,7 +138,7 @@ def _on_change(scene, depsgraph):
     own = SceneSettings(scene)
     lit = own.use_levels and own.coarser_moving_dark
     if any(_counts(update, lit) for update in depsgraph.updates):
-        kept_model.outdate()
+        addon_session().kept_models.outdate()
 
 
 def _counts(update, lit):
@@ -156,12 +157,12 @@ def _counts(update, lit):
 
 @bpy.app.handlers.persistent
 def _on_undo(*_):
-    kept_model.outdate()
+    addon_session().kept_models.outdate()
 
 
 @bpy.app.handlers.persistent
 def _on_load(*_):
-    kept_model.clear()
+    addon_session().kept_models.clear()
 
 
 _HANDLERS = (
@@ -180,5 +181,5 @@ def register():
 
 def unregister():
     handlers.remove(_HANDLERS)
-    kept_model.clear()
+    addon_session().kept_models.clear()
     _unregister()

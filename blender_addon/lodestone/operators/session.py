@@ -14,11 +14,21 @@ from .. import handlers
 from ..core import background_calls
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
+from ..core.session.addon_session import addon_session
 from ..engines import extract_engine, render_job
 
 INTERVAL_S = 0.1
 FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)
-_current = None
+
+
+class RunningSession:
+    """The session that runs in the window; part of the add-on's."""
+
+    current = None
+
+
+def _running():
+    return addon_session().part(RunningSession)
 
 
 class Session:
@@ -91,12 +101,13 @@ class Session:
 
 def current(kind=Session):
     """The session that runs in the window, if it is one of this kind; else None."""
-    return _current if isinstance(_current, kind) else None
+    session = _running().current
+    return session if isinstance(session, kind) else None
 
 
 def refusal():
     """Why no session can start now; "" when one can."""
-    if _current is not None:
+    if _running().current is not None:
         return "Already running (Esc to cancel)"
     return "A render is running" if render_job.runs() else ""
 
@@ -111,14 +122,13 @@ class InWindow:
 
     def begin(self, context, session):
         """Starts to read the scene."""
-        global _current
         try:
             session.start_reading(context)
         except self.failures as error:
             session.close()
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
-        _current = session
+        _running().current = session
         return self.watch(context)
 
     def watch(self, context):
@@ -128,7 +138,7 @@ class InWindow:
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        session = _current
+        session = _running().current
         if session is None:  # stopped from outside: a file was loaded, the add-on disabled
             return self.end(context, {"CANCELLED"})
         if event.type == "ESC" and event.value == "PRESS":
@@ -164,8 +174,7 @@ class InWindow:
         return ""
 
     def end(self, context, outcome):
-        global _current
-        _current = None
+        _running().current = None
         self.remove_timer(context)
         status(context, None)
         return outcome
@@ -207,8 +216,7 @@ def _raise_stopped():
 
 def stop_running():
     """Ends a session from outside, leaving the file as it is."""
-    global _current
-    session, _current = _current, None
+    session, _running().current = _running().current, None
     if session is None:
         return
     session.stop()

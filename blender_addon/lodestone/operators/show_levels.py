@@ -3,10 +3,13 @@
 
 import bpy
 
+from ..core.session.addon_session import addon_session
 from ..viewport import levels_preview
 from .polled import Polled
 
-_before = {}  # shading by area, for as long as the window is open
+
+class ShadingBefore(dict):
+    """The shading by area, for as long as the window is open; part of the session."""
 
 
 class LODESTONE_OT_show_levels(Polled, bpy.types.Operator):
@@ -26,19 +29,14 @@ class LODESTONE_OT_show_levels(Polled, bpy.types.Operator):
         return ""
 
     def execute(self, context):
+        before = addon_session().part(ShadingBefore)
         shading, key = context.space_data.shading, context.area.as_pointer()
         if shading.type == "RENDERED":
-            shading.type = _before.pop(key, "SOLID")
+            shading.type = before.pop(key, "SOLID")
         else:
-            _before[key] = shading.type
+            before[key] = shading.type
             shading.type = "RENDERED"
         return {"FINISHED"}
 
 
-_register, _unregister = bpy.utils.register_classes_factory((LODESTONE_OT_show_levels,))
-register = _register
-
-
-def unregister():
-    _before.clear()
-    _unregister()
+register, unregister = bpy.utils.register_classes_factory((LODESTONE_OT_show_levels,))

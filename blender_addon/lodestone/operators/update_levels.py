@@ -11,7 +11,7 @@ from ..bridge import object_decisions
 from ..core import progress_text
 from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
-from ..core.session import changed_shapes
+from ..core.session.addon_session import addon_session
 from ..core.store import motion_file, store_path
 from ..engines import extract_engine
 from . import session as sessions
@@ -51,7 +51,7 @@ def update_levels(context, scope):
             options = build_options(extraction, keys, request.poses)
             store.mkdir(parents=True, exist_ok=True)
             report = model.build(str(store), options)
-            changed_shapes.settle()
+            addon_session().changed_shapes.settle()
             return report
     except BaseException:
         object_decisions.take_back(changed)
@@ -106,7 +106,7 @@ class _InWindow(sessions.InWindow):
             sessions.status(context, progress_text.building(done, total))
             return {"PASS_THROUGH"}
         report = session.worked()
-        changed_shapes.settle()
+        addon_session().changed_shapes.settle()
         session.close(keep=True)
         outcome = self.end(context, {"FINISHED"})
         bpy.ops.ed.undo_push(message=UNDO_NAME)

@@ -5,8 +5,8 @@ import bpy
 from bpy.types import Panel
 
 from ..core import progress_text
-from ..core.picture import compare_plan
 from . import EnginePanel
+from ..core.session.addon_session import addon_session
 
 
 class LODESTONE_RENDER_PT_compare(EnginePanel, Panel):
@@ -18,7 +18,7 @@ class LODESTONE_RENDER_PT_compare(EnginePanel, Panel):
     def draw(self, context):
         layout = self.layout
         layout.operator("lodestone.compare", icon="IMAGE_REFERENCE")
-        found = compare_plan.get(context.scene.name)
+        found = addon_session().comparisons.get(context.scene.name)
         if found is None:
             return
         split = layout.split(factor=0.4)

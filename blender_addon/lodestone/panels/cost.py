@@ -5,7 +5,7 @@ import bpy
 from bpy.types import Panel
 
 from ..core import progress_text
-from ..core.session import last_render
+from ..core.session.addon_session import addon_session
 from . import EnginePanel
 
 
@@ -17,7 +17,7 @@ class LODESTONE_RENDER_PT_cost(EnginePanel, Panel):
 
     def draw(self, context):
         layout = self.layout
-        render = last_render.get(context.scene.name)
+        render = addon_session().renders.get(context.scene.name)
         if render is None or not render.actual_s:
             layout.label(text="Render a picture to see what it takes")
             return

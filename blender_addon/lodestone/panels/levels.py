@@ -7,8 +7,8 @@ from bpy.types import Panel
 from ..bridge import datablock_ids, object_decisions
 from ..core import progress_text
 from ..core.native import lodestone_native as native
-from ..core.session import last_render
-from ..core.store import store_levels, store_path
+from ..core.session.addon_session import addon_session
+from ..core.store import store_path
 
 _KINDS = {
     native.Kind.MESH: "Simplified",
@@ -54,7 +54,7 @@ def draw_levels(layout, context, item):
         layout.operator_menu_enum("lodestone.linked_role", "role", text=text)
     else:
         _draw_decisions(layout, context, item)
-    store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+    store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
     if store.problem:
         layout.label(text=f"Levels cannot be read: {store.problem}", icon="ERROR")
         return
@@ -63,7 +63,7 @@ def draw_levels(layout, context, item):
     if uid is None:
         layout.label(text="No levels yet: Update Levels builds them")
         return
-    render = last_render.get(context.scene.name)
+    render = addon_session().renders.get(context.scene.name)
     in_use = render.in_use.get(uid, {}) if render else {}
     box = layout.box().column(align=True)
     for level in store.levels(uid):
@@ -119,4 +119,4 @@ register = _register
 
 def unregister():
     _unregister()
-    store_levels.forget()
+    addon_session().stores.forget()

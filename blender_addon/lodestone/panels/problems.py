@@ -6,7 +6,7 @@ from bpy.types import Panel
 
 from ..core import problem_causes
 from ..core.problems import ERROR, INFO, WARNING
-from ..core.session import last_check
+from ..core.session.addon_session import addon_session
 from ..operators import problems as operators
 from . import EnginePanel
 
@@ -47,7 +47,9 @@ class LODESTONE_RENDER_PT_problems(EnginePanel, Panel):
             column.label(text=f"and {more:,} more: Copy lists them", icon="BLANK1")
         if not found.shown:
             column.label(text="No problems", icon="CHECKMARK")
-        exact = problem_causes.exact_line(*last_check.get(context.scene.name).exact_materials)
+        exact = problem_causes.exact_line(
+            *addon_session().checks.get(context.scene.name).exact_materials
+        )
         if exact:
             column.label(text=exact, icon="MATERIAL")
         if found.ignored:

@@ -10,7 +10,7 @@ from ..bridge.live import live_view
 from ..bridge.scene import quality_lenses
 from ..core import progress_text
 from ..core.native import lodestone_native as native
-from ..core.session import last_render
+from ..core.session.addon_session import addon_session
 
 _ARROW = "\N{RIGHTWARDS ARROW}"
 _KINDS = {"mesh": "Meshes", "box": "Boxes", "ellipsoid": "Ellipsoids", "composite": "Composites"}
@@ -25,7 +25,7 @@ class LODESTONE_RENDER_PT_levels_view(Panel):
 
     def draw(self, context):
         layout = self.layout
-        render = last_render.get(context.scene.name)
+        render = addon_session().renders.get(context.scene.name)
         try:
             found = live_view.statistics(context)
             viewport = live_view.viewport_statistics(context)

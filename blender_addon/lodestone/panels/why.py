@@ -6,7 +6,7 @@ from bpy.types import Panel
 
 from ..bridge.live import kept_model_view
 from ..core.native import lodestone_native as native
-from ..core.session import kept_model
+from ..core.session.addon_session import addon_session
 
 
 class LODESTONE_OBJECT_PT_why(Panel):
@@ -19,7 +19,7 @@ class LODESTONE_OBJECT_PT_why(Panel):
     def draw(self, context):
         layout = self.layout
         scene = context.scene
-        kept = kept_model.get(scene.name)
+        kept = addon_session().kept_models.get(scene.name)
         if kept is None:
             layout.label(text="Known after a picture or Read Scene")
             layout.operator("lodestone.read_levels", icon="FILE_REFRESH")

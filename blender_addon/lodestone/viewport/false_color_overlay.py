@@ -15,7 +15,7 @@ from .. import handlers
 from ..bridge.live import kept_model_view
 from ..core.native import lodestone_native as native
 from ..core.picture import false_colors
-from ..core.session import kept_model
+from ..core.session.addon_session import addon_session
 from . import forced_lod, levels_popover, levels_preview
 
 MOST_TRIANGLES = 400_000
@@ -104,9 +104,20 @@ class Shown:
         return self._batch
 
 
-_shown = Shown()
+class Overlay:
+    """What is drawn over viewports, and into what; part of the session."""
+
+    def __init__(self):
+        self.shown = Shown()
+        self.offscreens = {}  # by region: ((width, height), GPUOffScreen)
+
+
 _handle = None
-_offscreens = {}  # by region: ((width, height), GPUOffScreen)
+
+
+def drawn():
+    """The Overlay of the session."""
+    return addon_session().part(Overlay)
 
 
 def settings(context):
@@ -121,7 +132,7 @@ def wanted_key(context, scene, kept, mode):
 
 def refresh(context, scene, mode):
     """Makes what is to be drawn, on the main thread. False when the model is in use."""
-    kept = kept_model.get(scene.name)
+    kept = addon_session().kept_models.get(scene.name)
     if kept is None or not kept.lock.acquire(blocking=False):
         return False
     try:
@@ -137,7 +148,7 @@ def refresh(context, scene, mode):
         colors = bytearray(colors.tobytes().translate(false_colors.LINEAR))
         asked = cut.view.pixel_error
         line = f"{cut.view.camera.name}, Pixel Error {asked:g}: {len(cut.choices()):,} drawn"
-        _shown.set(key, corners, colors, count, false_colors.legend(mode, asked), (line,))
+        drawn().shown.set(key, corners, colors, count, false_colors.legend(mode, asked), (line,))
     finally:
         kept.lock.release()
     return True
@@ -153,13 +164,13 @@ def _refresh_later():
             and settings(context).seen_from == "CAMERA"
             and not refresh(context, context.scene, mode)
         ):
-            if kept_model.get(context.scene.name) is not None:
+            if addon_session().kept_models.get(context.scene.name) is not None:
                 return 4 * DELAY_S  # it is in use
     except native.LodestoneError as error:
-        _shown.set(None, None, None, 0, (), (str(error),))
+        drawn().shown.set(None, None, None, 0, (), (str(error),))
     except Exception:
         traceback.print_exc()
-        _shown.set(None, None, None, 0, (), ("False colors failed: see the console",))
+        drawn().shown.set(None, None, None, 0, (), ("False colors failed: see the console",))
         return None
     _tag_redraw()
     return None
@@ -203,21 +214,21 @@ def _draw_own(context, mode):
 def _draw_colors(context, mode):
     import gpu  # only where there is a window
 
-    kept = kept_model.get(context.scene.name)
+    kept = addon_session().kept_models.get(context.scene.name)
     if kept is None:
         _draw_text(context, (), ("Lodestone: press Read Scene, or render a picture",))
         return
-    key = wanted_key(context, context.scene, kept, mode)
-    if key != _shown.key and not bpy.app.timers.is_registered(_refresh_later):
+    key, shown = wanted_key(context, context.scene, kept, mode), drawn().shown
+    if key != shown.key and not bpy.app.timers.is_registered(_refresh_later):
         bpy.app.timers.register(_refresh_later, first_interval=DELAY_S)
-    if _shown.key is None or _shown.key[1] == id(kept):
-        batch = _shown.batch(gpu)
+    if shown.key is None or shown.key[1] == id(kept):
+        batch = shown.batch(gpu)
         if batch is not None:
             _draw_batch(context, gpu, batch)
-    lines = list(_shown.lines)
+    lines = list(shown.lines)
     if kept_model_view.old(kept, context.scene):
         lines.append("The scene has changed since: Read Scene")
-    _draw_text(context, _shown.legend, lines)
+    _draw_text(context, shown.legend, lines)
 
 
 def _draw_batch(context, gpu, batch):
@@ -226,12 +237,13 @@ def _draw_batch(context, gpu, batch):
     from gpu_extras.batch import batch_for_shader
 
     region, size = context.region, (context.region.width, context.region.height)
-    held = _offscreens.get(region.as_pointer())
+    offscreens = drawn().offscreens
+    held = offscreens.get(region.as_pointer())
     if held is None or held[0] != size:
         held = (size, gpu.types.GPUOffScreen(*size))
-        if len(_offscreens) > 8:  # regions come and go
-            _offscreens.clear()
-        _offscreens[region.as_pointer()] = held
+        if len(offscreens) > 8:  # regions come and go
+            offscreens.clear()
+        offscreens[region.as_pointer()] = held
     offscreen = held[1]
     view = context.region_data
     flat = "3D_FLAT_COLOR" if bpy.app.version < (4, 0, 0) else "FLAT_COLOR"
@@ -347,10 +359,8 @@ def _on_load(*_):
 
 def forget():
     """Drops all that is drawn."""
-    global _shown
-    _shown = Shown()
-    _offscreens.clear()
-    forced_lod.forget()
+    addon_session().drop(Overlay)
+    addon_session().drop(forced_lod.ForcedViewports)
 
 
 _HANDLERS = (("load_post", _on_load),)

@@ -6,16 +6,27 @@ import bpy
 from bpy.props import BoolProperty, IntProperty
 
 from ..core.preview.preview_tree import NOT_FORCED
+from ..core.session.addon_session import addon_session
 
 _DEFAULT = 1
-_on = set()  # viewports
-_lods = {}  # by viewport, also of those where it is off
+
+
+class ForcedViewports:
+    """Viewports that force a level, by their addresses; part of the session."""
+
+    def __init__(self):
+        self.on = set()
+        self.lods = {}  # also of viewports where it is off
+
+
+def _forced():
+    return addon_session().part(ForcedViewports)
 
 
 def of_view(space):
     """The LOD number that a 3D viewport forces, or NOT_FORCED."""
-    key = space.as_pointer()
-    return _lods.get(key, _DEFAULT) if key in _on else NOT_FORCED
+    key, forced = space.as_pointer(), _forced()
+    return forced.lods.get(key, _DEFAULT) if key in forced.on else NOT_FORCED
 
 
 def _key():
@@ -30,24 +41,24 @@ def _redraw():
 
 
 def _is_on(settings):
-    return _key() in _on
+    return _key() in _forced().on
 
 
 def _turn(settings, value):
     key = _key()
     if key is not None:
-        (_on.add if value else _on.discard)(key)
+        (_forced().on.add if value else _forced().on.discard)(key)
         _redraw()
 
 
 def _lod(settings):
-    return _lods.get(_key(), _DEFAULT)
+    return _forced().lods.get(_key(), _DEFAULT)
 
 
 def _set_lod(settings, value):
     key = _key()
     if key is not None:
-        _lods[key] = value
+        _forced().lods[key] = value
         _redraw()
 
 
@@ -72,9 +83,3 @@ class ForcedLod:
         set=_set_lod,
         options={"SKIP_SAVE"},
     )
-
-
-def forget():
-    """Other viewports may come to lie where these did."""
-    _on.clear()
-    _lods.clear()

@@ -8,13 +8,17 @@ from mathutils import Vector
 from .. import handlers
 from ..bridge.live import live_view
 from ..core.picture import lens_rim
+from ..core.session.addon_session import addon_session
 from ..operators import screen_lenses
 
 _RIM = (0.35, 0.75, 1.0, 0.9)
 _HALF = (0.35, 0.75, 1.0, 0.35)
 _MOST = 256  # drawn; more would stop the window
 _handles = []
-_found = {}  # scene: names of its lenses, until something changes
+
+
+class FoundLenses(dict[str, list[str]]):
+    """The names of lenses by scene, until something changes; part of the session."""
 
 
 def _draw_world():
@@ -84,16 +88,16 @@ def _shown(context):
 
 
 def _lenses(context):
-    scene = context.scene
-    if scene.name not in _found:
-        _found[scene.name] = [item.name for item in live_view.lens_objects(scene)]
-    items = (scene.objects.get(name) for name in _found[scene.name])
+    scene, found = context.scene, addon_session().part(FoundLenses)
+    if scene.name not in found:
+        found[scene.name] = [item.name for item in live_view.lens_objects(scene)]
+    items = (scene.objects.get(name) for name in found[scene.name])
     return [item for item in items if item is not None and item.type == "EMPTY"]
 
 
 @bpy.app.handlers.persistent
 def _forget(*_):
-    _found.clear()
+    addon_session().drop(FoundLenses)
 
 
 _HANDLERS = tuple(

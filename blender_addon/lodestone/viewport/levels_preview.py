@@ -25,7 +25,7 @@ from ..core.preview import preview_worker
 from ..core.preview.preview_worker import Failed, Made, Picture, Wanted
 from ..core.preview.viewport_state import View
 from ..core.problems import Problems
-from ..core.session import changed_shapes
+from ..core.session.addon_session import addon_session
 from ..core.store import store_levels, store_path
 from . import forced_lod, preview_draw
 
@@ -35,12 +35,32 @@ LEARN_S = 0.01
 POLL_S = 0.03
 _MOST_CANVASES = 8
 
-_pool = preview_draw.Pool()
-_canvases = {}  # by region
-_sources = {}  # by scene and view layer
-_shown_in = weakref.WeakValueDictionary()  # by region
-_told = set()  # problems that were printed
-_numbers = itertools.count(1)  # of viewports
+_numbers = itertools.count(1)  # of viewports; none is used twice
+
+
+class Preview:
+    """What viewports show, and the threads that make it; part of the session."""
+
+    def __init__(self):
+        self.pool = preview_draw.Pool()
+        self.canvases = {}  # by region
+        self.sources = {}  # by scene and view layer
+        self.shown_in = weakref.WeakValueDictionary()  # by region
+        self.told = set()  # problems that were printed
+
+    def close(self):
+        """Ends the threads and drops what they made."""
+        for source in self.sources.values():
+            source.worker.close()
+        self.sources.clear()
+        self.pool.clear()
+        self.canvases.clear()
+        addon_session().drop(preview_draw.PreviewShader)
+
+
+def preview():
+    """The Preview of the session."""
+    return addon_session().part(Preview)
 
 
 class _Source:
@@ -51,7 +71,7 @@ class _Source:
         self.folder = store_path.store_folder(bpy.data.filepath)
         self.stamp = _stamp(self.folder)
         self.worker = preview_worker.Worker(self.folder, preview_changes.names_of(scene))
-        self.scene = preview_changes.Scene(changed_shapes.names())
+        self.scene = preview_changes.Scene(addon_session().changed_shapes.names())
         self.views = weakref.WeakValueDictionary()  # by viewport
         self._lenses = self._sun = None  # not looked at since something has changed
 
@@ -80,7 +100,7 @@ class _Source:
             if item is None:
                 return
             if isinstance(item, Made):
-                _pool.put(item.key, item.mesh)
+                preview().pool.put(item.key, item.mesh)
                 continue
             view = self.views.get(item.viewport)
             if view is not None and isinstance(item, Picture):
@@ -99,19 +119,19 @@ def _stamp(folder):
 def _source_of(context, depsgraph):
     scene = context.scene
     key = (name_of(scene), name_of(depsgraph.view_layer))
-    source = _sources.get(key)
+    source = preview().sources.get(key)
     if source is not None and source.outdated():
         _drop(source)
         source = None
     if source is None:
-        source = _sources[key] = _Source(key, scene)
+        source = preview().sources[key] = _Source(key, scene)
     return source
 
 
 def _drop(source):
     """Its pictures stay where they are shown until there are new ones."""
     source.worker.close()
-    _sources.pop(source.key, None)
+    preview().sources.pop(source.key, None)
 
 
 # ---- Called by the engine ----
@@ -129,7 +149,7 @@ def draw(engine, context, depsgraph):
     try:
         source = _source_of(context, depsgraph)
         source.views[state.number] = state.view
-        _shown_in[context.region.as_pointer()] = state
+        preview().shown_in[context.region.as_pointer()] = state
         state.source = source
         _ask(source, state, context, depsgraph)
         source.collect()
@@ -138,8 +158,8 @@ def draw(engine, context, depsgraph):
         _show(engine, state, context, depsgraph)
     except Exception as error:
         text = f"{error!r}"
-        if text not in _told:
-            _told.add(text)
+        if text not in preview().told:
+            preview().told.add(text)
             traceback.print_exc()
         state.view.problem = f"the preview failed: {text} (see the console)"
     engine.update_stats("", state.view.line())
@@ -226,31 +246,31 @@ def _lenses(scene):
 
 def _advance(source, state):
     view = state.view
-    lacking = view.advance(_pool.has)
+    lacking = view.advance(preview().pool.has)
     if not lacking:
         return
-    lost = [key for key in lacking if not _pool.holds(key)]
+    lost = [key for key in lacking if not preview().pool.holds(key)]
     if lost:  # dropped while the picture was made: once more
         source.worker.dropped(lost)
         view.next = None
         view.again()
         return
-    _pool.upload(lacking, UPLOAD_S)
-    view.advance(_pool.has)
+    preview().pool.upload(lacking, UPLOAD_S)
+    view.advance(preview().pool.has)
 
 
 def _show(engine, state, context, depsgraph):
     picture = state.view.shown
     region = context.region
     size = (region.width, region.height)
-    canvas = _canvases.get(region.as_pointer())
+    canvas = preview().canvases.get(region.as_pointer())
     if canvas is None or canvas.size != size:
-        if len(_canvases) >= _MOST_CANVASES:  # regions come and go
-            _canvases.clear()
-        canvas = _canvases[region.as_pointer()] = preview_draw.Canvas(size)
+        if len(preview().canvases) >= _MOST_CANVASES:  # regions come and go
+            preview().canvases.clear()
+        canvas = preview().canvases[region.as_pointer()] = preview_draw.Canvas(size)
     keys = picture.keys if picture is not None else ()
     state.batches = canvas.draw(
-        _pool,
+        preview().pool,
         keys,
         context.region_data,
         preview_draw.background_of(context.scene),
@@ -264,12 +284,12 @@ def _show(engine, state, context, depsgraph):
 
 def _prune():
     used = set()
-    for source in _sources.values():
+    for source in preview().sources.values():
         for view in source.views.values():
             used.update(view.keys())
-    gone = _pool.prune(used)
+    gone = preview().pool.prune(used)
     if gone:
-        for source in _sources.values():
+        for source in preview().sources.values():
             source.worker.dropped(gone)
 
 
@@ -283,7 +303,7 @@ def _poll_soon():
 
 def _poll():
     """A timer, while something is made: viewports are drawn again when there is something new."""
-    if any(map(_has_news, _sources.values())):
+    if any(map(_has_news, preview().sources.values())):
         redraw()
         return None  # a redraw asks for the next
     return POLL_S if _learn() else None
@@ -297,8 +317,8 @@ def _has_news(source):
 def _learn():
     """In idle moments: what shapes things have. False when there is nothing more to do."""
     context = bpy.context
-    source = _sources.get((name_of(context.scene), name_of(context.view_layer)))
-    if any(other.worker.busy for other in _sources.values()):
+    source = preview().sources.get((name_of(context.scene), name_of(context.view_layer)))
+    if any(other.worker.busy for other in preview().sources.values()):
         return True
     if source is None or source.scene.learned or source.scene.stale:
         return False
@@ -335,8 +355,8 @@ def shows_levels(context):
 def state_of(area):
     """What is known of a 3D viewport that shows levels, or None."""
     for region in area.regions:
-        if region.type == "WINDOW" and region.as_pointer() in _shown_in:
-            return _shown_in[region.as_pointer()]
+        if region.type == "WINDOW" and region.as_pointer() in preview().shown_in:
+            return preview().shown_in[region.as_pointer()]
     return None
 
 
@@ -348,32 +368,27 @@ def lines(context):
 
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
-    changed = changed_shapes.reported(
+    changed = addon_session().changed_shapes.reported(
         edits_of(update.id)
         for update in depsgraph.updates
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Object)
     )
     if not changed:
         return
-    changed_shapes.note(changed)
-    for source in _sources.values():
+    addon_session().changed_shapes.note(changed)
+    for source in preview().sources.values():
         source.scene.touch(changed)
 
 
 @bpy.app.handlers.persistent
 def _on_load(*_):
     forget()
-    changed_shapes.clear()
+    addon_session().changed_shapes.clear()
 
 
 def forget():
     """Ends the threads and drops what they made."""
-    for source in list(_sources.values()):
-        _drop(source)
-    _pool.clear()
-    _canvases.clear()
-    _told.clear()
-    preview_draw.forget()
+    addon_session().drop(Preview)
 
 
 _HANDLERS = (("depsgraph_update_post", _on_change), ("load_pre", _on_load), ("load_post", _on_load))

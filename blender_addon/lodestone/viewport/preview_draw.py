@@ -4,6 +4,7 @@
 import time
 
 from ..core.preview import viewport_state
+from ..core.session.addon_session import addon_session
 
 MOST_BYTES = 1_000_000_000  # of batches that are kept; beyond it those go that nobody shows
 KEPT_S = 20.0  # that batches nobody shows are kept, for when one looks back
@@ -53,14 +54,18 @@ void main()
 _DEFAULT_SUN = (0.32, -0.45, 0.83)
 _KEY = 0.6
 
-_shader = None
+
+class PreviewShader:
+    """The shader of the window it was made in; part of the session."""
+
+    made = None
 
 
 def shader():
     import gpu
 
-    global _shader
-    if _shader is None:
+    held = addon_session().part(PreviewShader)
+    if held.made is None:
         between = gpu.types.GPUStageInterfaceInfo("lodestone_between")
         between.smooth("VEC3", "at")
         between.smooth("VEC3", "turned")
@@ -77,14 +82,8 @@ def shader():
         info.fragment_out(0, "VEC4", "picture")
         info.vertex_source(_VERTEX)
         info.fragment_source(_FRAGMENT)
-        _shader = gpu.shader.create_from_info(info)
-    return _shader
-
-
-def forget():
-    """The shader goes with the window it was made in."""
-    global _shader
-    _shader = None
+        held.made = gpu.shader.create_from_info(info)
+    return held.made
 
 
 class _Batch:

@@ -8,6 +8,7 @@ from ...core.picture import why_sentences
 from ...core.problems import Problems
 from ...core.session import kept_model
 from .. import datablock_ids, render_result
+from ...core.session.addon_session import addon_session
 from ..scene import quality_lenses, scene_camera
 from ..scene_settings import SceneSettings
 from . import live_objects, live_view
@@ -39,7 +40,7 @@ def old(kept: Any, scene: Any) -> bool:
 
 def explained(scene: Any, depsgraph: Any, item: Any) -> "why_sentences.Explanation | None":
     """Why an object is drawn as it is; None when the scene was not read yet, or is in use."""
-    kept = kept_model.get(scene.name)
+    kept = addon_session().kept_models.get(scene.name)
     if kept is None or not kept.lock.acquire(blocking=False):
         return None
     try:

@@ -13,21 +13,20 @@ from ...core.picture import view_statistics
 from ...core.picture.picture_maker import Settings
 from ...core.preview import preview_tree
 from ...core.problems import Problems
-from ...core.store import store_levels, store_path
+from ...core.store import store_path
 from .. import quality_settings
 from ..checks.scene_check import rendered_objects
+from ...core.session.addon_session import addon_session
 from ..scene import quality_lenses
 from ..scene import scene_camera as cameras
 from ..scene_settings import SceneSettings
 from . import preview_changes, viewport_camera
 
-_chooser = view_statistics.Chooser()
-
 
 def statistics(context: Any) -> view_statistics.Statistics | str:
     """Of the picture that F12 would make; else why there are none."""
     scene = context.scene
-    store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+    store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
     if store.problem:
         return f"Levels cannot be read: {store.problem}"
     if store.model is None:
@@ -40,22 +39,28 @@ def statistics(context: Any) -> view_statistics.Statistics | str:
     settings = settings_of(scene, quality_lenses.parts_stored(store.model))
     size = (frame.width, frame.height)
     key = (seen, size, _hashable(settings))
-    return _chooser.statistics(store.model, key, seen, size, settings)
+    return (
+        addon_session()
+        .part(LiveStatistics)
+        .chooser.statistics(store.model, key, seen, size, settings)
+    )
 
 
 def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
     """Of what its Pixel Error and budget of triangles give the largest 3D view; None: there is no
     view or no store."""
     scene = context.scene
-    store = store_levels.open_store(store_path.store_folder(bpy.data.filepath))
+    store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
     seen = viewport_camera.of_screen(context.screen)
     if store.model is None or seen is None:
         return None
     own = scene.lodestone
-    model, decided, chooser = store.model, (), _chooser
+    live = addon_session().part(LiveStatistics)
+    model, decided, chooser = store.model, (), live.chooser
     if preview_changes.any_pin():
-        _pinned.follow(store, scene)
-        model, decided, chooser = _pinned.model, _pinned.decided(), _pinned.chooser
+        pinned = live.pinned
+        pinned.follow(store, scene)
+        model, decided, chooser = pinned.model, pinned.decided(), pinned.chooser
     parts_of = quality_lenses.parts_stored(model)
     detail = quality_lenses.detail(rendered_lenses(scene), parts_of, Problems())
     settings = Settings(
@@ -91,7 +96,16 @@ class _Pinned:
         return tuple(sorted(changes.items()))
 
 
-_pinned = _Pinned()
+class LiveStatistics:
+    """What was chosen for panels; part of the session."""
+
+    def __init__(self) -> None:
+        self.chooser = view_statistics.Chooser()
+        self.pinned = _Pinned()
+
+    def close(self) -> None:
+        """Frees the cuts of the store's model."""
+        self.chooser.close()
 
 
 def settings_of(
@@ -150,6 +164,5 @@ def _hashable(settings: Settings) -> Hashable:
 
 
 def forget() -> None:
-    global _pinned
-    _chooser.close()
-    _pinned = _Pinned()
+    """Panels choose anew."""
+    addon_session().drop(LiveStatistics)

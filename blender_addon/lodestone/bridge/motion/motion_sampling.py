@@ -6,6 +6,7 @@ would be those of one frame. `Motion` tells from how objects are animated, which
 "changes"; `sample()` looks at the evaluated objects of a few frames and knows better.
 """
 
+import functools
 import hashlib
 from array import array
 from collections.abc import Callable, Iterable
@@ -30,7 +31,6 @@ _IN_TIME = {
 }
 _TIME_NODES = {"INPUT_SCENE_TIME", "SIMULATION_INPUT", "SIMULATION_OUTPUT"}
 _MOST_NESTED = 32
-_object_properties: dict[str, list[str]] = {}  # names, by type of modifier
 
 
 def animated(datablock: Any | None) -> bool:
@@ -165,16 +165,19 @@ class Motion:
         return target is not None and (self._may_move(target) or animated(target.data))
 
 
+@functools.cache
+def _object_properties(kind: type) -> list[str]:
+    """The names of those properties of a type of modifier that are objects."""
+    return [
+        name
+        for name, prop in kind.bl_rna.properties.items()
+        if prop.type == "POINTER" and prop.fixed_type.identifier == "Object"
+    ]
+
+
 def _targets(modifier: Any) -> Iterable[Any]:
     """The objects a modifier looks at, its nodes' inputs included."""
-    kind = modifier.type
-    if kind not in _object_properties:
-        _object_properties[kind] = [
-            name
-            for name, prop in modifier.bl_rna.properties.items()
-            if prop.type == "POINTER" and prop.fixed_type.identifier == "Object"
-        ]
-    for name in _object_properties[kind]:
+    for name in _object_properties(type(modifier)):
         target = getattr(modifier, name)
         if target is not None:
             yield target

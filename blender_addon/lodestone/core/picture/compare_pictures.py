@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from . import compare_plan
+from .cost_model import StoreCosts
 from .picture_maker import Picture, Settings, make_identities, make_picture
 
 STEPS = (compare_plan.ORIGINALS, compare_plan.LEVELS)
@@ -42,14 +43,14 @@ def compare(
     settings: Settings,
     folder: Path,
     new_job: Callable[[str], Any],
-    store: Path | None = None,
+    costs: StoreCosts | None = None,
 ) -> Compared:
     """As make_picture(), twice; everything it writes is in `folder`, which is its caller's."""
     plan = compare_plan.Plan(folder, settings.pixel_error)
     pictures = []
     for step, how in zip(STEPS, (settings.of_originals(), settings)):
         plan.step = step
-        made = make_picture(model, camera, size, how, folder, new_job, store)
+        made = make_picture(model, camera, size, how, folder, new_job, costs)
         plan.take(made, *make_identities(model, camera, size, how, plan.folder, new_job))
         pictures.append(made)
     image = plan.compare(bottom_up=False)

@@ -126,33 +126,3 @@ def worst_of(listed: Any, most: int = _WORST) -> tuple[tuple[str, float], ...]:
     whole = sum(together.values())
     order = sorted(together.items(), key=lambda item: (-item[1], item[0]))
     return tuple((path, value / whole) for path, value in order[:most])
-
-
-_current: Plan | None = None
-_last: dict[str, Comparison] = {}  # by scene
-
-
-def current() -> Plan | None:
-    return _current
-
-
-def start(plan: Plan) -> None:
-    global _current
-    _current = plan
-
-
-def end() -> None:
-    global _current
-    _current = None
-
-
-def put(scene: str, comparison: Comparison) -> None:
-    _last[scene] = comparison
-
-
-def get(scene: str) -> Comparison | None:
-    return _last.get(scene)
-
-
-def clear() -> None:
-    _last.clear()

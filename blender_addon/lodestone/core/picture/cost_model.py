@@ -122,15 +122,44 @@ def learn(work: Work, measured: Any, before: Ratios) -> Ratios:
     )
 
 
-_last: dict[str, Ratios] = {}  # by folder, of this process
+class CostMemory:
+    """By how much pictures took another time than was told, for each folder of levels: what this
+    process knows, and what the folders hold."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, Ratios] = {}  # by folder
+
+    def of(self, store: Path) -> "StoreCosts":
+        """The costs of pictures by the levels in a folder."""
+        return StoreCosts(self._last, store)
 
 
-def read(store: Path) -> Ratios:
-    """Of the last picture of this file; what is unreadable counts as none."""
-    key = str(store)
-    if key not in _last:
-        _last[key] = _from_file(store / FILE)
-    return _last[key]
+class StoreCosts:
+    """The costs of pictures by the levels in one folder."""
+
+    def __init__(self, last: dict[str, Ratios], store: Path) -> None:
+        self._last, self._store = last, store
+
+    def read(self) -> Ratios:
+        """The ratios of the last picture; a file that is unreadable counts as none."""
+        key = str(self._store)
+        if key not in self._last:
+            self._last[key] = _from_file(self._store / FILE)
+        return self._last[key]
+
+    def write(self, ratios: Ratios) -> None:
+        """For the next picture. A folder that is not there or cannot be written to is no problem:
+        then only this process knows."""
+        self._last[str(self._store)] = ratios
+        temporary = self._store / f".cost-{os.getpid()}.json"
+        try:
+            temporary.write_text(json.dumps(asdict(ratios)), "utf-8")
+            os.replace(temporary, self._store / FILE)
+        except OSError:
+            try:
+                temporary.unlink(missing_ok=True)
+            except OSError:
+                pass
 
 
 def _from_file(path: Path) -> Ratios:
@@ -146,18 +175,3 @@ def _from_file(path: Path) -> Ratios:
         if isinstance(ratio, (int, float)) and 1.0 / _MOST <= ratio <= _MOST:
             found[field.name] = float(ratio)
     return Ratios(**found)
-
-
-def write(store: Path, ratios: Ratios) -> None:
-    """For the next picture. A folder that is not there or cannot be written to is no problem: then
-    only this process knows."""
-    _last[str(store)] = ratios
-    temporary = store / f".cost-{os.getpid()}.json"
-    try:
-        temporary.write_text(json.dumps(asdict(ratios)), "utf-8")
-        os.replace(temporary, store / FILE)
-    except OSError:
-        try:
-            temporary.unlink(missing_ok=True)
-        except OSError:
-            pass

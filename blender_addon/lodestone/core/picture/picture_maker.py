@@ -162,17 +162,17 @@ def make_picture(
     settings: Settings,
     folder: Path,
     new_job: Callable[[str], Any],
-    store: Path | None = None,
+    costs: cost_model.StoreCosts | None = None,
 ) -> Picture:
     """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
     each long call and gives its Job. Raises LodestoneError; then no new picture is there.
-    `store`: what it takes is predicted from, and remembered with, the last picture of this one."""
+    `costs`: what it takes is predicted from, and remembered with, the last picture of a store."""
     parts, in_use, work = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
-    ratios = cost_model.Ratios() if store is None else cost_model.read(store)
+    ratios = cost_model.Ratios() if costs is None else costs.read()
     predicted = cost_model.predict(work, ratios)
     ran = native.povray_run(str(folder), PICTURE, settings.povray(), new_job("Trace"))
-    if store is not None and not (settings.false_color or settings.covered_only):
-        cost_model.write(store, cost_model.learn(work, ran, ratios))
+    if costs is not None and not (settings.false_color or settings.covered_only):
+        costs.write(cost_model.learn(work, ran, ratios))
     parts["povray"] = run_report.povray_part(ran)
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error

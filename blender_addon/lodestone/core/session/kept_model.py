@@ -79,32 +79,35 @@ class Kept:
             self._cut, self._asked = None, None
 
 
-_kept: dict[str, Kept] = {}
-_guard = threading.Lock()
+class KeptModels:
+    """The model of one scene at a time. Any thread may put one."""
 
+    def __init__(self) -> None:
+        self._kept: dict[str, Kept] = {}
+        self._guard = threading.Lock()
 
-def put(scene: str, kept: Kept) -> None:
-    with _guard:
-        others = list(_kept.values())
-        _kept.clear()
-        _kept[scene] = kept
-    for other in others:
-        other.close()
+    def put(self, scene: str, kept: Kept) -> None:
+        """Keeps a model of a scene in the place of the one before, which is closed."""
+        with self._guard:
+            others = list(self._kept.values())
+            self._kept.clear()
+            self._kept[scene] = kept
+        for other in others:
+            other.close()
 
+    def get(self, scene: str) -> Kept | None:
+        """The model of a scene, if it is the one that is kept."""
+        return self._kept.get(scene)
 
-def get(scene: str) -> Kept | None:
-    return _kept.get(scene)
+    def outdate(self) -> None:
+        """The scenes are not any more as they were read."""
+        for kept in list(self._kept.values()):
+            kept.outdated = True
 
-
-def outdate() -> None:
-    """The scenes are not any more as they were read."""
-    for kept in list(_kept.values()):
-        kept.outdated = True
-
-
-def clear() -> None:
-    with _guard:
-        others = list(_kept.values())
-        _kept.clear()
-    for other in others:
-        other.close()
+    def clear(self) -> None:
+        """Closes the model that is kept."""
+        with self._guard:
+            others = list(self._kept.values())
+            self._kept.clear()
+        for other in others:
+            other.close()

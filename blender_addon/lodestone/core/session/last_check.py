@@ -30,18 +30,3 @@ class Check:
         used = {subject for subject in self.users if subject[0] == "material"}
         inexact: set[Subject] = {problem.subject for problem in self.problems}
         return len(used - inexact), len(used)
-
-
-_checks: dict[str, Check] = {}
-
-
-def put(scene: str, check: Check) -> None:
-    _checks[scene] = check
-
-
-def get(scene: str) -> Check | None:
-    return _checks.get(scene)
-
-
-def clear() -> None:
-    _checks.clear()

@@ -19,18 +19,3 @@ class LastRender:
     actual_s: float = 0.0
     predicted_bytes: int = 0  # its memory, likewise
     actual_bytes: int = 0
-
-
-_renders: dict[str, LastRender] = {}
-
-
-def put(scene: str, render: LastRender) -> None:
-    _renders[scene] = render
-
-
-def get(scene: str) -> LastRender | None:
-    return _renders.get(scene)
-
-
-def clear() -> None:
-    _renders.clear()

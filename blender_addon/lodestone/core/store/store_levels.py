@@ -60,36 +60,37 @@ class Store:
         return tuple(Level(i, r.kind, r.triangles, r.error) for i, r in enumerate(found))
 
 
-_cached: tuple[tuple[str, int], Store] | None = None
+class StoreReader:
+    """Holds the store that was read last."""
 
+    def __init__(self) -> None:
+        self._read: tuple[tuple[str, int], Store] | None = None
 
-def open_store(folder: Path) -> Store:
-    """The store as it is now; read again only after it has changed."""
-    global _cached
-    try:
-        stamp = (folder / INDEX).stat().st_mtime_ns
-    except OSError:
-        stamp = 0
-    key = (str(folder), stamp)
-    if _cached is None or _cached[0] != key:
-        _cached = (key, Store(folder))
-    return _cached[1]
+    def open(self, folder: Path) -> Store:
+        """The store as it is now; read again only after it has changed."""
+        try:
+            stamp = (folder / INDEX).stat().st_mtime_ns
+        except OSError:
+            stamp = 0
+        key = (str(folder), stamp)
+        if self._read is None or self._read[0] != key:
+            self._read = (key, Store(folder))
+        return self._read[1]
 
+    def forget(self) -> None:
+        """The store is read again when it is next asked for."""
+        self._read = None
 
-def forget() -> None:
-    global _cached
-    _cached = None
+    def remove(self, folder: Path) -> bool:
+        """Deletes a store, and only a store: a folder without its index is left alone. True if it
+        was there. Raises OSError."""
+        if not is_store(folder):
+            return False
+        self.forget()
+        shutil.rmtree(folder)
+        return True
 
 
 def is_store(folder: Path) -> bool:
+    """Whether a folder is one of levels."""
     return (folder / INDEX).is_file()
-
-
-def remove(folder: Path) -> bool:
-    """Deletes a store, and only a store: a folder without its index is left alone. True if it was
-    there. Raises OSError."""
-    if not is_store(folder):
-        return False
-    forget()
-    shutil.rmtree(folder)
-    return True

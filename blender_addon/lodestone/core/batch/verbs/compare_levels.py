@@ -31,7 +31,7 @@ class Compare(PovrayVerb):
 
     def draw(self, work: PictureWork, folder: SceneFolder) -> Compared:
         return compare(
-            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.store
+            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.costs
         )
 
     def save(self, work: PictureWork, made: Compared) -> dict[str, str]:

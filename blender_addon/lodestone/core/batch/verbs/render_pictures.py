@@ -37,7 +37,7 @@ class Render(PovrayVerb):
 
     def draw(self, work: PictureWork, folder: SceneFolder) -> Picture:
         return make_picture(
-            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.store
+            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.costs
         )
 
     def save(self, work: PictureWork, made: Picture) -> dict[str, str]:

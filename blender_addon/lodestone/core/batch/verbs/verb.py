@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from ...file_names import folder_name
 from ...picture.compare_pictures import Compared
+from ...picture.cost_model import StoreCosts
 from ...picture.picture_maker import Picture, SceneFolder, Settings
 from ..file_jobs import FileJob, PictureRequest
 from .verb_options import add_common
@@ -29,7 +30,7 @@ class PictureWork(Protocol):
     camera: Any
     size: tuple[int, int]
     settings: Settings
-    store: Path
+    costs: StoreCosts
 
     def new_job(self, stage: str) -> Any:
         """A job of the library, whose progress is told under the name of a stage."""
