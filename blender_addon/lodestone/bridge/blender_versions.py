@@ -10,8 +10,9 @@ _ZERO = {code: array(code, [0]) for code in "bfiI"}
 
 
 def buffer(code: str, count: int) -> array:
-    """Of 4-byte items ("f", "i", "I") or bytes ("b"), all 0. Blender copies into the code that is a
-    property's own ("I" for indices) at 2 ns an item, item by item into any other, at 20 to 80."""
+    """An array of 4-byte items ("f", "i", "I") or bytes ("b"), all 0. Blender copies into the code
+    that is a property's own ("I" for indices) at 2 ns an item, item by item into any other, at 20
+    to 80."""
     return _ZERO[code] * count
 
 

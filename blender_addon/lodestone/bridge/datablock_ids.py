@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a Blender datablock is called outside Blender: its uid, and its role."""
+"""The names of Blender's datablocks outside Blender: their uids, and their roles."""
 
 from itertools import repeat
 from operator import contains
@@ -17,8 +17,8 @@ _STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # what add-ons store, among 
 
 
 def name_of(thing: Any, field: str = "name") -> str:
-    """What Blender calls something, or another text of it, made readable where it is no text:
-    damaged and very old files hold any bytes. Never look such things up by get(), keys() or
+    """The name that Blender has for something, or another text of it, made readable where it is no
+    text: damaged and very old files hold any bytes. Never look such things up by get(), keys() or
     repr(): these leave an error behind that takes Blender down."""
     try:
         return getattr(thing, field)
@@ -45,7 +45,7 @@ def key_of(kind: str, datablock: Any) -> Key:
 
 
 def key_of_local(name: str) -> Key:
-    """Of an object of this file."""
+    """The key of an object of this file."""
     return ("object", "", name)
 
 
@@ -66,14 +66,14 @@ def has_settings(datablock: Any) -> bool:
 
 
 def have_settings(datablocks: list[Any]) -> list[bool]:
-    """Of each has_settings()."""
+    """The answer of has_settings() for each."""
     if _STORED_AMONG_CUSTOM:
         return list(map(contains, datablocks, repeat("lodestone")))
     return list(map(has_settings, datablocks))
 
 
 def stored_uid(datablock: Any) -> str:
-    """What is stored, valid or not; "" when nothing is."""
+    """The uid that is stored, valid or not; "" when there is none."""
     settings = settings_of(datablock)
     return settings.uid if settings is not None else ""
 
@@ -98,7 +98,7 @@ def named_id_of(material: Any | None) -> str:
 
 
 def role_of(datablock: Any) -> str:
-    """What the file says: AUTOMATIC, ENVIRONMENT or ORDINARY."""
+    """The role in the file: AUTOMATIC, ENVIRONMENT or ORDINARY."""
     settings = settings_of(datablock)
     return AUTOMATIC if settings is None else settings.role
 

@@ -68,7 +68,8 @@ class Listed:
 
 
 def by_itself(item: Any) -> Any:
-    """As the instance that shows an evaluated object, which emits nothing, by itself."""
+    """A stand-in for the instance that shows an evaluated object, which emits nothing, by
+    itself."""
     return SimpleNamespace(
         object=item,
         is_instance=False,
@@ -84,7 +85,7 @@ def _emits(item: Any) -> bool:
 
 
 def gathered(places: Rows, numbers: Sequence[int]) -> Rows:
-    """Of many, 12 numbers each, those of some."""
+    """The rows of some places, 12 numbers each, out of many."""
     if not numbers:
         return array("f")
     first, end = numbers[0], numbers[-1] + 1
@@ -97,6 +98,6 @@ def gathered(places: Rows, numbers: Sequence[int]) -> Rows:
 
 
 def rows(matrix: Any) -> Rows:
-    """Of a Matrix."""
+    """The first three rows of a Matrix."""
     x, y, z, _ = matrix  # half the time of asking for one after the other
     return array("f", x[:] + y[:] + z[:])

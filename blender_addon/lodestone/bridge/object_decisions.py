@@ -45,7 +45,7 @@ def scope_keys(context: Any, scope: str) -> list[datablock_ids.Key] | None:
 
 
 def in_scope(context: Any, scope: str) -> list[Thing]:
-    """What Update Levels may give uids to: scope is SCENE, COLLECTION or SELECTED."""
+    """The things that Update Levels may give uids to: scope is SCENE, COLLECTION or SELECTED."""
     if scope == "SELECTED":
         things = reachable([], context.selected_objects)
     elif scope == "COLLECTION":
@@ -129,14 +129,15 @@ def tag(item: Any) -> None:
 
 
 def edits_of(item: Any) -> tuple[str, str]:
-    """What changed_shapes knows an object by: its name and that of its data."""
+    """The names by which changed_shapes.py knows an object: its own and that of its data."""
     data = item.original.data
     name = "" if data is None else f"{type(data).__name__} {name_of(data, 'name_full')}"
     return name_of(item), name
 
 
 def copy(source: Any, target: Any) -> None:
-    """What is decided about an object or collection; what is not is taken back."""
+    """Copies the decisions about an object or collection; those that the source lacks are taken
+    back."""
     settings, before = datablock_ids.settings_of(source), datablock_ids.settings_of(target)
     decided_here = _set_names(settings) if settings is not None else []
     for name in _set_names(before) if before is not None else []:

@@ -23,17 +23,17 @@ def overrides(settings: Any) -> dict[str, quality_tree.Value]:
 
 
 def pixel_error(settings: Any) -> float:
-    """Of renders: 0, the originals, where Levels of Detail are switched off."""
+    """The Pixel Error of renders: 0, the originals, where Levels of Detail are switched off."""
     return settings.pixel_error_render if settings.use_levels else 0.0
 
 
 def of_scene(settings: Any) -> quality_tree.Quality:
-    """What a render is made with."""
+    """The quality that a render is made with."""
     return quality_tree.quality(pixel_error(settings), overrides(settings))
 
 
 def budget(settings: Any) -> int:
-    """Of renders, in bytes; 0: none."""
+    """The budget of renders, in bytes; 0: none."""
     return settings.budget_render * 1_000_000 if settings.use_levels else 0
 
 
@@ -43,7 +43,8 @@ def is_exact(settings: Any) -> bool:
 
 
 def ray_classes(settings: Any) -> int:
-    """Of renders, as native.Rays: those that may meet coarser levels than the camera's."""
+    """The ray classes of renders, as native.Rays: those that may meet coarser levels than the
+    camera's."""
     if not settings.use_levels:
         return 0
     return unseen_detail.mask(
@@ -58,7 +59,7 @@ def inherit(settings: Any, key: str) -> None:
 
 
 def inherited_word(settings: Any, key: str) -> str:
-    """What the panel says a control would have, as text."""
+    """The text in the panel for the value that a control would have."""
     value = quality_tree.inherits(key, pixel_error(settings), overrides(settings))
     if isinstance(value, str):
         return value.title()

@@ -38,13 +38,14 @@ def border(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
 
 
 def _pixel(share: float, size: int) -> int:
-    """As Blender rounds: .7 of 100 are 70 in its single precision, 69 in ours."""
+    """The whole pixels of a share, as Blender rounds: 0.7 of 100 are 70 in its single precision, 69
+    in ours."""
     return int(struct.unpack("f", struct.pack("f", share * size))[0])
 
 
 def layer_of(depsgraph: Any) -> str:
-    """What hand_over() calls the view layer. Raises UnicodeDecodeError for a name that is no text
-    where there are others: results go to layers by their names."""
+    """The name by which hand_over() knows the view layer. Raises UnicodeDecodeError for a name that
+    is no text where there are others: results go to layers by their names."""
     try:
         return depsgraph.view_layer_eval.name
     except UnicodeDecodeError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a batch run ends with, and which one stands for several files."""
+"""The exit codes of a batch run, and which one stands for several files."""
 
 from collections.abc import Iterable
 from enum import IntEnum

@@ -19,8 +19,9 @@ def fitting(name: str, most: int = LONGEST) -> str:
 
 
 def folder_name(file: str | Path) -> str:
-    """Of the folder of a file's results: the file's name without its ending, unless that would lead
-    out of the folder around it, be taken for what lies beside another's, or be too long for it."""
+    """The name of the folder of a file's results: the file's name without its ending, unless that
+    would lead out of the folder around it, be taken for what lies beside another's, or be too long
+    for it."""
     path = Path(file)
     stem = path.stem
     if stem in ("", ".", "..") or stem.endswith(_BESIDE):

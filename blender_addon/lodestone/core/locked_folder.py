@@ -19,7 +19,7 @@ _RANDOM = 8  # characters that mkdtemp() adds
 
 
 def prefix_of(name: str) -> str:
-    """What the names of the folders begin with; short enough for any name of a file."""
+    """The beginning of the folders' names; short enough for any name of a file."""
     return fitting(name, _LONGEST) + "-"
 
 
@@ -62,7 +62,7 @@ class LockedFolder:
         self._close()
 
     def keep(self) -> None:
-        """What is in it is the user's from now on."""
+        """The files in it are the user's from now on."""
         (self.path / MARK).unlink(missing_ok=True)
         self._close()
 
@@ -123,7 +123,7 @@ def _is(lock: int, mark: Path) -> bool:
 
 
 def _is_private(folder: Path) -> bool:
-    """As mkdtemp() makes them, and few people."""
+    """Whether a folder is as mkdtemp() makes them, which few people do."""
     try:
         return stat.S_IMODE(os.lstat(folder).st_mode) == 0o700
     except OSError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the designer decided about how finely one placement is drawn."""
+"""The designer's decision about how finely one placement is drawn."""
 
 import math
 from typing import NamedTuple
@@ -36,9 +36,9 @@ UNDECIDED = Decision()
 
 
 def decision(use: str, coarsest: int, importance: float, pin: int = -1) -> Decision:
-    """Of the settings of an object or collection, as property_groups.py names
-    them; pin: the LOD number
-    it is always drawn with, below 0: none. UNDECIDED itself where they ask for nothing."""
+    """The decision that the settings of an object or collection ask for, as property_groups.py
+    names them. `pin`: the LOD number it is always drawn with, below 0: none. UNDECIDED itself where
+    they ask for nothing."""
     limits = {"ORIGINAL": 0, "EXCLUDE": 0, "LIMIT": coarsest}
     if math.isnan(importance):  # Blender lets scripts and drivers set it so
         importance = 1.0

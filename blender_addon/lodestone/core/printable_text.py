@@ -30,7 +30,8 @@ def readable(name: bytes) -> str:
 
 
 def sentence(error: Exception) -> str:
-    """What to tell of it. Blender gives names only of what is UTF-8, else a UnicodeDecodeError."""
+    """The sentence to tell of an error. Blender gives names only of what is UTF-8, else a
+    UnicodeDecodeError."""
     if isinstance(error, UnicodeDecodeError):
         return f'The name "{readable(error.object)}" is not valid text (UTF-8): rename what has it'
     return valid(str(error))

@@ -68,7 +68,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Split:
-    """What is shown and what the designer has chosen to ignore."""
+    """The rows that are shown, and those that the designer has chosen to ignore."""
 
     shown: tuple[Cause, ...]
     ignored: tuple[Cause, ...]
@@ -110,7 +110,7 @@ def users_of(problem: Problem, users: Users) -> Sequence[Subject]:
 
 
 def headline(found: Split) -> str:
-    """What a check says in one line."""
+    """The result of a check in one line."""
     errors, warnings = found.count(ERROR), found.count(WARNING)
     parts = [_number(errors, "error"), _number(warnings, "warning")]
     told = ", ".join(part for part in parts if part)

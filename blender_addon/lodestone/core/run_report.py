@@ -87,12 +87,12 @@ def povray_part(report: Any) -> dict[str, Any]:
 
 
 def temporary_name(ending: str = ".png") -> str:
-    """Of a picture that is being written by this process."""
+    """The name of a picture that is being written by this process."""
     return f".lodestone-{os.getpid()}{ending}"
 
 
 def temporary_owner(name: str) -> int:
-    """The process that was writing a picture of that name; 0 of other names."""
+    """The process that was writing a picture of that name; 0 for other names."""
     found = re.fullmatch(r"\.lodestone-(\d{1,9})\.(png|exr)", name)
     return int(found[1]) if found else 0
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong with a file, a scene or an extraction, found without rendering."""
+"""Checks of a file, a scene or an extraction, which find what is wrong without rendering."""

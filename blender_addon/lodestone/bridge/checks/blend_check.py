@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an opened file lost on the way in: libraries, data of a newer Blender, drivers not run."""
+"""The check of an opened file for what it lost on the way in: libraries, data of a newer Blender,
+drivers not run."""
 
 import os
 from collections.abc import Iterator

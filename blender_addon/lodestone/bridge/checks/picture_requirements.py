@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a picture needs besides the scene: a camera, POV-Ray, a folder, the libraries."""
+"""The requirements of a picture besides the scene: a camera, POV-Ray, a folder, the libraries."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -27,8 +27,8 @@ def camera(scene: Any, problems: Problems) -> Any | None:
 
 
 def something(scene: Any, problems: Problems) -> bool:
-    """For a view layer's frame that shows nothing: whether a picture of the world alone may be
-    meant, since objects of the scene could be seen in another frame or layer. Either is told."""
+    """Whether a picture of the world alone may be meant by a view layer's frame that shows nothing,
+    since objects of the scene could be seen in another frame or layer. Either is told."""
     kinds = {*DRAWN, GREASE_PENCIL}
     if any(item.type in kinds or item.instance_type != "NONE" for item in scene.objects):
         problems.add("", WARNING, "nothing_shown", NOTHING_HERE)
@@ -38,7 +38,7 @@ def something(scene: Any, problems: Problems) -> bool:
 
 
 def post_processing(scene: Any, problems: Problems) -> None:
-    """What Blender does to a finished picture, and nobody does to those of batch jobs."""
+    """Names what Blender does to a finished picture, and nobody does to those of batch jobs."""
     render, name = scene.render, name_of(scene)
     if render.use_compositing and scene.use_nodes:
         text = f'The compositor of scene "{name}" is left out: it works in F12 alone'
@@ -49,7 +49,7 @@ def post_processing(scene: Any, problems: Problems) -> None:
 
 
 def grease_pencil(problems: Problems) -> None:
-    """Of what was found: where Blender draws nothing over the picture, it is left out."""
+    """Names grease pencil where Blender draws nothing over the picture: it is left out."""
     for name in [item.object for item in problems if item.code == "grease_pencil"]:
         text = f'Object "{name}" is left out: grease pencil cannot be drawn'
         problems.add(name, ERROR, "object_kind", text)

@@ -33,8 +33,8 @@ def check(
     problems: Problems,
     tick: Callable[[], None] = lambda: None,
 ) -> Check:
-    """Of an original scene as the view layers show it that a render would draw; `view_layer` is
-    the current one, which `depsgraph` is of. `problems` are those known already."""
+    """The check of an original scene as the view layers show it that a render would draw;
+    `view_layer` is the current one, which `depsgraph` is of. `problems` are those known already."""
     recorder, heads = Recorder(), ImageHeads()
     shown = Shown(depsgraph, rendered_objects(rendered_layers(original, view_layer)))
     evaluated = depsgraph.scene_eval
@@ -71,7 +71,7 @@ class Recorder:
 
 @dataclass(frozen=True, eq=False)
 class Glance:
-    """What takes a leaf's place."""
+    """A stand-in for a leaf."""
 
     glow: Glow | None
     deforms = False
@@ -87,7 +87,7 @@ class Glances:
         self._found: dict[tuple, Any] = {}
 
     def leaf(self, shown: Any, *_: Any) -> Any | None:
-        """As Leaves.leaf(): None when there is nothing to draw."""
+        """Stands for Leaves.leaf(): None when there is nothing to draw."""
         slots = material_slots(shown, self.override)
         key = (shown.data, *slots)
         if key not in self._found:
@@ -95,7 +95,8 @@ class Glances:
         return self._found[key]
 
     def hair(self, shown: Any, owner: Any, *how: Any) -> Any | None:
-        """As Leaves.hair(). The viewport may show fewer hairs, but none where there are some."""
+        """Stands for Leaves.hair(). The viewport may show fewer hairs, but none where there are
+        some."""
         drawn = any(
             hair_strands.drawn_particles(m.particle_system)
             for m in hair_strands.hair_modifiers(shown)
@@ -127,7 +128,7 @@ def _has_faces(shown: Any) -> bool:
 
 
 class Shown(Listed):
-    """What a viewport's depsgraph lists as if it were that of a render."""
+    """The instances that a viewport's depsgraph lists, as if it were that of a render."""
 
     def __init__(self, depsgraph: Any, rendered: dict[Any, Any]) -> None:
         """`rendered`: see rendered_objects()."""

@@ -15,8 +15,8 @@ from . import live_objects, live_view
 
 
 def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
-    """What the scene camera's picture asks for; what the model was read for when there is no
-    camera. Motion, Importance and Use are as they were when the model was read."""
+    """The view that the scene camera's picture asks for; the one that the model was read for when
+    there is no camera. Motion, Importance and Use are as they were when the model was read."""
     if scene.camera is None or scene.camera.type != "CAMERA":
         return kept_model.Asked(kept.view)
     read_with = kept.view.modifiers

@@ -53,8 +53,8 @@ class Reader:
         self.triangles = 0
 
     def read(self, items: Mapping[str, Any], seconds: float) -> "LiveThing | None":
-        """Of evaluated objects by name, as many as time allows and at least one; what they instance
-        or emit with them. None: they show nothing."""
+        """Reads evaluated objects by name, as many as time allows and at least one; what they
+        instance or emit with them. None: they show nothing."""
         end = time.monotonic() + seconds
         for name, item in items.items():
             self.names.add(name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scene's camera would see of the levels that were built, as the scene is now: for panels,
+"""The view of the scene's camera on the levels that were built, as the scene is now: for panels,
 which follow lenses, cameras and settings while they are changed. Objects are where they were when
 levels were last updated."""
 
@@ -24,7 +24,7 @@ from . import preview_changes, viewport_camera
 
 
 def statistics(context: Any) -> view_statistics.Statistics | str:
-    """Of the picture that F12 would make; else why there are none."""
+    """The statistics of the picture that F12 would make; else why there are none."""
     scene = context.scene
     store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
     if store.problem:
@@ -47,8 +47,8 @@ def statistics(context: Any) -> view_statistics.Statistics | str:
 
 
 def viewport_statistics(context: Any) -> view_statistics.Statistics | None:
-    """Of what its Pixel Error and budget of triangles give the largest 3D view; None: there is no
-    view or no store."""
+    """The statistics of what its Pixel Error and budget of triangles give the largest 3D view;
+    None: there is no view or no store."""
     scene = context.scene
     store = addon_session().stores.open(store_path.store_folder(bpy.data.filepath))
     seen = viewport_camera.of_screen(context.screen)
@@ -97,7 +97,7 @@ class _Pinned:
 
 
 class LiveStatistics:
-    """What was chosen for panels; part of the session."""
+    """The cuts that were chosen for panels; part of the session."""
 
     def __init__(self) -> None:
         self.chooser = view_statistics.Chooser()
@@ -111,8 +111,8 @@ class LiveStatistics:
 def settings_of(
     scene: Any, parts_of: quality_lenses.PartsOf, closing: Any | None = None
 ) -> Settings:
-    """As F12 has them, but for motion, which takes another frame to see: `closing` is the camera
-    as the shutter closes, where it is known."""
+    """The settings as F12 has them, but for motion, which takes another frame to see: `closing` is
+    the camera as the shutter closes, where it is known."""
     own = SceneSettings(scene)
     detail = quality_lenses.detail(rendered_lenses(scene), parts_of, Problems())
     coarser = own.use_levels and own.coarser_moving_dark

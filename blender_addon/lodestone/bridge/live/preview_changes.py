@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a scene differs from how its levels were built: moved, hidden and pinned things, and
-those that are to be drawn as they are. Nothing of Blender's is kept but names."""
+"""The changes of a scene since its levels were built: moved, hidden and pinned things, and those
+that are to be drawn as they are. Nothing of Blender's is kept but names."""
 
 import itertools
 from collections.abc import Iterable
@@ -23,7 +23,7 @@ _SHOWN = live_objects.GEOMETRY | {"EMPTY", "CURVES", "POINTCLOUD"}
 
 
 def names_of(scene: Any) -> Names:
-    """Of a scene's things, to find them in the store."""
+    """The names of a scene's things, to find them in the store."""
     return Names(
         frozenset(name_of(item) for item in bpy.data.objects),
         {datablock_ids.uid_of("collection", item): name_of(item) for item in bpy.data.collections},
@@ -32,7 +32,7 @@ def names_of(scene: Any) -> Names:
 
 
 def decisions(tree: Tree) -> Changes:
-    """What is decided for viewports about what a model places, wherever it stands now."""
+    """The decisions for viewports about what a model places, wherever it stands now."""
     changes: Changes = {}
     for item in bpy.data.objects:
         if not datablock_ids.has_settings(item):
@@ -57,8 +57,8 @@ def any_pin() -> bool:
 
 
 class Scene:
-    """Of one view layer. `touched`: names of objects whose shape has changed since levels were
-    built."""
+    """The changes of one view layer. `touched`: names of objects whose shape has changed since
+    levels were built."""
 
     def __init__(self, touched: set[str]) -> None:
         self.things = Things()
@@ -140,7 +140,7 @@ class Scene:
         return True
 
     def learn(self, depsgraph: Any, seconds: float) -> None:
-        """For idle moments: looks at shapes, to know later whether they have changed."""
+        """Looks at shapes in idle moments, to know later whether they have changed."""
         if not self.learned and not self.stale:
             skipped = self._unknown | self._touched | self._reported
             inner = self._inner_objects(self._tree).values()
@@ -167,7 +167,7 @@ class Scene:
         return {name_of(item): item for item in bpy.data.objects if name_of(item) in tree.inner}
 
     def _live_names(self, depsgraph: Any, shown: dict[str, Any], tree: Tree) -> set[str]:
-        """Of what is drawn as it is."""
+        """The names of objects that are drawn as they are."""
         motion = Motion()
         live = set()
         inside = self._touched & tree.inner.keys() - shown.keys()

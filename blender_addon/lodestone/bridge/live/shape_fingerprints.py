@@ -23,7 +23,7 @@ class Shape(NamedTuple):
 
 
 def shape_of(item: Any) -> Shape | None:
-    """Of an evaluated object; None: it is no mesh, or is being edited."""
+    """The fingerprint of an evaluated object; None: it is no mesh, or is being edited."""
     if item.type != "MESH" or item.mode != "OBJECT" or item.data is None:
         return None
     data = item.data
@@ -34,13 +34,13 @@ def shape_of(item: Any) -> Shape | None:
 
 
 class Fingerprints:
-    """By object; those of one mesh are looked at once in a call."""
+    """Fingerprints by object; those of one mesh are looked at once in a call."""
 
     def __init__(self) -> None:
         self._known: dict[str, Shape] = {}
 
     def learn(self, items: Iterable[Any], skipped: set[str], seconds: float) -> bool:
-        """Of evaluated objects, as many as time allows. True when all are known."""
+        """Looks at evaluated objects, as many as time allows. True when all are known."""
         end = time.monotonic() + seconds
         seen: dict[int, Shape | None] = {}
         for item in items:
@@ -62,6 +62,6 @@ class Fingerprints:
         return True
 
     def changed(self, name: str, item: Any) -> bool:
-        """Of an evaluated object that was reported."""
+        """Whether an evaluated object that Blender reported has another shape."""
         known = self._known.get(name)
         return known is None or known != shape_of(item)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a 3D view sees, as a camera of explicit frame vectors, like scene_camera.py's."""
+"""The camera of a 3D view by explicit frame vectors, as scene_camera.py has a scene's."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ def of_screen(screen: Any) -> tuple[Any, tuple[int, int]] | None:
 
 
 def camera_of(view_matrix: Any, window_matrix: Any, near: float) -> Any | None:
-    """Of a view's two matrices; None for one that sees no volume."""
+    """The camera of a view by its two matrices; None for one that sees no volume."""
     across, up = window_matrix[0][0], window_matrix[1][1]
     if not (across > 0.0 and up > 0.0):
         return None

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves and deforms in the course of an animation, and while the shutter is open."""
+"""Motion: what moves and deforms in the course of an animation, and while the shutter is open."""

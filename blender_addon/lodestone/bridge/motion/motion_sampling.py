@@ -42,7 +42,7 @@ def animated(datablock: Any | None) -> bool:
 
 
 class Motion:
-    """Of one scene, by how its objects are animated; `known` are sample()'s findings."""
+    """The motion of one scene, by how its objects are animated; `known` are sample()'s findings."""
 
     def __init__(self, known: dict[str, list[str]] | None = None) -> None:
         self._known = {kind: set(uids) for kind, uids in (known or {}).items()}
@@ -58,7 +58,8 @@ class Motion:
         return self._may_move(item) and not self._found_still(item, "place")
 
     def emits_anew(self, item: Any) -> bool:
-        """What it emits (particles, nodes' instances) may be elsewhere or something else."""
+        """Whether what it emits (particles, nodes' instances) may be elsewhere or something
+        else."""
         for system in item.particle_systems:
             settings = system.settings
             if settings.type == "EMITTER" or system.use_hair_dynamics or animated(settings):

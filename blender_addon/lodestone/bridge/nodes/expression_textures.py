@@ -51,7 +51,7 @@ class Textures:
         return self._value(self._followed(value), True)
 
     def constant(self, value: Expression, words: str) -> float:
-        """Of what the backend holds no texture for."""
+        """The mean of a value that the backend holds no texture for."""
         value = self._followed(value)
         if not value.constant:
             self._note(WARNING, "texture_mean", f"the texture of its {words} is drawn as its mean")

@@ -17,8 +17,8 @@ class Pixels(NamedTuple):
 
 
 def read_pixels(image: Any) -> Pixels | None:
-    """By Blender's own reader; None when it cannot be read. An image that was not loaded is not
-    kept."""
+    """The pixels by Blender's own reader; None when it cannot be read. An image that was not loaded
+    is not kept."""
     loaded = image.has_data
     width, height = image.size  # loads it
     channels = image.channels

@@ -45,7 +45,7 @@ def missing(name: str) -> Source:
 
 
 def source_of(image: Any, user: Any, frame: int, note: Note) -> Source:
-    """Of an image as an image user (or None) shows it at a frame."""
+    """The source of an image as an image user (or None) shows it at a frame."""
     space = image.colorspace_settings.name
     if space and space not in _DISPLAY and space not in _LINEAR:  # "": of a broken image
         note(

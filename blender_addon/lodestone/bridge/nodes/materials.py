@@ -30,7 +30,7 @@ _CLEAR = 0.1  # roughness up to which nobody misses the blur of what is behind g
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a mesh has to carry for the material of a slot."""
+    """The data that a mesh has to carry for the material of a slot."""
 
     coordinates: Coordinates | None = None
     vertex_colors: VertexColors | None = None
@@ -141,7 +141,7 @@ class _Translator:
         return replace(look, coordinates=coordinates, radiance=self._radiance(mixed))
 
     def _radiance(self, mixed: list[tuple[Surface, Expression]]) -> tuple[float, float, float]:
-        """Of all of them together, in the mean."""
+        """The radiance of all surfaces together, in the mean."""
         found, left = [0.0, 0.0, 0.0], 1.0
         for surface, share in mixed:
             rest = min(1.0, max(0.0, mean_of(share, self.pictures)[0]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What feeds node sockets, as expressions of images' texels and of constants.
+"""The inputs of node sockets as expressions of images' texels and of constants.
 
 What cannot be said is named and stands as a constant for its mean: that of the node's own colors,
 else the value of the input it feeds.
@@ -50,7 +50,7 @@ class VertexColor:
 
 @dataclass(frozen=True)
 class Setting:
-    """What of the world around a material its values may depend on."""
+    """The surroundings of a material that its values may depend on."""
 
     frame: int = 1
     object_color: tuple[float, ...] | None = None  # RGBA; None: of no particular object
@@ -82,7 +82,7 @@ class NodeExpressions:
         return e.luma(found)
 
     def _fed(self, socket: Any, groups: tuple, depth: int) -> tuple[Expression, str]:
-        """What feeds a socket, and the type of what it comes from."""
+        """The expression that feeds a socket, and the type of what it comes from."""
         found = node_graph.feed(socket, groups)
         if found.node is None:
             return own_value(found.socket), found.socket.type

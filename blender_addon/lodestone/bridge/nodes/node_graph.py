@@ -21,7 +21,7 @@ class Feed:
 
 
 def feed(socket: Any, groups: tuple[Any, ...] = ()) -> Feed:
-    """What feeds an input socket."""
+    """The node that feeds an input socket."""
     for _ in range(MOST_STEPS):
         link = link_to(socket)
         if link is None:

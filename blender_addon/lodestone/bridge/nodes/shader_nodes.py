@@ -28,7 +28,7 @@ class Shaders:
         self._found: dict[tuple, Shader] = {}
 
     def shader(self, socket: Any, groups: tuple = (), depth: int = 0) -> Shader:
-        """What is plugged into a shader input."""
+        """The shader that is plugged into an input."""
         if depth > _MAX_DEPTH:
             self._note(WARNING, "node_depth", "nests its nodes too deeply; the rest is left out")
             return self._viewport
@@ -120,7 +120,8 @@ class Shaders:
         )
 
     def _specular(self, node: Any, groups: tuple, ior: Expression) -> Expression:
-        """As until 3.6: 0.5 reflects 4 % straight on. Since 4.0 it scales what the IOR reflects."""
+        """The specular value as until 3.6: 0.5 reflects 4 % straight on. Since 4.0 it scales what
+        the IOR reflects."""
         socket = node.inputs.get("Specular")
         if socket is not None:
             return self._values.number(socket, groups)

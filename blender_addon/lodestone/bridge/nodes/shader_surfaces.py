@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shader nodes become: principled surfaces, mixtures of a few of them, and nothing; still as
-expressions."""
+"""Surfaces that shader nodes become: principled surfaces, mixtures of a few of them, and nothing;
+still as expressions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -26,7 +26,7 @@ _MOST_NODES = 32
 
 @dataclass(frozen=True)
 class Coordinates:
-    """What the corners of a slot's triangles carry as their texture coordinates.
+    """The texture coordinates that the corners of a slot's triangles carry.
 
     UV: the mesh's uv layer `name` ("": the one active for rendering). GENERATED, OBJECT: positions
     in the bound or the frame of the object itself; FRAME: in the frame of the object that is

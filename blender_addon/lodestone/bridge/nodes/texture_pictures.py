@@ -76,7 +76,7 @@ class Pictures:
         return self._add_pixels(source)
 
     def _add_pixels(self, source: Source) -> int | None:
-        """By way of Blender's own reader."""
+        """Adds a picture by way of Blender's own reader."""
         found = read_pixels(source.image)
         if found is None:
             return None

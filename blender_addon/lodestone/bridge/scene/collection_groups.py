@@ -39,8 +39,8 @@ class Branch:
 
 
 def scene_branch(scene: Any, view_layer: Any, roles: datablock_ids.Roles) -> Branch:
-    """Of what a view layer includes: render-hidden collections are left out, excluded ones lend
-    nothing but their included children."""
+    """The branches of what a view layer includes: render-hidden collections are left out, excluded
+    ones lend nothing but their included children."""
     claimed: set[Any] = set()
     taken = _Taken()
 
@@ -65,7 +65,7 @@ def scene_branch(scene: Any, view_layer: Any, roles: datablock_ids.Roles) -> Bra
 
 
 def collection_branch(collection: Any, roles: datablock_ids.Roles) -> Branch:
-    """Of an evaluated collection as its instances show it: layers play no part."""
+    """The branch of an evaluated collection as its instances show it: layers play no part."""
     claimed: set[Any] = {collection.original}
     taken = _Taken()
 
@@ -129,15 +129,15 @@ def _same_but_for_rounding(a: list[Emitted], b: list[Emitted]) -> bool:
 
 
 class Rest(NamedTuple):
-    """What of a context no branch has had yet, by original."""
+    """The things of a context that no branch has had yet, by original."""
 
     entries: dict[Any, Entry]
     plain: dict[Any, int]  # their rows
 
 
 class Aside(NamedTuple):
-    """What is in no collection's group: it changes in an animation, or the designer wants it in no
-    stand-in."""
+    """The things in no collection's group: they change in an animation, or the designer wants them
+    in no stand-in."""
 
     changing: Placements
     apart: Placements
@@ -196,9 +196,9 @@ class Groups:
     def _members(
         self, context: Context, branch: Branch, rest: "Rest", aside: "Aside"
     ) -> tuple[Placements, bool]:
-        """What of a context is in a branch, and whether it changes in an animation. What does in
-        the scene itself goes aside: a group of things that rest keeps its levels in every frame.
-        An instanced collection is drawn as it is while it changes."""
+        """The things of a context in a branch, and whether they change in an animation. Those that
+        do in the scene itself go aside: a group of things that rest keeps its levels in every
+        frame. An instanced collection is drawn as it is while it changes."""
         placements = Placements()
         anew, in_scene = False, context.collection is None
         self._above.append(branch)

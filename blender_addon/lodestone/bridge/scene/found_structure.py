@@ -40,7 +40,8 @@ def group_of(extraction: Any, collection: Any) -> Any | None:
 
 
 def found_groups(extraction: Any, group: Any, collection: Any, known: int) -> Found:
-    """What is grouped in a structured group: groups are the model's objects from `known` on."""
+    """The groups that were found in a structured group: they are the model's objects from `known`
+    on."""
     parts = extraction.parts
     waiting: dict[tuple[str, Any], Any] = {}
     for kind, items in (("object", collection.objects), ("collection", collection.children)):

@@ -45,15 +45,15 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Glow:
-    """What of an object glows."""
+    """The part of an object that glows."""
 
     parts: tuple[Part, ...]
     others: tuple[Subject, ...] = ()  # materials that glow on what is never a light
 
 
 def glow_of(shown: Any, slots: list[Any], looks: Iterable[Any], faces: bool = True) -> Glow | None:
-    """Of what an evaluated object shows; `looks` by slot. None: nothing glows. Without `faces` it
-    shows hairs or points."""
+    """The glow of what an evaluated object shows; `looks` by slot. None: nothing glows. Without
+    `faces` it shows hairs or points."""
     radiances = [look.radiance for look in looks] or [(0.0, 0.0, 0.0)]
     if max(map(max, radiances)) < LEAST:
         return None
@@ -143,9 +143,9 @@ class Glows:
         self._dark: dict[Subject, None] = {}
 
     def add(self, glow: Glow, world: Matrix, name: str) -> int:
-        """As it is placed there. The ray classes that must not see it: what shines by a light
-        must not do so once more (nor be part of a group's stand-in, which would hide the light),
-        and a ball must not keep in the light in its middle."""
+        """Adds a glow as it is placed. Returns the ray classes that must not see it: what shines by
+        a light must not do so once more (nor be part of a group's stand-in, which would hide the
+        light), and a ball must not keep in the light in its middle."""
         hidden = 0
         self._dark.update(dict.fromkeys(glow.others))
         for part in glow.parts:

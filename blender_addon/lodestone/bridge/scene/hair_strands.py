@@ -13,7 +13,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 
 
 def hair_modifiers(shown: Any) -> Iterator[Any]:
-    """Of the particle systems of an evaluated object that render as hair."""
+    """The modifiers of the particle systems of an evaluated object that render as hair."""
     for modifier in shown.modifiers:
         if modifier.type == "PARTICLE_SYSTEM" and modifier.show_render:
             settings = modifier.particle_system.settings

@@ -25,8 +25,8 @@ MATERIAL = attrgetter("material")
 
 
 def undrawn(shown: Any) -> str | None:
-    """What an object shows that cannot be drawn, in the plural. Of a domain of smoke Cycles draws
-    the smoke alone: as a mesh it would be a box around what burns."""
+    """The name of what an object shows that cannot be drawn, in the plural. From a domain of smoke
+    Cycles draws the smoke alone: as a mesh it would be a box around what burns."""
     if shown.type == "MESH":
         for modifier in shown.modifiers:
             if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
@@ -51,7 +51,8 @@ class Leaf:
 
 
 class Look(NamedTuple):
-    """What decides how an object's data are drawn, besides the data and its materials."""
+    """The settings that decide how an object's data are drawn, besides the data and its
+    materials."""
 
     environment: bool = False
     ordinary: bool = False
@@ -88,16 +89,16 @@ class Leaves:
     def leaf(
         self, shown: Any, owner: Any, look: Look, host: Any = None, place: Any = None
     ) -> Leaf | None:
-        """Of an evaluated object as a depsgraph instance shows it; `owner` is the evaluated object
-        that shows it (they differ in their data where nodes make a mesh), `host` what instances it
-        and gives it its color, `place` its world matrix (that of an instance is not its object's).
-        None: it has no faces and no hairs."""
+        """The leaf of an evaluated object as a depsgraph instance shows it; `owner` is the
+        evaluated object that shows it (they differ in their data where nodes make a mesh), `host`
+        what instances it and gives it its color, `place` its world matrix (that of an instance is
+        not its object's). None: it has no faces and no hairs."""
         return self._get(shown.data.as_pointer(), shown, owner, look, host, place, self._add_data)
 
     def hair(
         self, shown: Any, owner: Any, look: Look, host: Any = None, place: Any = None
     ) -> Leaf | None:
-        """Of an evaluated object's particle hair."""
+        """The leaf of an evaluated object's particle hair."""
         key = (HAIR, shown.original.as_pointer())
         return self._get(key, shown, owner, look, host, place, self._add_hair)
 
@@ -132,7 +133,8 @@ class Leaves:
     def _seen_from(
         self, place: Any, colored_by: Any, slots: list, materials: tuple
     ) -> tuple[Color | None, tuple | None]:
-        """What of the object its materials show: its color, and where it is seen from others."""
+        """The values of the object that its materials show: its color, and where it is seen from
+        others."""
         if materials not in self._varying:
             wanted = [self._materials.wanted(material) for material in slots]
             self._varying[materials] = (
@@ -285,7 +287,8 @@ def override_of(depsgraph: Any) -> Any | None:
 
 
 def _data_name(shown: Any, owner: Any) -> str:
-    """As the designer knows it: what is subdivided on the GPU has no name of its own."""
+    """The name of the data as the designer knows it: what is subdivided on the GPU has no name of
+    its own."""
     own = shown.type == "MESH" and shown.data.as_pointer() == owner.data.as_pointer()
     return name_of(owner.original.data if own else shown.data)
 

@@ -13,7 +13,7 @@ from .leaf_objects import material_slots
 
 
 class Shown:
-    """What shows which material, by leaf and by Blender's names: keeps nothing of Blender's."""
+    """The users of materials, by leaf and by Blender's names: keeps nothing of Blender's."""
 
     def __init__(self) -> None:
         self._users: dict[Any, dict[Subject, None]] = {}  # by leaf
@@ -22,7 +22,7 @@ class Shown:
         self._seen: set[Subject] = set()  # materials
 
     def of(self, leaf: Any) -> dict[Subject, None] | None:
-        """What shows it, to be added to; None: its materials are not known yet."""
+        """The users of a leaf, to be added to; None: its materials are not known yet."""
         return self._users.get(leaf)
 
     def meet(self, leaf: Any, worn: list[Any]) -> dict[Subject, None]:
@@ -66,7 +66,7 @@ class Users:
         self._slots_of = partial(material_slots, override=leaves.override)
 
     def leaf(self, user: Subject, shown: Any, *how: Any) -> Any:
-        """As Leaves.leaf(), for an object."""
+        """The leaf of an object, as Leaves.leaf() gives it."""
         leaf = self._leaves.leaf(shown, *how)
         if leaf is not None:
             known = self.shown.of(leaf)
@@ -82,7 +82,7 @@ class Users:
         return self._noted(self._leaves.point(shown, *how), user, shown)
 
     def _noted(self, leaf: Any, user: Subject, shown: Any) -> Any:
-        """Of what has no faces all materials are seen."""
+        """Notes a leaf without faces: all its materials are seen."""
         if leaf is not None:
             known = self.shown.of(leaf)
             if known is None:

@@ -56,7 +56,7 @@ def _face_starts(mesh: Any) -> array | None:
 
 
 def _has_large_faces(mesh: Any, starts: array | None) -> bool:
-    """Of more than four corners."""
+    """Whether a face has more than four corners."""
     return starts is not None and native.largest_face(starts, len(mesh.loops)) > 4
 
 

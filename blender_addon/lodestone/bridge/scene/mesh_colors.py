@@ -40,7 +40,7 @@ def _kinds(wanted: Sequence[VertexColors | None]) -> list[VertexColors]:
 
 
 def _colors(mesh: Any, wanted: VertexColors) -> array:
-    """Of the corners."""
+    """The colors of the corners."""
     attribute = blender_versions.color_attribute(mesh, wanted.name)
     if attribute is None:
         colors = blender_versions.buffer("f", 4 * len(mesh.loops))

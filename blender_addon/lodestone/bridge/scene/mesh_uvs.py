@@ -87,8 +87,8 @@ def depend_on_place(wanted: Sequence[Any]) -> bool:
 
 
 def frames(world: Matrix, wanted: Sequence[Any]) -> tuple[float, ...]:
-    """What the texture coordinates of these slots depend on besides the mesh: the same mesh has
-    other ones at another place."""
+    """The values that the texture coordinates of these slots depend on besides the mesh: the same
+    mesh has other ones at another place."""
     found: list[float] = []
     for item in wanted:
         if item.coordinates is not None and item.coordinates.kind == "FRAME":

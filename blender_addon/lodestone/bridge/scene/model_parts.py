@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a model each of Blender's objects and collections became."""
+"""The parts of a model that each of Blender's objects and collections became."""
 
 from collections import defaultdict
 from typing import Any

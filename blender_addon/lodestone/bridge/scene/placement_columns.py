@@ -37,7 +37,7 @@ class Placements:
         self.hidden.append(hidden)
 
     def add_all(self, items: list[Any], places: Rows, names: list[str]) -> None:
-        """Of nothing hidden or decided; 12 numbers a place."""
+        """Adds placements of which nothing is hidden or decided; 12 numbers a place."""
         self.objects += items
         self.transforms += places
         self.names += names

@@ -50,12 +50,12 @@ class Plain:
         self.shows: list[Any] = []  # a Leaf, or None: nothing, or it is no row any more
 
     def settle(self, rows: list[int], leaf: Any) -> None:
-        """What these rows show."""
+        """Sets the leaf that these rows show."""
         for row in rows:
             self.shows[row] = leaf
 
     def rows(self) -> dict[Any, int]:
-        """By original, of those that show something."""
+        """The rows by original, of those objects that show something."""
         kept = [leaf is not None for leaf in self.shows]
         return dict(compress(zip(self.originals, range(len(kept))), kept))
 
@@ -106,8 +106,8 @@ def _all_seen() -> bool:
 def _plain(
     objects: list[Any], data: list[Any], wanted: dict[str, Any], motion: Motion
 ) -> list[bool]:
-    """What nearly all plain objects have in common is asked in columns, `wanted` of each; the rest
-    one by one."""
+    """Whether each object is plain. The conditions that nearly all meet are asked in columns,
+    `wanted` of each; the others one by one."""
     own = datablock_ids.have_settings(objects)
     free = tuple(wanted.values())
     plain = list(
@@ -160,8 +160,8 @@ def _made_of(
 
 
 def _materials(objects: list[Any], width: int) -> list[Any]:
-    """Of all their slots, `width` each. Where there is one, its material is the active one, and no
-    list of slots is made."""
+    """The materials of all their slots, `width` each. Where there is one, its material is the
+    active one, and no list of slots is made."""
     if width == 1:
         materials = list(map(_ACTIVE_MATERIAL, objects))
         if None not in materials:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What bends quality, from Blender: detail lenses are Empties, screen lenses and depth are the
-camera's."""
+"""The lenses that bend quality, from Blender: detail lenses are Empties, screen lenses and depth
+are the camera's."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -31,7 +31,7 @@ def is_lens(item: Any) -> bool:
 def detail(
     objects: Iterable[Any], parts_of: PartsOf, problems: Problems
 ) -> tuple[native.Lens, ...]:
-    """Of the lenses among these objects (evaluated, or originals for the viewport's state) that
+    """The detail lenses among these objects (evaluated, or originals for the viewport's state) that
     renders see, in their order; what makes no sense is left out and named."""
     found: list[native.Lens] = []
     filtered, too_many = 0, 0
@@ -78,7 +78,7 @@ def detail(
 
 
 def screen(camera: Any) -> tuple[native.ScreenLens, ...]:
-    """Of a camera object (as in detail()); as many as the backend takes."""
+    """The screen lenses of a camera object (as in detail()); as many as the backend takes."""
     settings = datablock_ids.settings_of(camera.data)
     if settings is None:
         return ()
@@ -127,7 +127,8 @@ def modifiers(
 
 
 def parts_in(extraction: Any) -> PartsOf:
-    """Of a scene that was read: anything with its `parts`."""
+    """A function that gives a collection's parts of a scene that was read: anything with its
+    `parts`."""
 
     def parts_of(collection: Any) -> Iterable[Any]:
         return extraction.parts.get(datablock_ids.key_of("collection", collection), ())
@@ -136,7 +137,7 @@ def parts_in(extraction: Any) -> PartsOf:
 
 
 def parts_stored(model: Any) -> PartsOf:
-    """Of a model read from a store."""
+    """A function that gives a collection's parts of a model that was read from a store."""
 
     def parts_of(collection: Any) -> Iterable[Any]:
         found = model.find_object(datablock_ids.uid_of("collection", collection))

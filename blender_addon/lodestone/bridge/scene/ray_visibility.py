@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of an object rays see: Blender's ray visibility, indirect-only and holdout, as POV-Ray can
-do it."""
+"""The classes of rays that see an object: Blender's ray visibility, indirect-only and holdout, as
+POV-Ray can do it."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -19,7 +19,7 @@ _SWITCHES = (  # Blender's names, the ray class of ours
 
 
 class Visibility:
-    """Of evaluated objects as one view layer shows them."""
+    """The visibility of evaluated objects as one view layer shows them."""
 
     def __init__(self, view_layer: Any, problems: Problems) -> None:
         self._view_layer = view_layer

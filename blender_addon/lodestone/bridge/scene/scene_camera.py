@@ -25,7 +25,7 @@ class Frame:
 
     @classmethod
     def of(cls, render: Any) -> "Frame":
-        """Of RenderSettings, as Blender rounds: in whole numbers (29 % of 100 are 29)."""
+        """The frame of RenderSettings, as Blender rounds: in whole numbers (29 % of 100 are 29)."""
         percent = render.resolution_percentage
         return cls(
             max(1, render.resolution_x * percent // 100),
@@ -56,7 +56,7 @@ def view_plane(data: Any, frame: Frame) -> tuple[float, float, float, float]:
 
 
 def extract(camera: Any, frame: Frame, problems: Problems) -> Any:
-    """Of an evaluated camera object."""
+    """The camera of an evaluated camera object."""
     data = camera.data
     if data.type == "PANO":
         text = f'Camera "{name_of(camera)}" is panoramic; it is drawn as a perspective camera'
@@ -122,7 +122,7 @@ def _focus_place(dof: Any) -> Vector:
 
 
 def report_render(scene: Any, problems: Problems) -> None:
-    """What the settings of an evaluated scene ask for and pictures lack."""
+    """Names what the settings of an evaluated scene ask for and pictures lack."""
     render, name = scene.render, name_of(scene)
     if render.use_motion_blur:
         text = f'Motion blur of scene "{name}" is left out'

@@ -153,7 +153,8 @@ def _without_garbage_collection() -> Iterator[None]:
 
 @dataclass
 class Walk:
-    """What a depsgraph shows: by where it comes from, by collection, and who shows what."""
+    """A walk through what a depsgraph shows: by where it comes from, by collection, and who shows
+    what."""
 
     found: Instances
     branch: collection_groups.Branch

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the depsgraph shows, sorted by where it comes from.
+"""The instances that the depsgraph shows, sorted by where they come from.
 
 Truth is depsgraph.object_instances. An instance's path is its persistent_id read from the right:
 each number is the place of an object in the `all_objects` of the collection the object before it

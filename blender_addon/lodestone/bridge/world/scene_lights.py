@@ -60,8 +60,8 @@ def add(model: Any, light: Any, matrix: Matrix, name: str, problems: Problems) -
 
 
 def _name_limits(light: native.Light, problems: Problems) -> None:
-    """What the export will say of it (in these words, so that it counts once), for those who want
-    to know before."""
+    """Names what the export will say of it (in these words, so that it counts once), for those who
+    want to know before."""
     if light.power == 0.0 or max(light.color) == 0.0 or light.kind < native.LightKind.SPOT:
         return
     if not light.shadow:
@@ -101,7 +101,8 @@ def _sheared(light: native.Light) -> bool:
 
 
 def _shape(light: Any, matrix: Matrix) -> dict[str, Any]:
-    """What else its kind has. Scaling an object changes the size of area lights alone."""
+    """The values that lights of its kind have besides. Scaling an object changes the size of area
+    lights alone."""
     if light.type == "SUN":
         return {"angle": min(math.pi, light.angle)}
     if light.type == "POINT":
@@ -124,8 +125,8 @@ def _shape(light: Any, matrix: Matrix) -> dict[str, Any]:
 
 
 def _emission(light: Any) -> tuple[float, ...] | None:
-    """What the light's nodes multiply its color by: all black without a shader, as in Cycles; None
-    when it is not the same everywhere."""
+    """The factor by which the light's nodes multiply its color: all black without a shader, as in
+    Cycles; None when it is not the same everywhere."""
     if not light.use_nodes or light.node_tree is None:
         return (1.0, 1.0, 1.0)
     output = light.node_tree.get_output_node("CYCLES")

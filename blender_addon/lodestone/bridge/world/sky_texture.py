@@ -38,7 +38,7 @@ class SkySun:
 
 
 def mean_of_sky(node: Any) -> Color:
-    """Of a sky texture node."""
+    """The mean color of a sky texture node."""
     if node.sky_type == "NISHITA":
         return _at(node.sun_elevation, 1)
     return _SKIES.get(node.sky_type, _SKIES["HOSEK_WILKIE"])

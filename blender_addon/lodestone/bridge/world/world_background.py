@@ -28,7 +28,7 @@ _READ = {"PNG", "JPEG", "OPEN_EXR"}  # what the backend reads itself
 
 @dataclass(frozen=True)
 class World:
-    """As native.Model.set_world wants it; `environment` is one of its pictures."""
+    """A world as native.Model.set_world wants it; `environment` is one of its pictures."""
 
     color: tuple[float, float, float]
     environment: int | None = None
@@ -39,8 +39,8 @@ class World:
 def extract(
     model: Any, world: Any | None, problems: Problems, images: ImageMeans | None = None
 ) -> World:
-    """Of an evaluated world; no world is black. Adds the environment's picture to the model. With
-    ImageHeads only problems are looked for."""
+    """The world of an evaluated scene; no world is black. Adds the environment's picture to the
+    model. With ImageHeads only problems are looked for."""
     if world is None:
         return World((0.0, 0.0, 0.0))
     if not world.use_nodes or world.node_tree is None:

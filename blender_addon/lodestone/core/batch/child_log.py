@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one child said, in a file of bounded size: its beginning and its end."""
+"""The words of one child process, in a file of bounded size: its beginning and its end."""
 
 from collections import deque
 from pathlib import Path
@@ -53,7 +53,7 @@ class ChildLog:
 
     @property
     def last_lines(self) -> str:
-        """For the terminal."""
+        """The end of the log, for the terminal."""
         lines = b"".join(self._tail).splitlines(keepends=True)[-LAST_LINES:]
         return b"".join(lines).decode("utf-8", "replace")
 

@@ -56,7 +56,7 @@ class Child:
 
     @property
     def pid(self) -> int:
-        """Also the number of its session."""
+        """The number of the process, which is also that of its session."""
         return self._process.pid
 
     def fileno(self) -> int:
@@ -90,7 +90,7 @@ class Child:
     # ---- Watching ----
 
     def members(self, pids: list[int]) -> None:
-        """What a walk through all processes found of its session."""
+        """Takes the processes of its session, which a walk through all processes has found."""
         self._members = pids
 
     def watch(self, now: float) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a job need not be done again, by the log of an earlier run."""
+"""The results of an earlier run, by its log: a job need not make them again."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -14,7 +14,8 @@ FINISHED = (ExitCode.DONE, ExitCode.INCOMPLETE)  # once more would give the same
 
 @dataclass
 class Found:
-    """Of one job: its whole report, or what was made of some pictures by their `out`."""
+    """The results of one job: its whole report, or what was made of some pictures by their
+    `out`."""
 
     report: dict[str, Any] | None = None
     pictures: dict[str, dict[str, Any]] = field(default_factory=dict)

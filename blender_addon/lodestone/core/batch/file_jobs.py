@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one Blender is asked to do with one file, and how it travels there."""
+"""The work that one Blender is asked to do with one file, and how it travels there."""
 
 import hashlib
 import json
@@ -43,7 +43,7 @@ class PictureRequest:
 
 @dataclass(frozen=True)
 class FileJob:
-    """What one Blender is to do with one input. `skip` names the `out` of pictures that are there
+    """The work of one Blender with one input. `skip` names the `out` of pictures that are there
     already; `report`, `thumbnail` and `supervisor` are those of one run."""
 
     verb: str

@@ -35,7 +35,7 @@ _QUIET = (ExitCode.DONE, ExitCode.CANCELLED)  # their logs say nothing
 
 @dataclass(frozen=True)
 class Limits:
-    """Of each file: seconds; bytes of all its processes. None: no limit."""
+    """The limits of each file: seconds, and bytes of all its processes. None: no limit."""
 
     timeout_s: float | None = None
     max_bytes: int | None = None
@@ -43,8 +43,8 @@ class Limits:
 
 @dataclass
 class Surroundings:
-    """What all tasks of a run share. `record(line, **values)` adds to the log; `said(task, text)`
-    takes progress, `began(task)` and `done(task)` its beginning and end."""
+    """The surroundings that all tasks of a run share. `record(line, **values)` adds to the log;
+    `said(task, text)` takes progress, `began(task)` and `done(task)` its beginning and end."""
 
     blender: str
     script: Path  # batch_blender/file_run.py

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a file's results depend on, so that a later run knows whether it must be done again: the
-bytes of the .blend, and size and time of everything it links or loads."""
+"""The inputs that a file's results depend on, so that a later run knows whether they must be made
+again: the bytes of the .blend, and size and time of everything it links or loads."""
 
 import glob
 import hashlib
@@ -46,7 +46,7 @@ def stamp(path: str) -> list[int] | None:
 
 
 def _stamp_of_many(path: str) -> list[int] | None:
-    """Of all its tiles together."""
+    """The stamp of all tiles of an image together."""
     folder, name = os.path.split(path)
     before, after = name.split("<", 1)[0], name.rsplit(">", 1)[-1]
     pattern = os.path.join(glob.escape(folder), f"{glob.escape(before)}*{glob.escape(after)}")

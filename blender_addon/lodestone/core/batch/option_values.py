@@ -87,7 +87,7 @@ def off_screen(text: str) -> str:
 
 
 def ray_classes(text: str) -> str:
-    """As unseen.text_of() has it."""
+    """The classes of rays that a text names, as unseen_detail.text_of() has it."""
     try:
         return unseen_detail.text_of(unseen_detail.rays_of(text))
     except ValueError as error:

@@ -23,8 +23,8 @@ class Member:
 
 
 def death_with_parent() -> Callable[[], None]:
-    """For subprocess's preexec_fn: the system kills the child when the thread that started it ends,
-    however that ends."""
+    """Returns a function for subprocess's preexec_fn: the system kills the child when the thread
+    that started it ends, however that ends."""
     libc = ctypes.CDLL(None)  # before the fork, after which nothing may be loaded
     parent = os.getpid()
 
@@ -37,8 +37,8 @@ def death_with_parent() -> Callable[[], None]:
 
 
 def follow(supervisor: int) -> None:
-    """For a child that a wrapper may have started: it ends with its parent, and at once when the
-    supervisor is gone already. 0: none."""
+    """Ties a child that a wrapper may have started to its parent: it ends with it, and at once when
+    the supervisor is gone already. 0: there is no supervisor."""
     if supervisor <= 0:
         return
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
@@ -47,8 +47,8 @@ def follow(supervisor: int) -> None:
 
 
 def speak_in_lines() -> None:
-    """What this process prints, in C too, reaches its log line by line: the last words of one that
-    is killed would be lost."""
+    """Makes this process print line by line, in C too: else the last words of one that is killed
+    would never reach its log."""
     libc = ctypes.CDLL(None)
     line_buffered = 1  # _IOLBF
     libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, line_buffered, ctypes.c_size_t(0))

@@ -14,8 +14,9 @@ _ORDER = {ExitCode.CANCELLED: 1, ExitCode.INCOMPLETE: 2, ExitCode.DONE: 3}  # an
 
 
 class Compared(NamedTuple):
-    """Of the picture that differs most from that of the originals: differences of display values
-    0...1, triangles drawn, wall seconds of POV-Ray; pairs are of originals and levels."""
+    """The numbers of the picture that differs most from that of the originals: differences of
+    display values 0...1, triangles drawn, wall seconds of POV-Ray. Pairs are of originals and
+    levels."""
 
     mean: float
     max: float
@@ -114,7 +115,7 @@ def rows_of(reports: Iterable[dict[str, Any]]) -> list[Row]:
 
 
 def table(rows: Iterable[Row]) -> str:
-    """For a terminal of any width: the file comes last."""
+    """The rows as text, for a terminal of any width: the file comes last."""
     rows = list(rows)
     compared = any(row.compared for row in rows)
     head = ("status", "time", "memory", "triangles", "of", "error")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a batch run says on the terminal: where each file is, and each problem once."""
+"""The lines that a batch run prints: where each file is, and each problem once."""
 
 import sys
 from pathlib import Path

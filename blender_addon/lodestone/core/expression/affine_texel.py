@@ -59,7 +59,8 @@ def peeled(a: Expression) -> tuple[Expression, Color, Color]:
 
 
 def _of(item: Expression, args: list[Any]) -> Affine | Color | None:
-    """What an operation on constants (colors) and affine things is."""
+    """The affine form of an operation on constants (colors) and affine things; None: it has
+    none."""
     if item.constant:
         return item.value
     if item.op == Op.TEXEL:

@@ -238,7 +238,7 @@ def _is_number(a: Expression) -> bool:
 
 
 def _neutral(op: Op, args: tuple[Expression, ...]) -> Expression | None:
-    """What is left of an operation that does nothing, or None."""
+    """The simpler expression that an operation comes to which changes nothing, or None."""
     if op == Op.ADD:
         return next((args[1 - k] for k in (0, 1) if _all(args[k], 0.0)), None)
     if op == Op.MULTIPLY:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's Math, Mix and Map Range nodes compute, as expressions.
+"""Blender's Math, Mix and Map Range nodes as expressions.
 
 source: the operations as Blender's manual defines them and Cycles computes them.
 """

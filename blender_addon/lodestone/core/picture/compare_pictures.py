@@ -45,7 +45,8 @@ def compare(
     new_job: Callable[[str], Any],
     costs: StoreCosts | None = None,
 ) -> Compared:
-    """As make_picture(), twice; everything it writes is in `folder`, which is its caller's."""
+    """Makes two pictures as make_picture() does; everything it writes is in `folder`, which is its
+    caller's."""
     plan = compare_plan.Plan(folder, settings.pixel_error)
     pictures = []
     for step, how in zip(STEPS, (settings.of_originals(), settings)):

@@ -21,8 +21,8 @@ _WORST = 3
 
 @dataclass(frozen=True)
 class Comparison:
-    """Of display values 0...1 over the covered pixels; `worst` are paths of placements with their
-    share of all differences, largest first."""
+    """Differences of display values 0...1 over the covered pixels; `worst` are paths of placements
+    with their share of all differences, largest first."""
 
     mean: float
     max: float
@@ -33,7 +33,7 @@ class Comparison:
     p999: float = 0.0
 
     def part(self) -> dict[str, Any]:
-        """The report's."""
+        """The report's part."""
         return {
             "mean": self.mean,
             "p999": self.p999,
@@ -64,12 +64,12 @@ class Plan:
 
     @property
     def folder(self) -> Path:
-        """Of this step's picture of what is shown where."""
+        """The folder of this step's picture of what is shown where."""
         return self.root / WORDS[self.step]
 
     @property
     def has_this(self) -> bool:
-        """Of several view layers the first one counts."""
+        """Whether this step's picture is there: of several view layers the first one counts."""
         return self.step in self._paths
 
     @property

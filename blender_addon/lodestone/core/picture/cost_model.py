@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a picture will take, told before it is rendered and corrected by the one before.
+"""The time and the memory that a picture will take, told before it is rendered and corrected by the
+one before.
 
 POV-Ray 3.7 reads about 245 bytes of its memory in 5.2 microseconds; a sample takes longer with the
 fifth root of the triangles and with each lamp (measured on one machine; cost.json beside the levels
@@ -46,13 +47,14 @@ class Prediction:
     peak_bytes: int
 
     def part(self) -> dict[str, Any]:
-        """Of the report."""
+        """The report's part."""
         return asdict(self)
 
 
 @dataclass(frozen=True)
 class Ratios:
-    """Measured over predicted, of the last picture; 1 before there is one."""
+    """The ratios of what was measured to what was predicted for the last picture; 1 before there is
+    one."""
 
     parse: float = 1.0
     trace: float = 1.0
@@ -61,7 +63,8 @@ class Ratios:
 
 @dataclass(frozen=True)
 class Work:
-    """What has to be done: bytes and triangles as the cut counts them; `pixels` are those drawn."""
+    """The work of a picture: bytes and triangles as the cut counts them; `pixels` are those
+    drawn."""
 
     bytes: int
     triangles: int
@@ -123,8 +126,8 @@ def learn(work: Work, measured: Any, before: Ratios) -> Ratios:
 
 
 class CostMemory:
-    """By how much pictures took another time than was told, for each folder of levels: what this
-    process knows, and what the folders hold."""
+    """The ratios of times and bytes measured to those foretold, for each folder of levels: what
+    this process knows, and what the folders hold."""
 
     def __init__(self) -> None:
         self._last: dict[str, Ratios] = {}  # by folder
@@ -148,8 +151,8 @@ class StoreCosts:
         return self._last[key]
 
     def write(self, ratios: Ratios) -> None:
-        """For the next picture. A folder that is not there or cannot be written to is no problem:
-        then only this process knows."""
+        """Keeps the ratios for the next picture. A folder that is not there or cannot be written to
+        is no problem: then only this process knows."""
         self._last[str(self._store)] = ratios
         temporary = self._store / f".cost-{os.getpid()}.json"
         try:

@@ -40,7 +40,7 @@ def of_level(kind: int, lod: int) -> Color:
 
 
 def of_error(error_px: float, pixel_error: float) -> Color:
-    """Of an error on screen beside what was asked for."""
+    """The color of an error on screen, beside what was asked for."""
     if error_px <= 0.0:
         return ORIGINAL
     share = error_px / pixel_error if pixel_error > 0.0 else float("inf")
@@ -55,12 +55,12 @@ def of_error(error_px: float, pixel_error: float) -> Color:
 
 
 def of_cost(triangles: int) -> Color:
-    """Of one occurrence."""
+    """The color of one occurrence by its triangles."""
     return next(color for most, color in _COSTS if triangles <= most)
 
 
 def colors(cut: Any, mode: str) -> list[Color]:
-    """Of each choice of a cut, in their order."""
+    """The colors of a cut's choices, in their order."""
     choices: Sequence[Any] = cut.choices()
     known: dict[Any, Color] = {}
     if mode == ERROR:
@@ -98,7 +98,7 @@ def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
 
 
 def displayed(color: Color) -> Color:
-    """As sRGB, for what draws in display values."""
+    """A color as sRGB, for what draws in display values."""
     red, green, blue = (srgb.encode(min(1.0, value)) for value in color)
     return (red, green, blue)
 

@@ -79,7 +79,7 @@ class Settings:
         return cut
 
     def stamp(self) -> dict[str, str]:
-        """What a picture's file says about how it was made: the version, the Pixel Error, and a
+        """The text in a picture's file about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
         shown = (*self.quality, self.budget, self.false_color, self.covered_only)
         shown += bent_by(self.modifiers)
@@ -91,7 +91,7 @@ class Settings:
 
 
 def bent_by(modifiers: Any) -> tuple[str, ...]:
-    """What bends quality in words, the same in every session: but for the camera when the shutter
+    """The texts of what bends quality, the same in every session: without the camera as the shutter
     closes, which belongs to a frame as its camera does."""
     if modifiers is None or modifiers == native.Modifiers(closing=modifiers.closing):
         return ()
@@ -107,7 +107,7 @@ def bent_by(modifiers: Any) -> tuple[str, ...]:
 
 @dataclass
 class Picture:
-    """What making it took; `parts` are the report's. The EXR lies at `path`."""
+    """A finished picture. The EXR lies at `path`; `parts` are the report's."""
 
     path: Path
     parts: dict[str, Any] = field(default_factory=dict)
@@ -148,7 +148,8 @@ def _cut_and_export(
 
 
 def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
-    """By uid of the object: how many occurrences draw which LOD number."""
+    """The levels that a cut draws, by uid of the object: how many occurrences draw which LOD
+    number."""
     found: dict[str, dict[int, int]] = {}
     for (item, lod), number in cut.counts().items():
         found.setdefault(model.object_summary(item).uid, {})[lod] = number

@@ -20,8 +20,8 @@ _DRAFT = 8.0  # pixels
 
 
 class Sampling(NamedTuple):
-    """What Antialiasing hands on: its kind, and how many times rougher than final it is (1 where
-    it is overridden)."""
+    """The value that Antialiasing hands on: its kind, and how many times rougher than final it is
+    (1 where it is overridden)."""
 
     kind: str
     rough: float
@@ -162,7 +162,8 @@ class Quality(NamedTuple):
     bounce_error: float
 
     def povray(self) -> dict[str, float]:
-        """As fields of the library's PovrayOptions, but antialias, which is an enum there."""
+        """The values as fields of the library's PovrayOptions, but antialias, which is an enum
+        there."""
         return {
             "antialias_threshold": self.antialias_threshold,
             "antialias_depth": self.antialias_depth,
@@ -199,7 +200,7 @@ def quality(pixel_error: float, overrides: Mapping[str, Value] | None = None) ->
 
 
 def inherits(key: str, pixel_error: float, overrides: Mapping[str, Value] | None = None) -> Value:
-    """What one control would have without its own override."""
+    """The value that one control would have without its own override."""
     others = {name: value for name, value in (overrides or {}).items() if name != key}
     return getattr(quality(pixel_error, others), key)
 

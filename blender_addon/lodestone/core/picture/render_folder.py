@@ -21,8 +21,8 @@ class RenderFolder:
 
     @contextmanager
     def use(self, kept: Path, keep: str, frame: int) -> Iterator[SceneFolder]:
-        """For one picture, as SceneFolder(kept, keep). After an exception it is kept or removed as
-        that says, and the next picture gets a new one."""
+        """Gives the folder for one picture, as SceneFolder(kept, keep). After an exception it is
+        kept or removed as that says, and the next picture gets a new one."""
         if self._held is None or self._made_for != (kept, keep):
             self.close()
             self._held = SceneFolder(kept, keep).__enter__()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the picture does not show directly: things off screen, and classes of rays (what casts its
-shadows, what its mirrors show), which may meet coarser levels than the camera sees."""
+"""The detail of what the picture does not show directly: of things off screen, and for classes of
+rays (what casts its shadows, what its mirrors show), which may meet coarser levels than the camera
+sees."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -41,9 +42,9 @@ OFF_SCREEN = tuple(one.name.lower() for one in native.OffScreen)
 
 
 class RayNumbers(NamedTuple):
-    """What a class of rays meets. `own`: how many things and groups it meets coarser; those it
-    does not, because they must be as they are, because a stand-in would shadow (or mirror) its own
-    original, and because something else is too near."""
+    """The numbers of what a class of rays meets. `own`: how many things and groups it meets
+    coarser; those it does not, because they must be as they are, because a stand-in would shadow
+    (or mirror) its own original, and because something else is too near."""
 
     ray_class: RayClass
     own: int
@@ -55,8 +56,8 @@ class RayNumbers(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Of all classes that are switched on: each one's numbers, and what POV-Ray has to keep for
-    them and the camera together."""
+    """The numbers of all classes that are switched on, and what POV-Ray has to keep for them and
+    the camera together."""
 
     classes: tuple[RayNumbers, ...]
     triangles: int
@@ -64,7 +65,7 @@ class Met(NamedTuple):
 
 
 def mask(keys: Iterable[str]) -> int:
-    """Of the classes with these settings or words."""
+    """The bits of the classes with these settings or words."""
     wanted = set(keys)
     return sum(int(one.rays) for one in CLASSES if wanted & {one.key, one.word})
 
@@ -75,7 +76,7 @@ def text_of(rays: int) -> str:
 
 
 def rays_of(text: str) -> int:
-    """Of text_of(). Raises ValueError with a sentence."""
+    """The bits of the classes that a text of text_of() names. Raises ValueError with a sentence."""
     words = text.split(",")
     known = {one.word for one in CLASSES}
     if words == [NONE]:
@@ -87,7 +88,7 @@ def rays_of(text: str) -> int:
 
 
 def met(cut: Any) -> Met | None:
-    """Of a cut; None where it was made without classes."""
+    """The numbers of a cut; None where it was made without classes."""
     modifiers = cut.view.modifiers
     wanted = modifiers.ray_classes if modifiers is not None else 0
     found, last = [], None

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view of a store would use, for panels: chosen anew when the view or the store changes."""
+"""The numbers of what a view of a store would use, for panels: chosen anew when the view or the
+store changes."""
 
 import time
 from collections.abc import Hashable
@@ -53,8 +54,8 @@ class Chooser:
         self, model: Any, key: Hashable, camera: Any, size: tuple[int, int], settings: Settings,
         triangles: int = 0, what: str = "render",
     ) -> Statistics:  # fmt: skip
-        """Of a view whose every input is in `key`. `triangles`: a budget of them, instead of the
-        settings' bytes; 0: none. Raises LodestoneError."""
+        """The statistics of a view whose every input is in `key`. `triangles`: a budget of them,
+        instead of the settings' bytes; 0: none. Raises LodestoneError."""
         if model is not self._model:
             self.close()
             self._model = model
@@ -111,7 +112,7 @@ def _originals(model: Any, camera: Any, size: tuple[int, int]) -> tuple[int, int
 
 
 def _of_originals(view: Any) -> Any:
-    """Also of what is scaled to nothing, whose levels have no error on screen: here nothing but an
-    original is good enough, however far it is."""
+    """A view that draws all originals, also of what is scaled to nothing, whose levels have no
+    error on screen: here nothing but an original is good enough, however far it is."""
     modifiers = replace(view.modifiers or native.Modifiers(), criterion=native.Criterion.DISTANCE)
     return replace(view, pixel_error=_ENDLESS, modifiers=modifiers)

@@ -58,7 +58,7 @@ def level_name(lod: int, kind: int) -> str:
 
 
 def explain(cut: Any, drawn: Any, position: int) -> Explanation:
-    """Of something that a cut was asked for by Kept.find()."""
+    """The explanation of something that a cut was asked for by Kept.find()."""
     if drawn == native.Drawn.MISSING:
         return Explanation(
             "Not in the last picture", ("It was hidden in renders, or is newer, or has moved",)
@@ -89,7 +89,8 @@ _KEPT = {
 
 
 def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
-    """What its shadow and its images in mirrors are of, where they may be coarser."""
+    """Lines about the levels that its shadow and its images in mirrors are of, where they may be
+    coarser."""
     modifiers, lines = cut.view.modifiers, []
     for one in unseen_detail.CLASSES:
         if modifiers is None or not modifiers.ray_classes & int(one.rays):
@@ -145,7 +146,7 @@ def _demand_line(what: str, demand: float) -> str:
 
 
 def _coarser_lines(cut: Any, choice: Any, reason: Any) -> list[str]:
-    """What would be seen instead, and what keeps it from being used."""
+    """Lines about the level that would be seen instead, and what keeps it from being used."""
     if not reason.coarser_object:
         return ["There is no coarser level"]
     own = reason.coarser_object == choice.object.key or reason.coarser_object == choice.object

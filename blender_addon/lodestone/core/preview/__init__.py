@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What viewports show of a store: where its objects stand, and the thread that draws them."""
+"""The preview in viewports: where objects stand in a store, and the thread that draws its
+levels."""

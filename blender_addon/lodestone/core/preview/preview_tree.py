@@ -23,7 +23,7 @@ _MOST_NESTED = 64
 
 
 class Names(NamedTuple):
-    """What a scene's things are called, to find them in a model. `collections`: by uid."""
+    """The names of a scene's things, to find them in a model. `collections`: by uid."""
 
     objects: frozenset[str]
     collections: Mapping[str, str]
@@ -161,7 +161,7 @@ def leaves_of(model: Any, root: Any) -> list[tuple[Any, int]]:
 
 
 class Change(NamedTuple):
-    """What is different about a placement from how levels were built. `world`: None: where it was.
+    """The difference of a placement from how levels were built. `world`: None: where it was.
     `importance`, `coarsest`, `pinned`: as placement_decision has them."""
 
     world: Rows | None = None

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport keeps between two redraws: the picture it shows, the next one, what is in sight.
-Without Blender and without a GPU."""
+"""The state that a viewport keeps between two redraws: the picture it shows, the next one, what is
+in sight. It needs neither Blender nor a GPU."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -13,8 +13,8 @@ Planes = list[tuple[float, float, float, float]]
 
 
 def planes_of(matrix: Sequence[Sequence[float]]) -> Planes:
-    """Of what a projection (4 x 4 rows, world to clip space) shows: a x + b y + c z + d >= 0
-    inside."""
+    """The planes around what a projection (4 x 4 rows, world to clip space) shows: a x + b y + c z
+    + d >= 0 inside."""
     last = matrix[3]
     planes = []
     for row in matrix[:3]:
@@ -35,7 +35,7 @@ def outside(planes: Planes, box: Sequence[float]) -> bool:
 
 
 class View:
-    """Of one viewport. `shown` is complete; `next` waits for its batches."""
+    """The state of one viewport. `shown` is complete; `next` waits for its batches."""
 
     def __init__(self) -> None:
         self.asked: Any = None  # key of the last Wanted
@@ -68,11 +68,11 @@ class View:
                 yield from picture.keys
 
     def line(self) -> str:
-        """What is told at the top of the viewport."""
+        """The line at the top of the viewport."""
         return "Lodestone: " + " | ".join(self.lines())
 
     def lines(self) -> list[str]:
-        """What is drawn, in words."""
+        """The lines that tell what is drawn."""
         if self.problem:
             return [self.problem]
         picture = self.shown

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the running add-on remembers of its scenes until it is disabled; never part of a file."""
+"""The memory of the running add-on about its scenes until it is disabled; never part of a file."""

@@ -19,7 +19,7 @@ Part = TypeVar("Part")
 
 
 class AddonSession:
-    """What is remembered. Dictionaries are by the name of a scene."""
+    """The memory of the running add-on. Dictionaries are by the name of a scene."""
 
     def __init__(self) -> None:
         self.changed_shapes = ChangedShapes()
@@ -32,7 +32,7 @@ class AddonSession:
         self._parts: dict[type, Any] = {}
 
     def part(self, kind: type[Part]) -> Part:
-        """What a module above core/ remembers, in a class of its own: made when first asked for.
+        """The memory of a module above core/, in a class of its own: made when first asked for.
         When it is dropped, its close() is called, if it has one."""
         if kind not in self._parts:
             self._parts.setdefault(kind, kind())

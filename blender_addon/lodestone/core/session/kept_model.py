@@ -40,8 +40,8 @@ class Kept:
         return self._model is None
 
     def cut(self, asked: Asked) -> Any:
-        """For this view; the last one when it was for the same. A budget may make the Pixel Error
-        of its `view` larger. Valid until the next call."""
+        """The cut for this view; the last one when it was for the same. A budget may make the Pixel
+        Error of its `view` larger. Valid until the next call."""
         if self._asked == asked:
             return self._cut
         if asked.budget:

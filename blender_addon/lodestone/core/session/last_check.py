@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was last found wrong in each scene, by Check Scene or by F12. Never part of the file."""
+"""The problems that were last found in a scene, by Check Scene or by F12. Never part of the
+file."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
@@ -17,7 +18,8 @@ class Check:
     _splits: dict[frozenset[str], problem_causes.Split] = field(default_factory=dict, compare=False)
 
     def split(self, ignored: Collection[str] = ()) -> problem_causes.Split:
-        """By cause; made once for the same decisions, panels ask at every redraw."""
+        """The problems by cause; made once for the same decisions, since panels ask at every
+        redraw."""
         key = frozenset(ignored)
         if key not in self._splits:
             self._splits.clear()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last picture of each scene used, for the panels. Never part of the file."""
+"""The numbers of the last picture of a scene, for the panels. Never part of the file."""
 
 from dataclasses import dataclass, field
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a store holds, for panels: read once for each state of the store, never blocking twice."""
+"""The levels in a store, for panels: read once for each state of the store, never blocking
+twice."""
 
 import shutil
 from dataclasses import dataclass

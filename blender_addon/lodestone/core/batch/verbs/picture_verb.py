@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the verbs have in common that make something for a camera: a picture or a POV-Ray scene."""
+"""The verbs that make something for a camera, and what they share: pictures or POV-Ray scenes."""
 
 import argparse
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every verb of batch.py has: its options, the job it makes of a file, its part of the run.
+"""A verb of batch.py: its options, the job it makes of a file, and its part of the run.
 
 The methods down to results() are called outside Blender, those after it inside.
 """
@@ -64,7 +64,7 @@ class Verb:
         add_common(parser)
 
     def job(self, options: argparse.Namespace, file: Path) -> FileJob:
-        """What is to be done with one of the files. Raises ValueError with a sentence."""
+        """The job for one of the files. Raises ValueError with a sentence."""
         several = len(options.files) > 1
         store = options.store or ""
         if store and several:
