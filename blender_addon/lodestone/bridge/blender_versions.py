@@ -18,7 +18,7 @@ def buffer(code: str, count: int) -> array:
 
 def smooth_faces(mesh: Any) -> array | None:
     """A byte for each face, 1 for smooth ones; None: all are flat."""
-    flags = [False] * len(mesh.polygons)  # of no array's code: lists are the fastest
+    flags = [False] * len(mesh.polygons)  # no array has this code: lists are the fastest
     mesh.polygons.foreach_get("use_smooth", flags)
     if True not in flags:
         return None

@@ -13,7 +13,7 @@ from ..core.placement_decision import UNDECIDED, Decision, decision
 from ..core.printable_text import readable
 
 
-_STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # what add-ons store, among custom properties
+_STORED_AMONG_CUSTOM = bpy.app.version < (5, 0, 0)  # where Blender keeps what add-ons store
 
 
 def name_of(thing: Any, field: str = "name") -> str:
@@ -116,7 +116,7 @@ def decision_of(datablock: Any, viewport: bool = False) -> Decision:
 
 
 def loose_parts(datablock: Any) -> str:
-    """How an object's loose parts are drawn: AUTOMATIC, ONE or OBJECTS."""
+    """The way an object's loose parts are drawn: AUTOMATIC, ONE or OBJECTS."""
     settings = settings_of(datablock)
     return AUTOMATIC if settings is None else settings.loose_parts
 

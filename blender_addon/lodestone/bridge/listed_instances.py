@@ -24,7 +24,7 @@ class Listed:
         count = len(instances)
         columns = blender_versions.buffer("f", 16 * count)
         instances.foreach_get("matrix_world", columns)
-        self.places: Rows = blender_versions.buffer("f", 12 * count)  # of all
+        self.places: Rows = blender_versions.buffer("f", 12 * count)  # 12 numbers of each instance
         for i in range(12):
             self.places[i::12] = columns[4 * (i % 4) + i // 4 :: 16]
         self._finite = math.isfinite(sum(self.places))
@@ -62,7 +62,8 @@ class Listed:
         return numbers, objects
 
     def place(self, number: int) -> Rows | None:
-        """From the instance's own frame to the world; None: it is not made of numbers."""
+        """The transform from the instance's own frame to the world; None: it is not made of
+        numbers."""
         rows = self.places[12 * number : 12 * number + 12]
         return rows if self._finite or math.isfinite(sum(rows)) else None
 

@@ -12,7 +12,7 @@ from . import datablock_ids, quality_settings
 from .datablock_ids import name_of
 
 _INHERITED = {"rna_type", "name"}
-_COMPUTED = {"environment"}  # of `role`: such ones always count as set
+_COMPUTED = {"environment"}  # properties behind `role`, which always count as set
 
 Thing = tuple[str, Any]  # "object" or "collection", the datablock
 
@@ -95,7 +95,7 @@ def _store(item: Any, uid: str) -> None:
 
 
 def _set_names(settings: Any) -> list[str]:
-    """Which of our properties the file holds a value of."""
+    """The properties of ours that the file holds a value of."""
     own = {p.identifier for p in settings.bl_rna.properties} - _INHERITED - _COMPUTED
     computed = {name for name in own if quality_settings.OWN + name in own}  # as well
     found = [name for name in sorted(own - computed) if settings.is_property_set(name)]

@@ -6,11 +6,12 @@ from typing import Any
 from ..core.picture import quality_tree, unseen_detail
 
 AUTOMATIC = "AUTOMATIC"  # the Antialiasing that inherits
-OWN = "own_"  # what is stored of a control with a number: below 0 it inherits
+OWN = "own_"  # the prefix of a stored number: below 0 the control inherits
 
 
 def overrides(settings: Any) -> dict[str, quality_tree.Value]:
-    """Those of `scene.lodestone` (or SceneSettings) that do not inherit, by key."""
+    """The overrides of `scene.lodestone` (or SceneSettings), by key: controls that do not
+    inherit."""
     found: dict[str, quality_tree.Value] = {}
     for control in quality_tree.CONTROLS:
         if control.least is None:

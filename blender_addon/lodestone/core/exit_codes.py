@@ -27,7 +27,8 @@ STATUS = {
 
 
 def of_many(codes: Iterable[int]) -> ExitCode:
-    """One file: its own code. Several: 130, 1 when any failed, 3 when any is incomplete, else 0."""
+    """The exit code of several files: 130, 1 when any failed, 3 when any is incomplete, else 0. One
+    file: its own code."""
     found = [ExitCode(code) for code in codes]
     if len(found) == 1:
         return found[0]

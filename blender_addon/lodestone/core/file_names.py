@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 LONGEST = 255  # bytes of a name in a folder
-_BESIDE = (".scene", ".log")  # what lies beside a file's folder is called so
+_BESIDE = (".scene", ".log")  # endings of what lies beside a file's folder
 
 
 def fitting(name: str, most: int = LONGEST) -> str:

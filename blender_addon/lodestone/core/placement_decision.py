@@ -9,8 +9,9 @@ _MOST_IMPORTANCE = 64.0
 
 
 class Decision(NamedTuple):
-    """`coarsest`: the largest LOD number that it may be drawn with; 0: its original, and those of
-    all in it. `apart`: it is in no group's stand-in. `pinned`: always `coarsest`, nothing finer."""
+    """A decision. `coarsest`: the largest LOD number that it may be drawn with; 0: its original,
+    and those of all in it. `apart`: it is in no group's stand-in. `pinned`: always `coarsest`,
+    nothing finer."""
 
     importance: float = 1.0
     coarsest: int = ANY_LEVEL
@@ -26,7 +27,7 @@ class Decision(NamedTuple):
             min(self.coarsest, outer.coarsest),
             self.apart or outer.apart,
         )
-        if outer.pinned or self.pinned:  # what instances it has the last word
+        if outer.pinned or self.pinned:  # the instancer has the last word
             pin = outer if outer.pinned else self
             made = made._replace(coarsest=pin.coarsest, pinned=True)
         return UNDECIDED if made == UNDECIDED else made

@@ -3,12 +3,13 @@
 
 import unicodedata
 
-_JOINERS = "\u200c\u200d"  # of Persian, Hindi and others
+_JOINERS = "\u200c\u200d"  # Persian, Hindi and others need them
 _LINES = "\r\n\t\u2028\u2029"
 
 
 def printable(text: str) -> str:
-    """On one line, and without what steers a terminal or turns the direction of reading."""
+    """The text on one line, and without what steers a terminal or turns the direction of
+    reading."""
 
     def shown(c: str) -> str:
         if c in _LINES:
@@ -20,7 +21,7 @@ def printable(text: str) -> str:
 
 
 def valid(text: str) -> str:
-    """Without what UTF-8, and so Blender, cannot hold: paths may be any bytes."""
+    """The text without what UTF-8, and so Blender, cannot hold: paths may be any bytes."""
     return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 

@@ -118,7 +118,7 @@ def headline(found: Split) -> str:
 
 
 def exact_line(exact: int, total: int) -> str:
-    """How many materials are drawn exactly; "" where there are none."""
+    """A line that tells how many materials are drawn exactly; "" where there are none."""
     if total == 0:
         return ""
     percent = 100 if exact == total else min(99, round(100 * exact / total))

@@ -12,14 +12,16 @@ from .printable_text import valid
 INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)
 KINDS = ("material", "object", "light", "camera", "world", "collection", "image", "library")
-TEXTS_PER_CODE = 16  # of one thing: a bound for hostile data
+TEXTS_PER_CODE = 16  # for one thing: a bound for hostile data
 
 Subject = tuple[str, str, str]  # kind, library, name
 
 
 @dataclass(frozen=True)
 class Problem:
-    """`object` is the user's name of the thing, "" for the setup; `code` is snake_case and stable.
+    """A problem. `object` is the user's name of the thing, "" for the setup; `code` is snake_case
+    and stable. `kind` is one of KINDS or "", `library` the path the thing is linked from, "" for a
+    local one.
 
     `kind` is one of KINDS or "", `library` the path the thing is linked from, "" for a local one.
     """
@@ -44,7 +46,8 @@ class Problem:
 
     @property
     def cause(self) -> tuple[str, str, str]:
-        """Equal for problems that differ in nothing but the thing that has them."""
+        """The cause, which is equal for problems that differ in nothing but the thing that has
+        them."""
         return (self.severity, self.code, self.message.replace(f'"{self.object}"', '""'))
 
     @cached_property
@@ -94,7 +97,7 @@ class Problems:
             self.add(item.object, severity, item.code, item.message)
 
     def keep(self, wanted: Callable[[Problem], bool]) -> None:
-        """Forgets the others."""
+        """Keeps the wanted problems and forgets the others."""
         kept = [problem for problem in self._order if wanted(problem)]
         self._found, self._order = {}, []
         self.extend(kept)
@@ -107,7 +110,7 @@ class Problems:
 
     @property
     def wrong(self) -> list[Problem]:
-        """Those that make the picture wrong or incomplete."""
+        """The problems that make the picture wrong or incomplete."""
         return [problem for problem in self if problem.severity == ERROR]
 
 

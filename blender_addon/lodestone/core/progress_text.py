@@ -3,7 +3,7 @@
 
 
 def clock(seconds: float) -> str:
-    """0:07, 12:30, 1:02:03."""
+    """A duration: 0:07, 12:30, 1:02:03."""
     total = max(0, int(seconds))
     minutes, second = divmod(total, 60)
     hours, minute = divmod(minutes, 60)
@@ -11,7 +11,7 @@ def clock(seconds: float) -> str:
 
 
 def count(number: float) -> str:
-    """812, 41.3 k, 1.2 M, 3.4 G: three figures at most."""
+    """A number in three figures at most: 812, 41.3 k, 1.2 M, 3.4 G."""
     for size, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
         if number >= size:
             value = number / (1e3 if unit == " k" else size)
@@ -49,7 +49,8 @@ class StageClock:
         self.tail = ""
 
     def line(self, stage: str, now: float, fraction: float | None = None) -> str:
-        """`now` in seconds of any steady clock; fraction 0...1 of the stage when it is known."""
+        """The line for a stage. `now` is in seconds of any steady clock; `fraction` is 0...1 of the
+        stage when it is known."""
         if stage != self._stage:
             if self._stage:
                 self._parts.append(f"{self._stage} {clock(now - self._since)}")

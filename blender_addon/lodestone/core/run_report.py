@@ -117,7 +117,7 @@ def write(path: str | Path, report: dict[str, Any]) -> None:
     target = Path(path)
     handle, name = tempfile.mkstemp(dir=target.parent or ".", prefix=".report-")
     try:
-        # What is no UTF-8 in a path becomes JSON's own escape: reading gives the path again
+        # Bytes that are no UTF-8 in a path become JSON's own escapes: reading gives the path again
         with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
             json.dump(report, file, indent=1, ensure_ascii=False)
             file.write("\n")
@@ -129,6 +129,6 @@ def write(path: str | Path, report: dict[str, Any]) -> None:
 
 
 def _umask() -> int:
-    """Without setting it: another thread may be making a file."""
+    """The umask, found without setting it: another thread may be making a file."""
     with open("/proc/self/status", encoding="ascii", errors="replace") as lines:
         return next(int(line.split()[1], 8) for line in lines if line.startswith("Umask:"))

@@ -12,4 +12,4 @@ def decode(encoded: float) -> float:
     return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
 
 
-DECODED = [decode(value / 255.0) for value in range(256)]  # of bytes
+DECODED = [decode(value / 255.0) for value in range(256)]  # the linear values of bytes

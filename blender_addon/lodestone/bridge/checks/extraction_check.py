@@ -10,7 +10,7 @@ from ..datablock_ids import name_of
 from ..scene.leaf_objects import DRAWN, material_slots, override_of, undrawn
 from ..scene.scene_extraction import Extraction
 
-TOLERANCE = 1e-5  # of the largest number in a transform
+TOLERANCE = 1e-5  # a share of the largest number in a transform
 
 # Data, materials by slot, size: triangles of a mesh, strands of hair, 1 of a point
 Key = tuple[str, tuple[str, ...], int]

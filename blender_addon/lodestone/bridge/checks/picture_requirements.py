@@ -56,7 +56,7 @@ def grease_pencil(problems: Problems) -> None:
 
 
 def povray(program: str, problems: Problems) -> None:
-    """`program` as in the preferences."""
+    """Looks for POV-Ray; `program` as in the preferences."""
     try:
         native.povray_find(program or None)
     except native.LodestoneError as error:
@@ -64,7 +64,7 @@ def povray(program: str, problems: Problems) -> None:
 
 
 def folder(store: Path, problems: Problems) -> None:
-    """Where levels and scene files go."""
+    """Looks at the folder where levels and scene files go."""
     for needed in (store, store.parent):  # the scene files lie beside the levels
         if not store_path.writable(needed):
             text = f"Cannot write into {needed}: levels and scene files have no place"
@@ -73,7 +73,7 @@ def folder(store: Path, problems: Problems) -> None:
 
 
 def names(data: Any, problems: Problems) -> None:
-    """`data` is Blender's."""
+    """Looks for names that cannot be read; `data` is Blender's."""
     for item in unreadable(data):
         name_unreadable(item, problems)
 
@@ -100,7 +100,8 @@ def datablocks(data: Any) -> Iterator[Any]:
 
 
 def libraries(found: Iterable[Any], blend: str, problems: Problems) -> None:
-    """`blend` is the path of the open file, to which Blender keeps library paths relative."""
+    """Looks for libraries that are missing. `blend` is the path of the open file, to which Blender
+    keeps library paths relative."""
     for library in found:
         path = library.filepath
         if path.startswith("//"):

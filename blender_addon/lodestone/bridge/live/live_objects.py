@@ -41,7 +41,7 @@ class Reader:
     """Reads evaluated objects for some time, each mesh once."""
 
     def __init__(self, depsgraph: Any, room: int) -> None:
-        """`room`: how many triangles there may be."""
+        """`room` is the number of triangles that there may be."""
         self._depsgraph = depsgraph
         self._room = room
         self._model = native.Model()
@@ -49,7 +49,7 @@ class Reader:
         self._materials: dict[int, int] = {}
         self._placed: list[tuple[Any, Any]] = []
         self.names: set[str] = set()  # that were read
-        self.too_much: set[str] = set()  # of those, what there was no room for
+        self.too_much: set[str] = set()  # the names for which there was no room
         self.triangles = 0
 
     def read(self, items: Mapping[str, Any], seconds: float) -> "LiveThing | None":
@@ -102,7 +102,7 @@ class Reader:
             item = self._model.add_faces(uid, "", buffers, indices)
             return item, buffers.triangle_count
         except (RuntimeError, native.LodestoneError):
-            return None  # what F12 names as unreadable
+            return None  # F12 names it as unreadable
 
     def _material(self, material: Any | None) -> int:
         key = 0 if material is None else material.as_pointer()
@@ -123,7 +123,7 @@ class Reader:
 
 
 def expected_world(item: Any) -> tuple[float, ...]:
-    """Where an evaluated object puts what it shows, as the levels' placements have it."""
+    """The place where an evaluated object puts what it shows, as the levels' placements have it."""
     matrix = item.matrix_world
     if item.type == "EMPTY" and item.instance_type == "COLLECTION":
         collection = item.instance_collection

@@ -136,14 +136,14 @@ def lens_objects(scene: Any) -> list[Any]:
 
 
 def rendered_lenses(scene: Any) -> list[Any]:
-    """Without those whose collections are excluded or hidden from renders."""
+    """The lenses of a scene without those whose collections are excluded or hidden from renders."""
     found = lens_objects(scene)
     rendered = rendered_objects(list(scene.view_layers)) if found else {}
     return [item for item in found if item in rendered]
 
 
 def _hashable(settings: Settings) -> Hashable:
-    """Equal for settings that choose the same."""
+    """A value that is equal for settings that choose the same."""
     modifiers = settings.modifiers
     bent: Hashable = None
     if modifiers is not None:

@@ -17,7 +17,7 @@ from ..motion.motion_sampling import Motion
 from . import live_objects
 from .shape_fingerprints import Fingerprints
 
-READ_S = 0.03  # of a redraw, for reading what is drawn as it is
+READ_S = 0.03  # seconds of a redraw, for reading what is drawn as it is
 _states = itertools.count(1)
 _SHOWN = live_objects.GEOMETRY | {"EMPTY", "CURVES", "POINTCLOUD"}
 
@@ -71,8 +71,8 @@ class Scene:
         self._tree = Tree()
         self._deforming: dict[str, bool] = {}
         self._live: list[_Portion] = []
-        self._again: set[str] = set()  # of what is live, to be read anew
-        self._inner: dict[str, Any] = {}  # of one refresh()
+        self._again: set[str] = set()  # names of live objects, to be read anew
+        self._inner: dict[str, Any] = {}  # for one refresh()
         self.stale = True  # refresh() has something to do
 
     def changed(self, depsgraph: Any) -> None:

@@ -11,7 +11,7 @@ NEAREST = 1e-4  # metres: a near clip that is none
 
 
 def of_screen(screen: Any) -> tuple[Any, tuple[int, int]] | None:
-    """(camera, size in pixels) of the largest 3D view of a screen; None: it has none."""
+    """The camera and the size in pixels of the largest 3D view of a screen; None: it has none."""
     areas = [area for area in (screen.areas if screen else ()) if area.type == "VIEW_3D"]
     if not areas:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects move or change their shape in the course of an animation.
+"""The objects that move or change their shape in the course of an animation.
 
 What moves is not grouped with what rests, and nothing stands in for what changes its shape: levels
 would be those of one frame. `Motion` tells from how objects are animated, which errs towards
@@ -54,7 +54,7 @@ class Motion:
         return self._may_deform(item) and not self._found_still(item, "shape")
 
     def moves(self, item: Any) -> bool:
-        """Its place may differ."""
+        """Whether its place may differ."""
         return self._may_move(item) and not self._found_still(item, "place")
 
     def emits_anew(self, item: Any) -> bool:
@@ -190,7 +190,8 @@ def _targets(modifier: Any) -> Iterable[Any]:
 
 
 class Still(Motion):
-    """Nothing changes, or what does is to be simplified in each frame anew."""
+    """The motion of a scene in which nothing changes, or what does is to be simplified in each
+    frame anew."""
 
     def deforms(self, item: Any) -> bool:
         return False

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where things are when the shutter closes: for drawing coarser what crosses the picture fast."""
+"""The places of things when the shutter closes: for drawing coarser what crosses the picture
+fast."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -48,7 +49,8 @@ def read(
 
 
 def _moved(place: tuple[float, ...], start: Matrix, stop: Matrix) -> tuple[float, ...] | None:
-    """None for what had no volume: nobody could tell how it moves."""
+    """The place after the move from start to stop; None for what had no volume: nobody could tell
+    how it moves."""
     matrix = Matrix((place[0:4], place[4:8], place[8:12], (0.0, 0.0, 0.0, 1.0)))
     try:
         return tuple(rows(stop @ start.inverted() @ matrix))

@@ -20,14 +20,14 @@ from .node_expressions import Note, Sample, VertexColor
 from .texture_coordinates import IDENTITY_2D, Coordinates, between
 
 _REPEAT = native.Extension.REPEAT
-_MOST_REPEATS = 4  # of a picture within the baked one: more would lose its detail
+_MOST_REPEATS = 4  # a picture may repeat within the baked one: more would lose its detail
 _MOST_STEPS = 200
 _EXACT = 1e-4
 _COARSE = 8.0  # a range that 256 steps show badly
 
 
 def main_coordinates(values: Iterable[Expression]) -> Coordinates | None:
-    """Those of the first image that has any."""
+    """The coordinates of the first image that has any."""
     for value in values:
         for leaf in e.leaves(value):
             if isinstance(leaf, Sample) and leaf.coordinates.kind != "NONE":
@@ -36,7 +36,7 @@ def main_coordinates(values: Iterable[Expression]) -> Coordinates | None:
 
 
 class Textures:
-    """One material's, at the coordinates its slot will carry."""
+    """The textures of one material, at the coordinates its slot will carry."""
 
     def __init__(self, pictures: Any, note: Note, coordinates: Coordinates | None) -> None:
         self._pictures = pictures
@@ -77,7 +77,7 @@ class Textures:
     # ---- Leaves that cannot be followed ----
 
     def _followed(self, value: Expression) -> Expression:
-        """With the mean of every leaf that is looked up elsewhere in its place."""
+        """The value with the mean of every leaf that is looked up elsewhere in its place."""
         strangers = []
         for leaf in e.leaves(value):
             if isinstance(leaf, VertexColor):
@@ -115,7 +115,7 @@ class Textures:
         if baked is not None:
             texture = replace(baked, scale=scale, offset=offset)
             return Value((0.5, 0.5, 0.5), texture)
-        # What cannot be baked together: all but the first image count as their means
+        # These cannot be baked together: all but the first image count as their means
         leaves = e.leaves(value)
         names = ", ".join(f'"{leaf.source.name}"' for leaf in leaves[1:])
         if len(leaves) < 2:
@@ -127,7 +127,8 @@ class Textures:
     def _in_range(
         self, inner: Expression, scale: Color, offset: Color
     ) -> tuple[Expression, Color, Color]:
-        """offset + scale * inner with an inner of 0...1: a picture holds nothing else."""
+        """The same value as offset + scale * inner with an inner of 0...1: a picture holds nothing
+        else."""
         low, high = e.bounds(inner)
         if -_EXACT <= low and high <= 1.0 + _EXACT:
             return inner, scale, offset
@@ -143,7 +144,8 @@ class Textures:
         return inner, (wide[0], wide[1], wide[2]), (moved[0], moved[1], moved[2])
 
     def _baked(self, inner: Expression, number: bool) -> TextureUse | None:
-        """None when its images repeat differently, or it is too much."""
+        """The texture of a picture that is baked; None when its images repeat differently, or it is
+        too much."""
         samples = e.leaves(inner)
         base = samples[0]
         moved = [_seen_from(base, sample) for sample in samples]
@@ -197,7 +199,7 @@ def _seen_from(base: Sample, sample: Sample) -> Sample | None:
 
 
 def _split(value: Expression, of_alpha: bool) -> tuple[Expression, VertexColor | None]:
-    """Without the vertex color (or its alpha) that multiplies it."""
+    """The value without the vertex color (or its alpha) that multiplies it, and this."""
     if value.op == Op.TEXEL and isinstance(value.leaf, VertexColor) and not of_alpha:
         return e.ONE, value.leaf
     if of_alpha and value.op == Op.CHANNEL and value.value[0] == 3.0:

@@ -52,7 +52,7 @@ class ImageMeans:
         self._means: dict[int, Color | None] = {}
 
     def mean(self, image: Any) -> Color | None:
-        """None when the image cannot be read."""
+        """The mean color of an image; None when it cannot be read."""
         key = image.as_pointer()
         if key not in self._means:
             self._means[key] = _mean(image)

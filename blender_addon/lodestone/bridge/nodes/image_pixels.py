@@ -13,7 +13,7 @@ class Pixels(NamedTuple):
     values: array  # 'f'
     channels: int
     encoded: bool  # in sRGB
-    floats: bool  # of an image that is not made of bytes
+    floats: bool  # the image is not made of bytes
 
 
 def read_pixels(image: Any) -> Pixels | None:

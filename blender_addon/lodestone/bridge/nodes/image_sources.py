@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the pixels of a Blender image are, found without reading them."""
+"""The sources of the pixels of Blender's images, found without reading them."""
 
 import os
 import re
@@ -30,7 +30,7 @@ class Source:
     name: str
     kind: str
     key: int = 0  # the image's pointer
-    path: str = ""  # of a FILE
+    path: str = ""  # the path of a FILE
     frame: int = 0
     linear: bool = False
     data: bool = False
@@ -125,7 +125,7 @@ def _frame_of(user: Any, frame: int) -> int:
 
 
 def _frame_path(path: str, number: int) -> str:
-    """With the last digits of its name replaced, as many as there were or more."""
+    """The path with the last digits of its name replaced, as many as there were or more."""
     folder, name = os.path.split(path)
     stem, ending = os.path.splitext(name)
     found = re.search(r"(\d+)(\D*)$", stem)

@@ -84,8 +84,8 @@ class Look:
     vertex_colors: VertexColors | None = None
     other: "Look | None" = None
     mix: Value = gray(0.0)
-    coordinates: Coordinates | None = None  # of all its textures; None: it has none
-    # What it emits in the mean, all its surfaces together: of the bridge alone
+    coordinates: Coordinates | None = None  # those of all its textures; None: it has none
+    # The mean light of all its surfaces together, which the bridge alone uses
     radiance: Color = field(default=(0.0, 0.0, 0.0), compare=False)
 
 
@@ -125,7 +125,7 @@ def add(model: Any, pictures: Any, name: str, look: Look) -> int:
 
 
 def _texture(pictures: Any, use: TextureUse) -> Any | None:
-    """None when its picture cannot be had after all."""
+    """The texture of a use; None when its picture cannot be had after all."""
     if isinstance(use.picture, Baked):
         baked = use.picture
         samples = [

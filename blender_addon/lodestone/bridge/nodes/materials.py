@@ -105,7 +105,7 @@ class Materials:
 
 
 class _Translator:
-    """One material's way from its output node to a look."""
+    """The way of one material from its output node to a look."""
 
     def __init__(
         self, material: Any, problems: Problems, pictures: Any, frame: int, color: Color | None
@@ -245,7 +245,7 @@ class _Translator:
         )
 
     def _alpha(self, alpha: Expression, textures: Textures) -> tuple[Value, int, float]:
-        """Its value, mode and cutoff: what is compared with a constant is cut there."""
+        """The alpha as value, mode and cutoff: what is compared with a constant is cut there."""
         if alpha.op == Op.GREATER:
             value, limit = alpha.args
             if value.constant:  # below: turned over
@@ -275,7 +275,7 @@ def _has_texture(look: Look) -> bool:
 
 
 def _vertex_colors(look: Look | None) -> list[VertexColors]:
-    """Those of all surfaces that are mixed."""
+    """The vertex colors of all surfaces that are mixed."""
     found = []
     while look is not None:
         if look.vertex_colors is not None:

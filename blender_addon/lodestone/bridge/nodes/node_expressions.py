@@ -201,7 +201,7 @@ class NodeExpressions:
         return e.ONE if output.name == "Is Camera Ray" else e.ZERO
 
     def _fresnel(self, node: Any, output: Any, groups: tuple, depth: int) -> Expression:
-        """Their means over the directions a surface is seen from."""
+        """The mean of a Fresnel or Layer Weight node over the directions a surface is seen from."""
         self._note(WARNING, "fresnel", f"{node.bl_label} is drawn as its mean")
         if node.type == "FRESNEL":
             ior = max(1.0, mean_of(self.number(node.inputs["IOR"], groups, depth))[0])

@@ -19,7 +19,7 @@ LAMBERT = e.number(0.45)
 
 
 class Shaders:
-    """One material's. `viewport` is what it looks like without nodes."""
+    """The shaders of one material. `viewport` is what it looks like without nodes."""
 
     def __init__(self, values: NodeExpressions, note: Note, viewport: Surface) -> None:
         self._values = values
@@ -227,7 +227,7 @@ class Shaders:
         return self.bumped(under, height, size)
 
     def bumped(self, under: Relief, height: Expression, size: float) -> Relief:
-        """`under` with a height of `size` metres from 0 to 1 on it."""
+        """The relief `under` with a height of `size` metres from 0 to 1 on it."""
         if height.constant:
             if not height.exact:
                 self._note(WARNING, "bump", "bumps of what is drawn as its mean are left out")

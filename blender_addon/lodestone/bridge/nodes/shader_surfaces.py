@@ -50,12 +50,12 @@ class Mixed:
 
     first: Surface
     second: "Surface | Mixed"
-    share: Expression  # of the second
+    share: Expression  # the share of the second surface
 
 
 @dataclass(frozen=True)
 class Clear:
-    """Nothing: what is behind is seen."""
+    """A surface that is none: what is behind is seen."""
 
 
 Shader = Surface | Mixed | Clear
@@ -85,7 +85,7 @@ def mixed(first: Shader, second: Shader, share: Expression, note: Note, pictures
 
 
 def surfaces(shader: Shader) -> list[tuple[Surface, Expression]]:
-    """(surface, share of all that follows it)"""
+    """The surfaces, each with its share of all that follows it."""
     if isinstance(shader, Clear):
         return [(Surface(alpha=e.ZERO), e.ZERO)]
     chain = []

@@ -53,7 +53,7 @@ class Unknown(Exception):
 
 
 def of_image_node(node: Any, groups: tuple) -> Mapped:
-    """Where an image texture node looks its image up. Raises Unknown."""
+    """The coordinates at which an image texture node looks its image up. Raises Unknown."""
     base, matrix = _follow(node.inputs["Vector"], groups, Matrix())
     matrix = _texture_mapping(node.texture_mapping) @ matrix
     projection = PROJECTIONS.get(node.projection, Projection.FLAT)
@@ -161,7 +161,7 @@ def _mapping(kind: str, place: Vector, turn: Matrix, scale: Vector) -> Matrix:
 
 
 def _texture_mapping(mapping: Any) -> Matrix:
-    """That of the texture node itself, seldom used."""
+    """The mapping of the texture node itself, seldom used."""
     if (mapping.mapping_x, mapping.mapping_y, mapping.mapping_z) != ("X", "Y", "Z"):
         raise Unknown("swapped axes")
     place, scale = Vector(mapping.translation), Vector(mapping.scale)
@@ -196,7 +196,8 @@ def _vector_math(node: Any, groups: tuple) -> tuple[Matrix, Any]:
 
 
 def between(base: Rows, other: Rows) -> Rows | None:
-    """From the pictures' coordinates of one 2x3 to those of another; None when it is singular."""
+    """The transform from the pictures' coordinates of one 2x3 to those of another; None when it is
+    singular."""
     determinant = base[0] * base[4] - base[1] * base[3]
     if abs(determinant) < 1e-12:
         return None

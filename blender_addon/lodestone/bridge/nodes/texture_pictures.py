@@ -15,7 +15,7 @@ Texel = tuple[float, float, float, float]
 
 
 class Pictures:
-    """Those of one model."""
+    """The pictures of one model."""
 
     def __init__(self, model: Any) -> None:
         self._model = model

@@ -21,8 +21,8 @@ from .plain_objects import Plain
 from .shown_instances import Context, Emitted, Entry, offset
 
 IDENTITY: Rows = array("f", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
-ROUNDING = 1e-6  # of the largest number in a transform: Blender's are 32-bit
-MOST_CHILDREN = 64  # of an emitter's group: more are grouped by position
+ROUNDING = 1e-6  # a share of the largest number in a transform: Blender's are 32-bit
+MOST_CHILDREN = 64  # in an emitter's group: more are grouped by position
 _ORIGINAL, _OBJECT = attrgetter("original"), attrgetter("object")
 
 
@@ -98,7 +98,7 @@ class _Taken:
 
     def own(self, collection: Any) -> list[Any]:
         """The collection's own objects that belong to no earlier one; takes them."""
-        objects = collection.objects  # of an original collection all are originals
+        objects = collection.objects  # all are originals where the collection is one
         found = list(map(_ORIGINAL, objects) if collection.is_evaluated else objects)
         if found:
             self._before.update(self._last)
@@ -275,8 +275,8 @@ class Groups:
         return placements
 
     def _emitter(self, entry: Entry) -> Any:
-        """Its group of instances. In every context that shows it they are the same but for
-        rounding, which must not keep the contexts from sharing one group."""
+        """The group of an emitter's instances. In every context that shows it they are the same but
+        for rounding, which must not keep the contexts from sharing one group."""
         known = self._emitters.setdefault(entry.object.original, [])
         for emitted, group in known:
             if _same_but_for_rounding(emitted, entry.emitted):

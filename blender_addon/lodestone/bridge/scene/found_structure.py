@@ -57,7 +57,7 @@ def found_groups(extraction: Any, group: Any, collection: Any, known: int) -> Fo
                 inner = below(child)
                 if len(inner.members) + len(inner.groups) > 1:
                     found.groups.append(inner)
-                else:  # what else is in it is no object of the collection's own
+                else:  # other things in it are no objects of the collection's own
                     found.members += inner.members
                     found.groups += inner.groups
                 continue

@@ -21,15 +21,15 @@ from ...core.native import lodestone_native as native
 from ...core.problems import WARNING, Problems, Subject
 from .. import blender_versions, datablock_ids
 
-MOST_FACES = 4096  # of a mesh that is looked at
+MOST_FACES = 4096  # a mesh with more is not looked at
 MOST_FLAT = 6  # sides of a body
-MOST_LIGHTS = 24  # of a scene, the strongest: each costs rays at every point of the picture
+MOST_LIGHTS = 24  # the strongest of a scene: each costs rays at every point of the picture
 LEAST = 0.01  # radiance that lights something
-NAMED = 1.0  # what glows brighter, and shines on nothing, is named
+NAMED = 1.0  # things that glow brighter, and shine on nothing, are named
 _SAME_PLANE = 0.9994  # cosine of 2 degrees
-_FULL = 0.8  # a rectangle is 1, a disk 1.05, a triangle .87 of the rectangle of its inertia
-_ROUND = 0.4  # 36 pi V^2 / A^3: a ball is 1, a cube .52
-_ABOVE = 2e-3  # of a light's size, from the faces that it stands for
+_FULL = 0.8  # a rectangle is 1, a disk 1.05, a triangle 0.87 of the rectangle of its inertia
+_ROUND = 0.4  # 36 pi V^2 / A^3: a ball is 1, a cube 0.52
+_ABOVE = 2e-3  # a share of a light's size, from the faces that it stands for
 Triangle = tuple[Vector, Vector, Vector]
 
 
@@ -135,7 +135,7 @@ def _normal(triangle: Triangle) -> Vector:
 
 
 class Glows:
-    """Those of one scene."""
+    """The glows of one scene."""
 
     def __init__(self) -> None:
         self._lights: list[tuple[Part, native.Light]] = []
@@ -217,8 +217,8 @@ def _areas(sides: list[list[Triangle]], closed: bool) -> list[native.Light] | No
 
 
 def _fitted(side: list[Triangle]) -> tuple[Vector, Vector, Vector, Vector, bool] | None:
-    """(center, normal, edge u, edge v, round) of a rectangle or an ellipse with the area and the
-    inertia of flat faces."""
+    """A rectangle or an ellipse with the area and the inertia of flat faces: (center, normal, edge
+    u, edge v, round)."""
     areas = [((b - a).cross(c - a)).length / 2.0 for a, b, c in side]
     area = sum(areas)
     if not area > 0.0 or not math.isfinite(area):

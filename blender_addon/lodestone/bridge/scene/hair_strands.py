@@ -80,8 +80,8 @@ def _radii(settings: Any, keys: list) -> list[float]:
 
 
 def _shaped(left: float, shape: float) -> float:
-    """How much of the root's radius is left with this share of the hair to go: `shape` -1 keeps it
-    to the tip, 0 lets it fall evenly, 1 loses it at once."""
+    """The share of the root's radius that is left with this share of the hair to go: `shape` -1
+    keeps it to the tip, 0 lets it fall evenly, 1 loses it at once."""
     if left <= 0.0 or left >= 1.0:
         return min(max(left, 0.0), 1.0)
     if shape < 0.0:
@@ -108,7 +108,7 @@ def curves(data: Any) -> Any:
 
 
 def point_cloud(data: Any) -> list[tuple[tuple[float, float, float], float]]:
-    """(center, radius) of every point with a size, in the cloud's frame."""
+    """The points of a cloud that have a size, (center, radius) of each, in the cloud's frame."""
     count = len(data.points)
     places = array("f", bytes(12 * count))
     data.points.foreach_get("co", places)

@@ -17,7 +17,7 @@ from .glowing_faces import Glow, glow_of
 DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
 UNDRAWN = {"VOLUME": "volumes"}
 GREASE_PENCIL = "GPENCIL"  # Blender draws it over the picture of any engine
-HAIR = "hair"  # of particles; also in the names of leaves
+HAIR = "hair"  # the hair of particles; also in the names of leaves
 POINT = "point"
 MOST_IN_PLACE = 1_000_000  # corners of meshes that are not copied: Blender keeps 12 MB for them
 Color = tuple[float, float, float, float]
@@ -251,7 +251,8 @@ class Leaves:
         return self._uids.claim(base)
 
     def _name(self, shown: Any, owner: Any, slots: list) -> tuple[str, str]:
-        """Its uid and name: a shared mesh's own, else those of the object that shows it."""
+        """The uid and name of a leaf: a shared mesh's own, else those of the object that shows
+        it."""
         if shown.type != "MESH" or owner.type != "MESH":
             return datablock_ids.uid_of("object", owner), name_of(owner)
         if shown.data.as_pointer() != owner.data.as_pointer():  # made by nodes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects show which material: noted on the way to the leaves, whoever makes them."""
+"""The objects that show each material: noted on the way to the leaves, whoever makes them."""
 
 from collections import defaultdict
 from collections.abc import Iterable

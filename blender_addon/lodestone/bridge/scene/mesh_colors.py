@@ -12,8 +12,8 @@ from .mesh_uvs import corners_of_slots
 
 
 def vertex_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array | None:
-    """[vertex][4], linear, where one attribute of the vertices is all that is wanted, as it is most
-    often; None: ask for corner_colors()."""
+    """Colors [vertex][4], linear, where one attribute of the vertices is all that is wanted, as it
+    is most often; None: ask for corner_colors()."""
     kinds = _kinds(wanted)
     attribute = blender_versions.color_attribute(mesh, kinds[0].name)
     if len(kinds) > 1 or attribute is None or attribute.domain != "POINT":
@@ -22,8 +22,8 @@ def vertex_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array | N
 
 
 def corner_colors(mesh: Any, wanted: Sequence[VertexColors | None]) -> array:
-    """[corner][4], linear, by slot; white where a slot wants none. An attribute the mesh lacks is
-    black, as in Blender."""
+    """Colors [corner][4], linear, by slot; white where a slot wants none. An attribute the mesh
+    lacks is black, as in Blender."""
     kinds = _kinds(wanted)
     if len(kinds) == 1:  # the other slots do not look at them
         return _colors(mesh, kinds[0])

@@ -15,7 +15,8 @@ from ..nodes.texture_coordinates import Coordinates
 
 
 def corner_uvs(mesh: Any, buffers: Any, shown: Any, wanted: Sequence[Coordinates | None]) -> array:
-    """[corner][2]; `wanted` by slot. A uv layer the mesh lacks is 0 everywhere, as in Blender."""
+    """Texture coordinates [corner][2]; `wanted` by slot. A uv layer the mesh lacks is 0 everywhere,
+    as in Blender."""
     kinds = list(dict.fromkeys(item for item in wanted if item is not None))
     uvs = blender_versions.buffer("f", 2 * len(mesh.loops))
     for number, item in enumerate(item for item in kinds if item.kind == "UV"):
@@ -66,7 +67,8 @@ def _layer(mesh: Any, name: str) -> Any | None:
 
 
 def _undeformed(mesh: Any) -> array:
-    """Where Blender takes generated coordinates from: positions before deforming modifiers."""
+    """The positions that Blender takes generated coordinates from: those before deforming
+    modifiers."""
     points = blender_versions.buffer("f", 3 * len(mesh.vertices))
     mesh.vertices.foreach_get("undeformed_co", points)
     return points
@@ -98,7 +100,7 @@ def frames(world: Matrix, wanted: Sequence[Any]) -> tuple[float, ...]:
 
 
 def placed(wanted: Sequence[Any], world: Matrix) -> list[Any]:
-    """With coordinates in the object's own frame for those in another one's."""
+    """The wanted coordinates, in the object's own frame for those in another one's."""
     return [_placed(item, world) for item in wanted]
 
 
@@ -114,7 +116,7 @@ def _placed(item: Any, world: Matrix) -> Any:
 
 
 def frame_of(world: Matrix, wanted: Coordinates) -> Matrix:
-    """From an object's own frame to that of the object its coordinates are of."""
+    """The transform from an object's own frame to that of the object its coordinates are of."""
     return world if wanted.frame is None else wanted.frame.matrix_world.inverted_safe() @ world
 
 

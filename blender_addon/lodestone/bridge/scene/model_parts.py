@@ -19,7 +19,7 @@ class Parts:
         self._found[key] += items
 
     def add_each(self, names: list[str], items: list[Any]) -> None:
-        """One item of each of these local objects."""
+        """Notes one item for each of these local objects."""
         self._columns.append((names, items))
 
     def get(self, key: Key, otherwise: Any = None) -> Any:

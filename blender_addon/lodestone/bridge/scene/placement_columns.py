@@ -53,7 +53,7 @@ class Placements:
 
     @property
     def key(self) -> tuple:
-        """Equal for placements that are equal in everything."""
+        """A value that is equal for placements that are equal in everything."""
         objects = b"".join(map(bytes, self.objects))
         decisions = tuple(sorted(self.decisions.items()))
         columns = (self.transforms.tobytes(), tuple(self.names), tuple(self.hidden), decisions)

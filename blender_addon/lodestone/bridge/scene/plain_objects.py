@@ -21,8 +21,8 @@ from ..motion.motion_sampling import Motion
 from .leaf_objects import MATERIAL
 
 _BATCH = 4096  # objects between two ticks
-_OWN = {"library": None, "animation_data": None, "is_instancer": False}  # of what is plain
-_FREE = {"parent": None, "rigid_body": None, **_OWN}  # of most of it: nothing moves it
+_OWN = {"library": None, "animation_data": None, "is_instancer": False}  # what plain objects have
+_FREE = {"parent": None, "rigid_body": None, **_OWN}  # what most of them have: nothing moves them
 _SEEN = {"is_holdout": False, "is_shadow_catcher": False} | dict.fromkeys(
     (
         "visible_camera",
@@ -144,8 +144,8 @@ def _names(objects: list[Any]) -> list[str]:
 def _made_of(
     objects: list[Any], looks: Iterable[tuple[Any, bool]]
 ) -> Iterator[tuple[tuple, Iterable[int]]]:
-    """(mesh, whether marked, materials) of objects whose meshes and marks are `looks`, and the
-    positions of those that are made of these."""
+    """The kinds of objects whose meshes and marks are `looks`, as (mesh, whether marked,
+    materials), with the positions of those that are made of these."""
     alike: defaultdict[tuple, list[int]] = defaultdict(list)
     for position, look in enumerate(looks):
         alike[look].append(position)

@@ -14,7 +14,7 @@ from ..listed_instances import rows
 from . import scene_camera as cameras
 
 DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
-MOST = 1024  # what the backend takes
+MOST = 1024  # the backend takes no more
 MOST_FILTERED = 64
 FULL = native.OffScreen.FULL.name
 
@@ -38,7 +38,7 @@ def detail(
     for item in objects:
         if item.type != "EMPTY":
             continue
-        # Of the evaluated ones: an animation being rendered writes no keys into originals
+        # The evaluated ones count: an animation being rendered writes no keys into originals
         if not is_lens(item) or item.hide_render:
             continue
         lens = item.lodestone.lens

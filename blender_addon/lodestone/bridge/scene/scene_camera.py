@@ -10,8 +10,8 @@ from ...core.native import lodestone_native as native
 from ...core.problems import INFO, WARNING, Problems
 from ..datablock_ids import name_of
 
-_CLIP_START = 0.101  # metres; new cameras have .1, so who has more wants something cut away
-_PICTURE = {"Image", "Alpha"}  # of what the compositor can read of a view layer
+_CLIP_START = 0.101  # metres; new cameras have 0.1, so who has more wants something cut away
+_PICTURE = {"Image", "Alpha"}  # the passes of a view layer that there are for the compositor
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def focus_distance(camera: Any) -> float:
 
 
 def _focus_place(dof: Any) -> Vector:
-    """Where the focus object is, or the bone of it that is named."""
+    """The place of the focus object, or of the bone of it that is named."""
     item = dof.focus_object
     bone = item.pose.bones.get(dof.focus_subtarget) if item.pose else None
     return (item.matrix_world @ bone.matrix if bone else item.matrix_world).translation

@@ -46,7 +46,7 @@ class Extraction:
     lights: int = 0
     parts: Parts = field(default_factory=Parts)
     shown_by: Shown = field(default_factory=Shown)
-    moving: list[Moving] = field(default_factory=list)  # of what an animation moves
+    moving: list[Moving] = field(default_factory=list)  # the things that an animation moves
 
     @cached_property
     def users(self) -> dict[Subject, tuple[Subject, ...]]:
@@ -67,10 +67,10 @@ def extract(
     still: dict[str, list[str]] | None = None,
     structured: bool = True,
 ) -> Extraction:
-    """`tick()` is called between meshes; what it raises stops the extraction. `still`: what
-    motion.sample() found out. `structured`: flat collections get groups below them, unless the
-    designer wants none. A scene that shows nothing gives a model whose root group is empty.
-    """
+    """Reads a scene into a model. `tick()` is called between meshes; what it raises stops the
+    extraction. `still`: what motion.sample() found out. `structured`: flat collections get groups
+    below them, unless the designer wants none. A scene that shows nothing gives a model whose root
+    group is empty."""
     with _without_garbage_collection():
         return _extract(depsgraph, tick, still, structured)
 
@@ -84,7 +84,7 @@ def _extract(
     scene = depsgraph.scene_eval
     settings = datablock_ids.settings_of(
         depsgraph.scene
-    )  # of the original: writing them tags nothing
+    )  # those of the original: writing them tags nothing
     anew = settings is not None and settings.deforming == "FRAME"
     motion = Still() if anew else Motion(still)
     model, problems, uids = native.Model(), Problems(), datablock_ids.Uids()
@@ -172,7 +172,7 @@ def walked(
 ) -> Walk:
     """`leaves` are Leaves, or what takes their place where nothing is to be extracted; `listed` is
     what takes the place of all that the depsgraph lists."""
-    roles = datablock_ids.Roles(depsgraph.scene)  # of the original: writing them tags nothing
+    roles = datablock_ids.Roles(depsgraph.scene)  # those of the original: writing them tags nothing
     branch = collection_groups.scene_branch(depsgraph.scene_eval, depsgraph.view_layer_eval, roles)
     users = Users(leaves)
     visibility = Visibility(depsgraph.view_layer_eval, problems)

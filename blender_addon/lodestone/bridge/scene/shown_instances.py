@@ -28,19 +28,21 @@ from .plain_objects import Plain, find
 from .ray_visibility import RayClass, Visibility
 
 END = 2147483647  # fills the unused rest of a persistent_id
-Emitted = tuple[Leaf, Rows, int, Decision]  # what, where, hidden from which ray classes
+Emitted = tuple[
+    Leaf, Rows, int, Decision
+]  # a leaf, its place, the ray classes it is hidden from, its decision
 _ORIGINAL = attrgetter("original")
 
 
 class Entry:
     """One object in one context: what of it is shown there."""
 
-    # What most have, and so need not be given
+    # The values that most have, and so need not be given
     leaf: Leaf | None = None
     hidden = 0  # from these ray classes
     holdout = False
-    hair: Leaf | None = None  # of its particle systems
-    content: "Context | None" = None  # of the collection it instances
+    hair: Leaf | None = None  # the hair of its particle systems
+    content: "Context | None" = None  # that of the collection it instances
     emitted: list[Emitted] | tuple = ()
     decision = UNDECIDED
     pending = False  # shown, but no mesh: converted when nothing else shows it
@@ -66,7 +68,7 @@ class Context:
     environment: set[Any]  # originals of objects whose collections are environment
     holdout: bool = False  # all of it
     entries: dict[Any, Entry] = field(default_factory=dict)  # by original
-    plain: Plain = field(default_factory=Plain)  # what has no entry: instances nothing, is in place
+    plain: Plain = field(default_factory=Plain)  # objects without an entry: they instance nothing
     inverse: Matrix | None = None
 
 
@@ -92,13 +94,13 @@ class Instances:
         self._motion = motion
         self._problems = problems
         self._tick = tick
-        self._host: Any = None  # what instances the instance at hand
+        self._host: Any = None  # the object that instances the instance at hand
         self._paths: dict[tuple, Entry | None] = {}
         self._collections: dict[int, tuple[list[Any], set[Any]]] = {}
-        self._hidden: dict[Any, tuple[int, bool]] = {}  # of emitted objects: hidden, holdout
+        self._hidden: dict[Any, tuple[int, bool]] = {}  # emitted objects: hidden, holdout
         self._looks: dict[Any, Look] = {}  # by original, but for what the context adds
         self._keys: dict[Any, datablock_ids.Key] = {}  # by original
-        self._decisions: dict[Any, Decision] = {}  # of emitted objects, by original
+        self._decisions: dict[Any, Decision] = {}  # those of emitted objects, by original
 
     def walk(self, listed: Listed, environment: set[Any]) -> None:
         """`environment`: originals of the objects that an environment collection holds."""
@@ -210,7 +212,7 @@ class Instances:
         if leaf.glow is None:
             return 0
         hidden = entry.hidden | (0 if _is_self(entry, owner) else self._seen(owner)[0])
-        if hidden & RayClass.RADIOSITY:  # what lights nothing in Cycles
+        if hidden & RayClass.RADIOSITY:  # it lights nothing in Cycles
             return 0
         return self.glows.add(leaf.glow, matrix, name_of(owner))
 
@@ -379,7 +381,7 @@ class Instances:
 
 
 def offset(collection: Any) -> Matrix:
-    """From a collection's own space to that of its instancer."""
+    """The transform from a collection's own space to that of its instancer."""
     return Matrix.Translation(-collection.instance_offset)
 
 

@@ -21,9 +21,10 @@ class Unknown(Exception):
 
 
 class SkyNodes:
-    """`texel(image, u, v)` gives the linear color of an image there, or None. `approximated`:
-    sentences by code on what of the nodes was followed only nearly. `suns`: those of sky textures;
-    while one is `lit_by`, its sky has the sun's light in place of its own."""
+    """A world's nodes as functions. `texel(image, u, v)` gives the linear color of an image there,
+    or None. `approximated`: sentences by code on what of the nodes was followed only nearly.
+    `suns`: those of sky textures; while one is `lit_by`, its sky has the sun's light in place of
+    its own."""
 
     def __init__(self, texel: Callable[[Any, float, float], Value | None]) -> None:
         self._texel = texel

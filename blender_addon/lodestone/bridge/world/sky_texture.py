@@ -30,7 +30,8 @@ _NISHITA: list[tuple[float, Color, Color]] = [
 
 @dataclass(frozen=True)
 class SkySun:
-    """`direction` to it; irradiance in W/m^2 as Cycles has it; angle in radians across."""
+    """The sun of a sky: `direction` to it; irradiance in W/m^2 as Cycles has it; angle in radians
+    across."""
 
     direction: tuple[float, float, float]
     light: Color
@@ -45,7 +46,7 @@ def mean_of_sky(node: Any) -> Color:
 
 
 def sun_of_sky(node: Any) -> SkySun | None:
-    """None when it has none or it is below the horizon."""
+    """The sun of a sky texture node; None when it has none or it is below the horizon."""
     if node.sky_type != "NISHITA" or not node.sun_disc or node.sun_intensity <= 0.0:
         return None
     red, green, blue = (node.sun_intensity * c for c in _at(node.sun_elevation, 2))

@@ -21,9 +21,9 @@ from ..nodes.node_values import NodeValues
 from .sky_nodes import SkyNodes, Unknown
 from .sky_texture import mean_of_sky
 
-MOST_BACKGROUNDS = 16  # of one world
-WIDTH, HEIGHT = 128, 64  # of the image that nodes are drawn into
-_READ = {"PNG", "JPEG", "OPEN_EXR"}  # what the backend reads itself
+MOST_BACKGROUNDS = 16  # in one world
+WIDTH, HEIGHT = 128, 64  # the size of the image that nodes are drawn into
+_READ = {"PNG", "JPEG", "OPEN_EXR"}  # formats that the backend reads itself
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class _Reader:
         return World((0.0, 0.0, 0.0), self._model.add_picture(name_of(self._world), data=data))
 
     def _add_suns(self, nodes: SkyNodes, light: "Light") -> None:
-        """Those of skies as lights, as far as the nodes behind let their light through."""
+        """Adds the suns of skies as lights, as far as the nodes behind let their light through."""
         for sun in nodes.suns:
             nodes.lit_by = sun
             color = _in_range(light(Vector(sun.direction)))

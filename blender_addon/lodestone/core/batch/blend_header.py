@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which Blender wrote a file, as far as its first bytes tell."""
+"""The version of Blender that wrote a file, as far as its first bytes tell."""
 
 import re
 
 
 def version(path: str) -> tuple[int, int] | None:
-    """(4, 2) of a file of Blender 4.2; None of a compressed file, and of anything else."""
+    """The version, as (4, 2) for Blender 4.2; None for a compressed file, and for anything else."""
     try:
         with open(path, "rb") as file:
             head = file.read(17)
@@ -20,6 +20,7 @@ def version(path: str) -> tuple[int, int] | None:
 
 
 def written_by(path: str) -> str:
-    """` (written by Blender 4.2)`, or nothing: for the end of a sentence."""
+    """The version in words for the end of a sentence, as " (written by Blender 4.2)"; "" where it
+    is not known."""
     known = version(path)
     return f" (written by Blender {known[0]}.{known[1]})" if known else ""

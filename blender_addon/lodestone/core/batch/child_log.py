@@ -10,7 +10,8 @@ LAST_LINES = 20
 
 
 class ChildLog:
-    """Where `path` cannot be written, only the last lines are kept, in memory."""
+    """A log of bounded size. Where `path` cannot be written, only the last lines are kept, in
+    memory."""
 
     def __init__(self, path: Path) -> None:
         self._file = None

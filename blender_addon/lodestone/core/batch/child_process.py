@@ -108,8 +108,8 @@ class Child:
             process_session.kill(self.pid)
 
     def stop(self, cause: str, explanation: str, grace_s: float) -> None:
-        """Asks it to stop, so that it clears up; watch() kills it when it does not. A second call
-        only shortens the time."""
+        """Asks the child to stop, so that it clears up; watch() kills it when it does not. A second
+        call only shortens the time."""
         if not self.cause:
             self.cause, self.explanation = cause, explanation
             self._process.send_signal(signal.SIGTERM)

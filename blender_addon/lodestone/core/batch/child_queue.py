@@ -20,13 +20,14 @@ class Task(Protocol):
     """Something to do in a child."""
 
     def start(self) -> Child | None:
-        """None: there is nothing to do, or it cannot be started; it has said so."""
+        """Starts the child. None: there is nothing to do, or it cannot be started; it has said
+        so."""
 
     def look(self) -> None:
         """Called at every tick while its child runs."""
 
     def finish(self) -> None:
-        """Its child has ended."""
+        """Called when its child has ended."""
 
 
 class Interrupts:
@@ -54,7 +55,7 @@ class Interrupts:
 
 
 class Queue:
-    """`slots`: how many children at once."""
+    """Runs tasks in their children. `slots`: how many children at once."""
 
     def __init__(self, tasks: Iterable[Task], slots: int, interrupts: Interrupts) -> None:
         self._waiting = list(tasks)

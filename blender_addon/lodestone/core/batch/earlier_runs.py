@@ -70,7 +70,7 @@ def _finished(report: Any) -> bool:
 
 
 def outputs(paths: Iterable[str]) -> list[list[Any]]:
-    """[path, stamp] of what was made, for a line of the log."""
+    """The results, [path, stamp] of each, for a line of the log."""
     return [[path, input_stamps.stamp(path)] for path in paths]
 
 

@@ -21,7 +21,9 @@ class PictureRequest:
     camera: str = ""
     pixel_error: float | None = None
     antialias: str | None = None
-    overrides: dict[str, float] = field(default_factory=dict)  # of quality_tree.py's controls
+    overrides: dict[str, float] = field(
+        default_factory=dict
+    )  # by the keys of quality_tree.py's controls
     budget: int | None = None  # bytes of POV-Ray's scene
     off_screen: str | None = None  # these two as unseen_detail.py's words
     ray_classes: str | None = None
@@ -35,7 +37,7 @@ class PictureRequest:
         return self.pixel_error > 0.0 or bool(self.budget)
 
     def for_frame(self, frame: int) -> "PictureRequest":
-        """out.png -> out_0001.png"""
+        """The request for one frame: out.png becomes out_0001.png."""
         path = Path(self.out)
         name = fitting(f"{path.stem}_{frame:04}", LONGEST - len(os.fsencode(path.suffix)))
         return replace(self, out=str(path.with_name(name + path.suffix)))
@@ -61,7 +63,7 @@ class FileJob:
     skip: tuple[str, ...] = ()
     thumbnail: str = ""
     supervisor: int = 0  # process id of batch.py
-    version: str = ""  # of Lodestone
+    version: str = ""  # Lodestone's
 
     def wanted(self) -> Iterator[tuple[int | None, PictureRequest]]:
         """Each picture with its frame (None: the file's own), in the order of the report."""
@@ -77,7 +79,7 @@ class FileJob:
         return len(self.pictures) > 1 or self.frames is not None
 
     def key(self) -> str:
-        """Equal for jobs that make the same things from the same input."""
+        """A text that is equal for jobs that make the same things from the same input."""
         values = asdict(self)
         for of_a_run in ("report", "threads", "program", "skip", "thumbnail", "supervisor", "keep"):
             del values[of_a_run]

@@ -59,7 +59,7 @@ class Surroundings:
 
 @dataclass(eq=False)
 class FileTask:
-    """`report` is there after start() returned None or after finish()."""
+    """The task of one file. `report` is there after start() returned None or after finish()."""
 
     number: int
     job: FileJob
@@ -181,7 +181,7 @@ class FileTask:
         try:
             with open(self._folder.path / run_report.EVENTS, "rb") as file:
                 file.seek(self._read)
-                lines = file.read().split(b"\n")[:-1]  # what follows is not whole yet
+                lines = file.read().split(b"\n")[:-1]  # the last one is not whole yet
         except OSError:
             return
         for line in lines:
@@ -235,7 +235,7 @@ class FileTask:
         if code not in _QUIET:
             made["log"] = self._keep("log", ".log") or ""
         elif code == ExitCode.DONE:
-            self._place(".log").unlink(missing_ok=True)  # of an earlier failure
+            self._place(".log").unlink(missing_ok=True)  # the log of an earlier failure
         thumbnail = self._keep("thumbnail.jpg", ".jpg")
         if thumbnail:
             made["thumbnail"] = thumbnail
@@ -305,7 +305,8 @@ class FileTask:
 def _take_over_problems(
     job: FileJob, made: dict[str, Any], pictures: dict[str, dict[str, Any]]
 ) -> None:
-    """Those of pictures that are not of this Blender's report: they count all the same."""
+    """Takes over the problems of pictures that are not in this Blender's report: they count all the
+    same."""
     problems = made.setdefault("problems", [])
     known = {(problem["object"], problem["code"]) for problem in problems}
     for out, picture in pictures.items():

@@ -36,8 +36,8 @@ a{color:#8bf}th,td{border-bottom-color:#444}.folder,small{color:#999}}
 
 
 def page(rows: Iterable[Row], title: str, about: str, target: Path, running: int = 0) -> str:
-    """`about` is one line on the run; `target` is where the page will lie, which links are relative
-    to; `running`: how many files are still to come."""
+    """The page as text. `about` is one line on the run; `target` is where the page will lie, which
+    links are relative to; `running`: how many files are still to come."""
     rows = list(rows)
     compared = any(row.compared for row in rows)
     still = f" Still running: {running} to come." if running else ""
@@ -185,6 +185,6 @@ def _link(path: str, target: Path) -> str:
     relative = os.path.relpath(path, os.path.abspath(target.parent))
     try:
         name = os.fsencode(relative)
-    except UnicodeEncodeError:  # of no file of this system
+    except UnicodeEncodeError:  # no file of this system has such a name
         name = relative.encode("utf-8", "replace")
     return escape("./" + quote(name), quote=True)

@@ -20,12 +20,12 @@ def read(blend: str, others: Iterable[str], tick: Callable[[], None] = lambda: N
 
 
 def stamps(paths: Iterable[str]) -> list[list[Any]]:
-    """[path, stamp] of each."""
+    """The stamps of some paths, [path, stamp] of each."""
     return [[path, stamp(path)] for path in sorted({p for p in paths if p})[:_MOST_OTHERS]]
 
 
 def hash_file(path: str, tick: Callable[[], None] = lambda: None) -> str:
-    """`tick` is called between parts, and may raise."""
+    """The hash of a file's bytes. `tick` is called between parts, and may raise."""
     found = hashlib.blake2b(digest_size=16)
     with open(path, "rb") as file:
         while data := file.read(_CHUNK):
@@ -35,7 +35,7 @@ def hash_file(path: str, tick: Callable[[], None] = lambda: None) -> str:
 
 
 def stamp(path: str) -> list[int] | None:
-    """[bytes, time of the last change in ns]; None when there is nothing."""
+    """The stamp of a file, [bytes, time of the last change in ns]; None when there is nothing."""
     if "<" in path and ">" in path and not os.path.exists(path):
         return _stamp_of_many(path)
     try:

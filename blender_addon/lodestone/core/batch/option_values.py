@@ -33,8 +33,8 @@ def size(text: str) -> tuple[int, int]:
 
 
 def memory(text: str) -> int:
-    """Bytes of 8G, 500M, 1.5GB, 2GiB or a plain number: powers of 1000 as reports have them, with
-    an i of 1024."""
+    """The bytes that are meant by 8G, 500M, 1.5GB, 2GiB or a plain number: powers of 1000 as
+    reports have them, with an i of 1024."""
     found = re.fullmatch(r"(\d{1,12}(?:\.\d{1,6})?)\s?([KMGT]?)(i?)B?", text, re.IGNORECASE)
     power = "KMGT".find(found[2].upper()) + 1 if found and found[2] else 0
     bytes_ = int(float(found[1]) * (1024 if found[3] else 1000) ** power) if found else 0
@@ -78,7 +78,7 @@ def control(wanted: Control) -> Callable[[str], float]:
 
 
 def off_screen(text: str) -> str:
-    """One of unseen.OFF_SCREEN."""
+    """One of the words in unseen_detail.OFF_SCREEN."""
     if text not in unseen_detail.OFF_SCREEN:
         raise argparse.ArgumentTypeError(
             f"{text!r} is none of {', '.join(unseen_detail.OFF_SCREEN)}"

@@ -80,7 +80,7 @@ def _state_and_session(pid: str) -> tuple[str, int]:
 
 
 def measure(pids: Iterable[int]) -> list[Member]:
-    """Those that are still there."""
+    """The memory of those processes that are still there."""
     found = []
     for pid in pids:
         try:

@@ -9,7 +9,7 @@ from typing import Any
 
 from .views_file import size_text
 
-# What belongs to one run and never to a profile
+# These belong to one run and never to a profile
 ONE_RUN = ("files", "help", "html", "json", "log", "out", "profile", "resume", "views")
 
 

@@ -60,7 +60,8 @@ class Compared(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """`status` is the report's, or why it was stopped; numbers are None where there is none."""
+    """One file in the table and on the page. `status` is the report's, or why it was stopped;
+    numbers are None where there is none."""
 
     file: str
     code: ExitCode
@@ -143,7 +144,7 @@ def table(rows: Iterable[Row]) -> str:
 
 
 def tally(rows: Iterable[Row]) -> str:
-    """3 of 20 failed, 1 incomplete, 16 done"""
+    """The sum in words, as "20 files: 3 failed, 1 incomplete, 16 done"."""
     found = list(rows)
     numbers = {
         "failed": sum(row.failed for row in found),

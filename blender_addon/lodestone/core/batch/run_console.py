@@ -12,7 +12,7 @@ from .report_rows import Row
 
 
 class Console:
-    """`total` files are to be done."""
+    """Prints the lines of a run of `total` files."""
 
     def __init__(self, total: int) -> None:
         self._total = total
@@ -54,7 +54,7 @@ class Console:
             if picture.get("picture"):
                 self.line(printable(picture["picture"]))
         compared = Row.of(report).compared
-        if compared and self._total == 1:  # of several the table tells
+        if compared and self._total == 1:  # the table tells it where there are several
             self.line(compared.sentence)
         if self._total > 1:
             took = f" in {progress_text.clock(report['wall_s'])}" if "wall_s" in report else ""

@@ -87,13 +87,14 @@ def overrides_of(values: Mapping[str, Any]) -> dict[str, float]:
 
 
 def budget_of(values: Mapping[str, Any]) -> int | None:
-    """Bytes. Raises argparse.ArgumentTypeError."""
+    """The budget in bytes. Raises argparse.ArgumentTypeError."""
     said = values.get("budget")
     return None if said is None else option_values.memory(str(said))
 
 
 def unseen_of(values: Mapping[str, Any]) -> dict[str, str | None]:
-    """How fine what is not seen directly is asked for. Raises argparse.ArgumentTypeError."""
+    """The detail that is asked for of what is not seen directly. Raises
+    argparse.ArgumentTypeError."""
     said = ((key, values.get(key)) for key in ("off_screen", "ray_classes"))
     return {k: None if v is None else getattr(option_values, k)(str(v)) for k, v in said}
 
@@ -107,5 +108,5 @@ def _possible(name: str) -> bool:
 
 
 def size_text(value: Any) -> str:
-    """[640, 360] or "640x360" as the command line has it."""
+    """The text of a size, [640, 360] or "640x360", as the command line has it."""
     return "x".join(str(v) for v in value) if isinstance(value, list) else str(value)

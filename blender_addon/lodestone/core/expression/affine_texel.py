@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which expressions are offset + scale * one image's texel, as the backend's textures are."""
+"""Affine expressions: those that are offset + scale * one image's texel, as the backend's textures
+are."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +14,8 @@ _SAME = 1e-9
 
 @dataclass(frozen=True)
 class Affine:
-    """offset + scale * (the leaf's texel, or one channel of it), by channel of color."""
+    """An expression offset + scale * (the leaf's texel, or one channel of it), by channel of
+    color."""
 
     leaf: Any
     channel: int = Channel.COLOR
@@ -28,7 +30,7 @@ class Affine:
 
 
 def affine(a: Expression) -> Affine | None:
-    """None when it is none, a constant included."""
+    """The affine form of an expression; None when it has none, a constant included."""
     found: dict[int, Affine | Color | None] = {}
     for item in walk(a):
         found[id(item)] = _of(item, [found[id(arg)] for arg in item.args])
@@ -37,7 +39,8 @@ def affine(a: Expression) -> Affine | None:
 
 
 def peeled(a: Expression) -> tuple[Expression, Color, Color]:
-    """(inner, scale, offset): a = offset + scale * inner, without the constants around it."""
+    """The parts (inner, scale, offset) of a = offset + scale * inner, without the constants around
+    it."""
     scale, offset = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
     while len(a.args) == 2 and (a.args[0].constant or a.args[1].constant):
         first = a.args[0].constant

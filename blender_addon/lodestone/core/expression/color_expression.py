@@ -16,7 +16,7 @@ from ..native import lodestone_native as native
 
 Op = native.BakeOp
 Color = tuple[float, float, float]
-WEIGHTS = (0.2126, 0.7152, 0.0722)  # of luma
+WEIGHTS = (0.2126, 0.7152, 0.0722)  # luma, ITU-R BT.709
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,8 +148,8 @@ def leaves(a: Expression) -> list[Any]:
 
 
 def replaced(a: Expression, by: Callable[[Any, bool], Expression | None]) -> Expression:
-    """With by(leaf, False) in the place of the color of every leaf for which it is not None, and
-    by(leaf, True) in the place of its alpha."""
+    """The expression with by(leaf, False) in the place of the color of every leaf for which it is
+    not None, and by(leaf, True) in the place of its alpha."""
     done: dict[int, Expression] = {}
     for item in walk(a):
         new = None
@@ -182,7 +182,7 @@ def bounds(a: Expression) -> tuple[float, float]:
     found: dict[int, tuple[float, float]] = {}
     for item in walk(a):
         low, high = _bounds(item, [found[id(arg)] for arg in item.args])
-        unknown = math.isnan(low) or math.isnan(high)  # of infinities
+        unknown = math.isnan(low) or math.isnan(high)  # differences of infinities
         found[id(item)] = (-math.inf, math.inf) if unknown else (low, high)
     return found[id(a)]
 

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a model and a camera to a picture: its controls, its cost, what it drew and why."""
+"""The making of a picture from a model and a camera: its controls, its cost, what it drew and
+why."""

@@ -16,8 +16,8 @@ STEPS = (compare_plan.ORIGINALS, compare_plan.LEVELS)
 
 @dataclass
 class Compared:
-    """`pictures`: of the originals, of the levels; their EXRs lie at `paths`. `image`: the
-    difference in false colors, top row first."""
+    """Two pictures and their difference. `pictures`: of the originals, of the levels; their EXRs
+    lie at `paths`. `image`: the difference in false colors, top row first."""
 
     pictures: tuple[Picture, ...]
     paths: tuple[Path, ...]

@@ -108,7 +108,7 @@ class Plan:
         return image
 
     def picture(self, step: int) -> Path:
-        """Where a step's picture lies."""
+        """The path of a step's picture."""
         return self.root / f"{WORDS[step]}.exr"
 
     def _shown(self, step: int) -> Path:

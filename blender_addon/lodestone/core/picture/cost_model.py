@@ -32,10 +32,10 @@ _BLURRED = {  # with depth of field, instead of these; measured, on a sharp floo
     native.Antialias.FINAL: 45.0,
     native.Antialias.REFERENCE: 153.0,
 }
-_START_S = 0.6  # of the clock, whatever is rendered
+_START_S = 0.6  # seconds by the clock, whatever is rendered
 _EMPTY_BYTES, _PIXEL_BYTES = 18e6, 16
 _LEAST_S = 0.05  # shorter times tell nothing
-_MOST = 100.0  # what differs by more was disturbed
+_MOST = 100.0  # a picture whose ratio is larger was disturbed
 _MOST_BYTES = 4096
 
 
@@ -81,7 +81,7 @@ class Work:
     def of(
         cls, summary: Any, view: Any, lights: int, antialias: int, threads: int, quality: Any
     ) -> "Work":
-        """`quality`: what shades it, a quality_tree.Quality."""
+        """The work of a cut. `quality`: what shades it, a quality_tree.Quality."""
         width, height = view.border[2:] if view.border[2] else (view.width, view.height)
         threads = threads or len(os.sched_getaffinity(0))
         whole = (view.width, view.height)
@@ -109,7 +109,8 @@ def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
 
 
 def learn(work: Work, measured: Any, before: Ratios) -> Ratios:
-    """From a finished picture; `measured` has parse_cpu_s, trace_cpu_s and peak_bytes."""
+    """The ratios that a finished picture teaches; `measured` has parse_cpu_s, trace_cpu_s and
+    peak_bytes."""
     plain = predict(work)
     empty = predict(Work(0, 1, 0, work.width, work.height, 0, work.antialias, 1)).peak_bytes
 

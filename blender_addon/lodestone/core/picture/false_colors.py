@@ -103,5 +103,5 @@ def displayed(color: Color) -> Color:
     return (red, green, blue)
 
 
-# Of sRGB bytes, for bytes.translate()
+# The linear values of sRGB bytes, for bytes.translate()
 LINEAR = bytes(round(255.0 * linear) for linear in srgb.DECODED)

@@ -16,7 +16,7 @@ _SIDE, _GAP, _LINE, _EDGE = 8, 10, 13, 4  # in pixels of the letters
 def laid_out(
     entries: Sequence[tuple[str, Color]], width: int, scale: int
 ) -> list[tuple[int, int, str, Color]]:
-    """(left, line, word, color) of each entry, in pixels of a picture so wide."""
+    """The places (left, line, word, color) of the entries, in pixels of a picture so wide."""
     found, left, line = [], _EDGE, 0
     for word, color in entries:
         needed = _SIDE + 3 + bitmap_letters.width(word)

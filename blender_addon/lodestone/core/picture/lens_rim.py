@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a lens fades towards its rim, for drawing it. The factor itself is the backend's."""
+"""The rim of a lens, towards which it fades, for drawing it. The factor itself is the backend's."""
 
 import math
 
@@ -7,7 +7,7 @@ _STEPS = 48
 
 
 def half_way(falloff: float) -> float:
-    """Where half of its effect is left, as a share of its radius: 1 for a hard rim."""
+    """The place where half of its effect is left, as a share of its radius: 1 for a hard rim."""
     if not falloff > 0.0:
         return 1.0
     return 2.0 / math.pi * math.acos(0.5 ** (1.0 / falloff))

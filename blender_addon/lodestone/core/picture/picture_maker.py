@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share this."""
+"""The way from a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share
+this."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -24,9 +25,9 @@ POVRAY_KINDS = sum(
 
 @dataclass(frozen=True)
 class Settings:
-    """How a picture is made; pixel_error 0 draws the originals. `overrides`: of the controls below
-    it, as quality_tree.quality() takes them. `budget`: what POV-Ray's scene may take, in bytes; 0:
-    any number."""
+    """The settings of a picture; pixel_error 0 draws the originals. `overrides`: of the controls
+    below it, as quality_tree.quality() takes them. `budget`: the bytes that POV-Ray's scene may
+    take; 0: any number."""
 
     pixel_error: float = 1.0
     overrides: Mapping[str, quality_tree.Value] = field(default_factory=dict)
@@ -223,7 +224,9 @@ def remove_others(folder: Path, used: set[str]) -> None:
 
 
 class SceneFolder:
-    """Where scene files go: `keep` is NEVER, FAILED or ALWAYS. A context; `path` names it.
+    """The folder of scene files: `keep` is NEVER, FAILED or ALWAYS. A context; `path` names it.
+    Files that are not kept are removed on leaving; those of a failed picture stay for the user to
+    look at.
 
     What is not kept is removed on leaving; a failed one stays for the user to look at.
     """
@@ -243,7 +246,7 @@ class SceneFolder:
             self._kept.mkdir(exist_ok=True)
             self._hold = locked_folder.Hold(self._kept)
         else:
-            locked_folder.settle(parent, name)  # what a killed run left
+            locked_folder.settle(parent, name)  # the folders of killed runs
             self._locked = locked_folder.LockedFolder(parent, name)
             self.path = self._locked.path
         return self

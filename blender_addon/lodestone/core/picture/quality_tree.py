@@ -13,7 +13,7 @@ Value = Union[float, int, str]
 
 ROOT = "pixel_error"
 MOST_PIXELS = 1024.0
-# Of Antialiasing: one sample a pixel; more where neighbors differ; 16 everywhere
+# The kinds of Antialiasing: one sample a pixel; more where neighbors differ; 16 everywhere
 OFF, ADAPTIVE, REFERENCE = "OFF", "FINAL", "REFERENCE"
 _FEWEST_PIXELS = 0.25  # nothing finer shows
 _DRAFT = 8.0  # pixels
@@ -28,8 +28,8 @@ class Sampling(NamedTuple):
 
 
 class Control(NamedTuple):
-    """`inherited(parent)`: its value below a parent's. `least` and `most` of what may be asked for;
-    None for words."""
+    """A control of quality. `inherited(parent)`: its value below a parent's. `least` and `most`:
+    the bounds of what may be asked for; None for words."""
 
     key: str
     label: str
@@ -51,7 +51,7 @@ def _textures(error: float) -> float:
 
 
 def _halvings(error: float) -> int:
-    """How often 1 is doubled to reach it, rounded up; 0 below."""
+    """The number of times that 1 is doubled to reach an error, rounded up; 0 below."""
     return math.ceil(math.log2(error)) if error > 1.0 else 0
 
 
@@ -72,7 +72,7 @@ def _indirect(sampling: Sampling) -> int:
 
 
 def _bounces(sampling: Sampling) -> int:
-    """Only where asked for: it takes several times as long."""
+    """The number of bounces, only where asked for: they take several times as long."""
     return 0
 
 
@@ -83,7 +83,7 @@ def _bounce_rays(sampling: Sampling) -> int:
 
 
 def _bounce_error(sampling: Sampling) -> float:
-    """How far POV-Ray uses gathered light again."""
+    """The error up to which POV-Ray uses gathered light again."""
     if sampling.kind == REFERENCE:
         return 0.4
     return 1.0 if sampling.kind == OFF else min(1.0, 0.6 * math.sqrt(sampling.rough))

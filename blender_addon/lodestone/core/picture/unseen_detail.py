@@ -10,7 +10,8 @@ from ..native import lodestone_native as native
 
 
 class RayClass(NamedTuple):
-    """`key`: the setting of a scene that switches it on. `word`: the command line's."""
+    """A class of rays. `key`: the setting of a scene that switches it on. `word`: the command
+    line's."""
 
     key: str
     word: str
@@ -71,7 +72,7 @@ def mask(keys: Iterable[str]) -> int:
 
 
 def text_of(rays: int) -> str:
-    """shadow,reflection as the command line has it; none."""
+    """The names of classes of rays, "shadow,reflection" as the command line has it; "none"."""
     return ",".join(one.word for one in CLASSES if rays & int(one.rays)) or NONE
 
 

@@ -17,8 +17,8 @@ _ENDLESS = 1e300  # metres
 
 @dataclass(frozen=True)
 class Statistics:
-    """`*_before`: of the originals. `pixel_error`: what a budget made of it. `choose_s`: how long
-    choosing took. `bytes`: of all that any ray meets."""
+    """The numbers of a view. `*_before`: those of the originals. `pixel_error`: the one that a
+    budget made of it. `choose_s`: how long choosing took. `bytes`: of all that any ray meets."""
 
     triangles_before: int
     triangles: int

@@ -29,14 +29,15 @@ _DOT = "\N{MIDDLE DOT}"
 
 @dataclass(frozen=True)
 class Explanation:
-    """`title` names what is drawn, `lines` say why, the most telling first."""
+    """The reasons for one thing. `title` names what is drawn, `lines` say why, the most telling
+    first."""
 
     title: str
     lines: tuple[str, ...] = ()
 
 
 def pixels(value: float) -> str:
-    """0.9 px, 19 px, 1,200 px."""
+    """An error in words: 0.9 px, 19 px, 1,200 px."""
     if not math.isfinite(value):
         return "\N{INFINITY} px"
     if value >= 10.0:
@@ -107,7 +108,7 @@ def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
 
 
 def _main_line(reason: Any, asked: float) -> str:
-    """41 m · 11 mm = 0.9 px ≤ 1 px."""
+    """The line with the numbers of the choice, as "41 m · 11 mm = 0.9 px ≤ 1 px"."""
     error = reason.error * reason.stretch
     text = f"{metres(reason.z)} {_DOT} {progress_text.length(error)}"
     text += f" = {pixels(reason.error_px)}"

@@ -16,7 +16,7 @@ from ..placement_decision import ANY_LEVEL
 Rows = tuple[float, ...]  # row-major 3x4
 
 IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-INSTANCES, HAIR = " instances", " hair"  # what is appended to an object's name
+INSTANCES, HAIR = " instances", " hair"  # appended to an object's name
 ALL_RAYS = 15
 NOT_FORCED = -1
 _MOST_NESTED = 64
@@ -50,9 +50,9 @@ class Slot(NamedTuple):
 
 @dataclass
 class Tree:
-    """`objects`: slots in the scene itself, by name. `inner`: of objects in instanced collections.
-    `collections`: of collections, wherever they are, by uid. `lost`: slots in the scene of
-    which no object is left."""
+    """The places of a scene's things in a model. `objects`: slots in the scene itself, by name.
+    `inner`: of objects in instanced collections. `collections`: of collections, wherever they are,
+    by uid. `lost`: slots in the scene of which no object is left."""
 
     objects: dict[str, list[Slot]] = field(default_factory=dict)
     inner: dict[str, list[Slot]] = field(default_factory=dict)
@@ -77,7 +77,7 @@ def multiply(a: Rows, b: Rows) -> Rows:
 
 
 def inverse(a: Rows) -> Rows | None:
-    """None: it flattens."""
+    """The inverse of a transform; None: it flattens."""
     (a0, a1, a2, ax), (b0, b1, b2, bx), (c0, c1, c2, cx) = a[0:4], a[4:8], a[8:12]
     x, y, z = b1 * c2 - b2 * c1, b2 * c0 - b0 * c2, b0 * c1 - b1 * c0
     determinant = a0 * x + a1 * y + a2 * z
@@ -103,7 +103,8 @@ def same(a: Rows, b: Rows) -> bool:
 def tree_of(
     model: Any, root: Any, is_object: Callable[[str], bool], collection: Callable[[str], str | None]
 ) -> Tree:
-    """`collection`: the name of the collection with a uid, None where there is no such one."""
+    """The tree of a model. `collection`: the name of the collection with a uid, None where there is
+    no such one."""
     tree = Tree()
     seen: set[int] = set()
     waiting: list[tuple[Any, Rows, bool, int]] = [(root, IDENTITY, True, 0)]
@@ -126,7 +127,7 @@ def tree_of(
             owner = _owner(name, is_object)
             if owner is not None:
                 (tree.objects if in_scene else tree.inner).setdefault(owner, []).append(slot)
-                if called is not None:  # what it instances, once for all its instances
+                if called is not None:  # the collection it instances, once for all its instances
                     tree.collections.setdefault(summary.uid, []).append(slot)
                     waiting.append((child, place, False, depth + 1))
             elif summary.group and not name.endswith(INSTANCES):
@@ -211,7 +212,7 @@ class Decided:
             is_object = names.objects.__contains__
             self.tree = tree_of(model, root, is_object, names.collections.get)
         self._slots = {slot.key: slot for slot in self.tree.slots()}
-        # What was decided for renders does not count: it is like nothing that is asked for
+        # Decisions for renders do not count: the placement is like one without any
         self._applied: Changes = {
             key: Change(importance=-1.0)
             for key, slot in self._slots.items()

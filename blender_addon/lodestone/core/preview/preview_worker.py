@@ -24,7 +24,7 @@ from ..store.store_levels import is_store
 from . import preview_tree
 from .preview_tree import NOT_FORCED, Changes, Names, Tree
 
-MOST_TRIANGLES = 8_000_000  # of a picture, whatever its budget: 0.2 GB
+MOST_TRIANGLES = 8_000_000  # in a picture, whatever its budget: 0.2 GB
 COARSE_FIRST = 8.0  # times Pixel Error
 PATIENCE_S = 0.25  # a picture that takes longer is given up when the view has moved on
 NO_COLORS = "NONE"
@@ -63,8 +63,8 @@ class Wanted:
 
 
 class Things(NamedTuple):
-    """`count`: of the objects that are drawn as they are; `left_out`: of those there
-    is no room for."""
+    """The objects that are drawn as they are. `count`: how many there are; `left_out`: of those
+    there is no room for."""
 
     changes: Changes = {}
     live: tuple[LiveThing, ...] = ()
@@ -88,7 +88,7 @@ class Picture:
     triangles: int
     triangles_before: int
     drawn: int  # occurrences
-    occurrences: int  # of the scene
+    occurrences: int  # in the scene
     pixel_error: float  # found
     fits: bool
     things: Things
@@ -209,7 +209,7 @@ class Worker:
             return
         model = native.Model.read(str(self._folder))
         decided = preview_tree.Decided(model, self._names)
-        if not decided.found:  # of another scene
+        if not decided.found:  # it is another scene's
             model.close()
             return
         totals = model.totals()

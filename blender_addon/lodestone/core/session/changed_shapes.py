@@ -21,7 +21,7 @@ class ChangedShapes:
         self._decided.update(names)
 
     def reported(self, named: Iterable[tuple[str, str]]) -> list[str]:
-        """Those objects that may really have another shape, of all that Blender reports, by their
+        """The objects that may really have another shape, of all that Blender reports, by their
         names and those of their data."""
         found = [name for name, data in named if not self._decided & {name, data}]
         self._decided.clear()

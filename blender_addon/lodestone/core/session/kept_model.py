@@ -33,7 +33,7 @@ class Kept:
         self.outdated = False  # the scene has changed since
         self._model: Any = model
         self._cut: Any = None
-        self._asked: Asked | None = None  # what the cut is for
+        self._asked: Asked | None = None  # the view that the cut is for
 
     @property
     def closed(self) -> bool:
@@ -57,7 +57,8 @@ class Kept:
         return self._cut
 
     def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[Any, int]:
-        """How the last cut draws the occurrence of a datablock at a place: (Drawn, position)."""
+        """The way the last cut draws the occurrence of a datablock at a place: (Drawn,
+        position)."""
         rows = tuple(world)
         found = (native.Drawn.MISSING, -1)
         for item in dict.fromkeys(item for key in keys for item in self.parts.get(key, ())):

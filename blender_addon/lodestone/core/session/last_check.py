@@ -28,7 +28,7 @@ class Check:
 
     @property
     def exact_materials(self) -> tuple[int, int]:
-        """How many of the materials in use are drawn exactly, and how many there are."""
+        """The number of materials in use that are drawn exactly, and of all in use."""
         used = {subject for subject in self.users if subject[0] == "material"}
         inexact: set[Subject] = {problem.subject for problem in self.problems}
         return len(used - inexact), len(used)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a file's computed levels and its scene files lie."""
+"""The folders of a file's computed levels and of its scene files."""
 
 import hashlib
 import os
@@ -40,7 +40,7 @@ def store_folder(
 
 
 def scene_folder(store: Path) -> Path:
-    """Where the files of a POV-Ray scene that is to be kept lie, beside the store."""
+    """The folder for the files of a POV-Ray scene that is to be kept, beside the store."""
     return store.with_name(store.name + ".scene")
 
 

@@ -42,7 +42,7 @@ class PictureVerb(Verb):
         return (self._request(options, self.output(options.out, file, in_folder)),)
 
     def output(self, out: str, file: Path, in_folder: bool) -> Path:
-        """Where the result goes. `in_folder`: several go into `out`. Raises ValueError."""
+        """The path of the result. `in_folder`: several go into `out`. Raises ValueError."""
         raise NotImplementedError
 
     def _request(self, options: argparse.Namespace, out: Path) -> PictureRequest:
