@@ -57,6 +57,8 @@ ADDON_ROOMS = {
     "core": ("", "expression", "store", "picture", "preview", "batch", "session"),
     "bridge": ("", "motion", "nodes", "world", "scene", "checks", "live"),
 }
+# Those on top, where Blender's own classes are.
+TOP_ROOMS = ("", "properties", "viewport", "engines", "operators", "panels", "batch_blender")
 BLENDER_MODULES = ("bpy", "bpy_extras", "bmesh", "mathutils", "gpu", "gpu_extras", "bl_ui", "blf")
 
 
@@ -152,15 +154,19 @@ def addon_height(module: str) -> tuple[int, int]:
         return (0, 0)
     floor = parts[1] if len(parts) > 1 else ""
     if floor not in ADDON_FLOORS:
-        return (len(ADDON_FLOORS), 0)
+        return (len(ADDON_FLOORS), TOP_ROOMS.index(floor) if floor in TOP_ROOMS else 0)
     rooms = ADDON_ROOMS.get(floor, ("",))
     room = parts[2] if len(parts) > 2 else ""
     return (ADDON_FLOORS.index(floor), rooms.index(room) if room in rooms else 0)
 
 
 def unknown_room(name: str) -> str | None:
-    """The folder of a file of core or bridge, when it is no room that has a height."""
+    """The folder of a file of the add-on, when it is no room that has a height."""
+    if not name.startswith("blender_addon/lodestone/"):
+        return None
     parts = name.removeprefix("blender_addon/lodestone/").split("/")
+    if len(parts) > 1 and parts[0] not in (*ADDON_FLOORS, *TOP_ROOMS):
+        return parts[0]
     known = ADDON_ROOMS.get(parts[0])
     folder = parts[1] if len(parts) > 2 else ""
     return folder if known is not None and folder not in known else None

@@ -108,12 +108,17 @@ class TheCheck(unittest.TestCase):
         self.assert_wrong(place + "core/problems.py", "from .store import store_path", "above")
         self.assert_wrong(place + "bridge/motion/a.py", "from ..scene import b", "above")
         self.assert_wrong(place + "bridge/nodes/a.py", "import lodestone.bridge.world.b", "above")
+        self.assert_right(place + "operators/a.py", "from ..engines import b\n")
+        self.assert_right(place + "panels/a.py", "from ..operators import b\n")
+        self.assert_wrong(place + "operators/a.py", "from ..panels import b", "above")
+        self.assert_wrong(place + "viewport/a.py", "from ..operators import b", "above")
 
     def test_a_folder_of_the_add_on_is_a_room_with_a_height(self):
         place = "blender_addon/lodestone/"
         for floor in ("core", "bridge"):
             self.assert_wrong(f"{place}{floor}/attic/a.py", "import math\n", "no room")
             self.assert_wrong(f"{place}{floor}/attic/b/a.py", "import math\n", "no room")
+        self.assert_wrong(f"{place}attic/a.py", "import math\n", "no room")
 
     def test_bpy_stays_above_core(self):
         for text in ("import bpy", "from bpy.types import Mesh", "def f():\n    import mathutils"):

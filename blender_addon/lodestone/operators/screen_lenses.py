@@ -4,10 +4,9 @@ button that begins Depth Exaggeration."""
 
 import bpy
 from bpy.types import Operator
-from bpy_extras.view3d_utils import location_3d_to_region_2d
-from mathutils import Vector
 
 from ..bridge import datablock_ids
+from ..bridge.live import camera_image
 from .polled import Polled
 
 MOST = 64  # a list that nobody reads; each is looked at for everything that is drawn
@@ -128,7 +127,9 @@ class LODESTONE_OT_screen_lens_drag(_OfCamera, Operator):
             lens.radius *= 1.1 if event.type == "WHEELUPMOUSE" else 1.0 / 1.1
         elif event.type == "MOUSEMOVE":
             region, corners = found
-            place = on_image(corners, event.mouse_x - region.x, event.mouse_y - region.y)
+            place = camera_image.on_image(
+                corners, event.mouse_x - region.x, event.mouse_y - region.y
+            )
             if place is not None:
                 lens.x, lens.y = place
         else:
@@ -159,8 +160,8 @@ class LODESTONE_OT_depth_exaggerate(_OfCamera, Operator):
 
 
 def camera_region(context, camera):
-    """(region, image_corners()) of a 3D view of this window that looks through the scene's camera,
-    when that has this data; else None."""
+    """The region of a 3D view of this window that looks through the scene's camera, when that has
+    this data, and the corners of the image in it; else None."""
     item = context.scene.camera
     if context.window is None or item is None or item.data != camera:
         return None
@@ -172,32 +173,10 @@ def camera_region(context, camera):
             continue
         for region in area.regions:
             if region.type == "WINDOW":
-                corners = image_corners(context.scene, region, space.region_3d)
+                corners = camera_image.image_corners(context.scene, region, space.region_3d)
                 if corners is not None:
                     return region, corners
     return None
-
-
-def image_corners(scene, region, region_3d):
-    """Left, bottom, right, top of the image in a region that looks through the scene's camera, in
-    pixels; None when it has no extent."""
-    item = scene.camera
-    frame = item.data.view_frame(scene=scene)
-    places = [item.matrix_world @ Vector(corner) for corner in frame]
-    shown = [location_3d_to_region_2d(region, region_3d, place) for place in places]
-    if any(place is None for place in shown):
-        return None
-    columns, rows = [p.x for p in shown], [p.y for p in shown]
-    corners = (min(columns), min(rows), max(columns), max(rows))
-    return corners if corners[2] > corners[0] and corners[3] > corners[1] else None
-
-
-def on_image(corners, x, y):
-    """A place in the region as shares of the image; None without extent."""
-    left, bottom, right, top = corners
-    if right <= left or top <= bottom:
-        return None
-    return (x - left) / (right - left), (y - bottom) / (top - bottom)
 
 
 _CLASSES = (

@@ -6,10 +6,9 @@ import bpy
 from mathutils import Vector
 
 from .. import handlers
-from ..bridge.live import live_view
+from ..bridge.live import camera_image, live_view
 from ..core.picture import lens_rim
 from ..core.session.addon_session import addon_session
-from ..operators import screen_lenses
 
 _RIM = (0.35, 0.75, 1.0, 0.9)
 _HALF = (0.35, 0.75, 1.0, 0.35)
@@ -47,7 +46,7 @@ def _draw_image():
     camera = context.scene.camera
     if camera is None or camera.type != "CAMERA" or not camera.data.is_property_set("lodestone"):
         return
-    corners = screen_lenses.image_corners(context.scene, context.region, region_3d)
+    corners = camera_image.image_corners(context.scene, context.region, region_3d)
     if corners is None:
         return
     left, bottom, right, top = corners
