@@ -23,7 +23,7 @@ _MODULES = (
     "preferences",
     "viewport.levels_preview",
     "engines.render_engine",
-    "operators.session",
+    "operators.window_run",
     "operators.update_levels",
     "operators.auto_structure",
     "operators.clear_levels",

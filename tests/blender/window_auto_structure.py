@@ -40,9 +40,9 @@ def make(subdivisions=3):
 
 
 def running():
-    from lodestone.operators import session
+    from lodestone.operators import window_run
 
-    return session.current()
+    return window_run.current()
 
 
 def is_idle():

@@ -49,9 +49,9 @@ def stored():
 
 
 def running():
-    from lodestone.operators import session
+    from lodestone.operators import window_run
 
-    return session.current()
+    return window_run.current()
 
 
 def is_idle():

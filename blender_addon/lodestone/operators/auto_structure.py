@@ -19,7 +19,7 @@ from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence
 from ..core.store import motion_file, store_path
 from ..engines import extract_engine
-from . import session as sessions
+from . import window_run
 from .polled import Polled
 
 FEWEST = 8  # a collection of at most so many is not structured
@@ -34,7 +34,7 @@ class Gone(Exception):
     """The collection is no more."""
 
 
-FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing, NothingToGroup, Gone)
+FAILURES = (*window_run.FAILURES, extract_engine.CameraMissing, NothingToGroup, Gone)
 
 
 @dataclass
@@ -116,7 +116,7 @@ def refusal(collection):
     return ""
 
 
-class _Session(sessions.Session):
+class _Run(window_run.WindowRun):
     """One run in the window."""
 
     def __init__(self, context):
@@ -180,7 +180,7 @@ def _link(source, target):
         shutil.copyfile(source, target)
 
 
-class LODESTONE_OT_auto_structure(Polled, sessions.InWindow, bpy.types.Operator):
+class LODESTONE_OT_auto_structure(Polled, window_run.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.auto_structure"
     bl_label = "Auto-Structure"
     bl_description = (
@@ -193,7 +193,7 @@ class LODESTONE_OT_auto_structure(Polled, sessions.InWindow, bpy.types.Operator)
 
     @classmethod
     def refused(cls, context):
-        return sessions.refusal() or refusal(context.collection)
+        return window_run.refusal() or refusal(context.collection)
 
     def execute(self, context):
         try:
@@ -205,18 +205,18 @@ class LODESTONE_OT_auto_structure(Polled, sessions.InWindow, bpy.types.Operator)
         return {"FINISHED"}
 
     def invoke(self, context, event):
-        return self.begin(context, _Session(context))
+        return self.begin(context, _Run(context))
 
-    def step(self, context, session):
-        if session.reading():
-            sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
+    def step(self, context, run):
+        if run.reading():
+            window_run.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        if session.working():
-            share = progress_text.percent(session.work.fraction, 1.0)
-            sessions.status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
+        if run.working():
+            share = progress_text.percent(run.work.fraction, 1.0)
+            window_run.status(context, f"Lodestone: measuring groups {share}   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        session.measured()
-        sessions.status(context, None)
+        run.measured()
+        window_run.status(context, None)
         self.remove_timer(context)
         bpy.ops.lodestone.make_groups("INVOKE_DEFAULT")
         return {"CANCELLED"}  # nothing has changed yet: there is nothing to undo
@@ -230,38 +230,38 @@ class LODESTONE_OT_make_groups(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        session = sessions.current(_Session)
-        return session is not None and session.preview is not None
+        run = window_run.current(_Run)
+        return run is not None and run.preview is not None
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self, width=320)
 
     def draw(self, context):
-        session = sessions.current(_Session)
+        run = window_run.current(_Run)
         column = self.layout.column(align=True)
-        if session is not None and session.preview is not None:
-            column.label(text=session.collection, icon="OUTLINER_COLLECTION")
-            for line in session.preview.lines():
+        if run is not None and run.preview is not None:
+            column.label(text=run.collection, icon="OUTLINER_COLLECTION")
+            for line in run.preview.lines():
                 column.label(text=line)
 
     def execute(self, context):
-        session = sessions.current(_Session)
+        run = window_run.current(_Run)
         try:
-            collection = _collection(session.collection)
+            collection = _collection(run.collection)
             if refusal(collection):
                 self.report({"ERROR"}, "The collection has changed meanwhile")
                 return {"CANCELLED"}
-            made = found_structure.make_collections(collection, session.found)
+            made = found_structure.make_collections(collection, run.found)
         except Gone as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
         finally:
-            sessions.stop_running()
+            window_run.stop_running()
         self.report({"INFO"}, f"Made {len(made):,} collections")
         return {"FINISHED"}
 
     def cancel(self, context):
-        sessions.stop_running()
+        window_run.stop_running()
 
 
 def _collection(name):

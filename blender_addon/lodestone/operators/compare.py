@@ -19,7 +19,7 @@ from ..core import progress_text
 from ..core.picture import compare_plan
 from ..core.session.addon_session import addon_session
 from ..engines import render_engine
-from . import session as sessions
+from . import window_run
 from .polled import Polled
 
 SLOTS = 3
@@ -128,7 +128,7 @@ def refusal(context):
         return "The sequencer makes this scene's picture: turn it off in Output > Post Processing"
     if render_engine.is_comparing():
         return "Already running (Esc to cancel)"
-    return sessions.refusal()
+    return window_run.refusal()
 
 
 class RunningComparison:
@@ -197,7 +197,7 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         step = run.plan.step
         if bpy.app.is_job_running("RENDER"):
             word = compare_plan.WORDS[step]
-            sessions.status(context, progress_text.comparing(step + 1, SLOTS, word))
+            window_run.status(context, progress_text.comparing(step + 1, SLOTS, word))
             return {"PASS_THROUGH"}
         try:
             run.rendered()
@@ -217,7 +217,7 @@ class LODESTONE_OT_compare(Polled, bpy.types.Operator):
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
-        sessions.status(context, None)
+        window_run.status(context, None)
         for window in context.window_manager.windows:
             for area in window.screen.areas:
                 if area.type in {"PROPERTIES", "IMAGE_EDITOR"}:

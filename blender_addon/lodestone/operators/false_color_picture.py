@@ -21,7 +21,7 @@ from ..core.picture.picture_maker import PICTURE
 from ..core.printable_text import sentence
 from ..core.session.addon_session import addon_session
 from . import read_levels
-from . import session as sessions
+from . import window_run
 
 NAME = "Lodestone False Colors"
 OVERVIEW = "OVERVIEW"
@@ -130,7 +130,7 @@ class _Request:
             )
 
 
-class _Session(read_levels.Reading):
+class _Run(read_levels.Reading):
     """Reads the scene where that is needed, then makes the picture on the thread."""
 
     def __init__(self, context, asked):
@@ -147,7 +147,9 @@ class _Session(read_levels.Reading):
         self.start(lambda: self.asked.make(kept, asked, self.work.new_job))
 
 
-class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, bpy.types.Operator):
+class LODESTONE_OT_false_color_picture(
+    read_levels.OfCamera, window_run.InWindow, bpy.types.Operator
+):
     bl_idname = "lodestone.false_color_picture"
     bl_label = "False-Color Picture"
     bl_description = (
@@ -192,25 +194,25 @@ class LODESTONE_OT_false_color_picture(read_levels.OfCamera, sessions.InWindow, 
 
     def invoke(self, context, event):
         try:
-            session = _Session(context, self._asked(context))
+            run = _Run(context, self._asked(context))
         except FAILURES as error:
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
-        return self.begin(context, session)
+        return self.begin(context, run)
 
-    def step(self, context, session):
-        if not session.picturing and session.reading():
-            sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
+    def step(self, context, run):
+        if not run.picturing and run.reading():
+            window_run.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        if session.working():
-            sessions.status(context, "Lodestone: drawing false colors   [Esc] Cancel")
+        if run.working():
+            window_run.status(context, "Lodestone: drawing false colors   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        if not session.picturing:
-            session.finish()
-            session.start_picture(context)
+        if not run.picturing:
+            run.finish()
+            run.start_picture(context)
             return {"PASS_THROUGH"}
-        image = into_image(session.worked())
-        session.close()
+        image = into_image(run.worked())
+        run.close()
         _show(context, image)
         self.report({"INFO"}, f'The picture is image "{image.name}"')
         return self.end(context, {"FINISHED"})

@@ -17,11 +17,11 @@ from ..core.session import kept_model
 from ..core.store import motion_file, store_path
 from ..core.store.store_levels import is_store
 from ..engines import extract_engine
-from . import session as sessions
+from . import window_run
 from ..core.session.addon_session import addon_session
 from .polled import Polled
 
-FAILURES = (*sessions.FAILURES, extract_engine.CameraMissing)
+FAILURES = (*window_run.FAILURES, extract_engine.CameraMissing)
 
 
 def request(store):
@@ -59,7 +59,7 @@ def read_levels(scene):
     return kept
 
 
-class Reading(sessions.Session):
+class Reading(window_run.WindowRun):
     """One reading in the window."""
 
     def __init__(self, scene):
@@ -88,10 +88,10 @@ class Reading(sessions.Session):
 class OfCamera(Polled):
     @classmethod
     def refused(cls, context):
-        return sessions.refusal() if context.scene.camera else "Set a scene camera"
+        return window_run.refusal() if context.scene.camera else "Set a scene camera"
 
 
-class LODESTONE_OT_read_levels(OfCamera, sessions.InWindow, bpy.types.Operator):
+class LODESTONE_OT_read_levels(OfCamera, window_run.InWindow, bpy.types.Operator):
     bl_idname = "lodestone.read_levels"
     bl_label = "Read Scene"
     bl_description = (
@@ -114,12 +114,12 @@ class LODESTONE_OT_read_levels(OfCamera, sessions.InWindow, bpy.types.Operator):
     def invoke(self, context, event):
         return self.begin(context, Reading(context.scene))
 
-    def step(self, context, session):
-        if session.reading() or session.working():
-            sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
+    def step(self, context, run):
+        if run.reading() or run.working():
+            window_run.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        session.finish()
-        session.close()
+        run.finish()
+        run.close()
         redraw(context)
         return self.end(context, {"FINISHED"})
 

@@ -14,7 +14,7 @@ from ..core.printable_text import sentence
 from ..core.session.addon_session import addon_session
 from ..core.store import motion_file, store_path
 from ..engines import extract_engine
-from . import session as sessions
+from . import window_run
 from .polled import Polled
 
 UNDO_NAME = "Update Levels"
@@ -25,7 +25,7 @@ class NothingThere(Exception):
     """The scope holds nothing with faces that renders show."""
 
 
-FAILURES = (*sessions.FAILURES, NothingThere)
+FAILURES = (*window_run.FAILURES, NothingThere)
 
 
 def build_options(extraction, keys, poses):
@@ -60,7 +60,7 @@ def update_levels(context, scope):
         request.poses.close()
 
 
-class _Session(sessions.Session):
+class _Run(window_run.WindowRun):
     """One update in the window."""
 
     def __init__(self, context, scope):
@@ -91,23 +91,23 @@ class _Session(sessions.Session):
             object_decisions.take_back(self._changed)
 
 
-class _InWindow(sessions.InWindow):
+class _InWindow(window_run.InWindow):
     """What both operators do while it builds."""
 
     failures = FAILURES
 
-    def left_by(self, session):
-        return STOPPED if session.building else ""
+    def left_by(self, run):
+        return STOPPED if run.building else ""
 
-    def watch_building(self, context, session):
-        if session.working():
-            total = session.estimate.built
-            done = min(total, int(session.work.fraction * total))
-            sessions.status(context, progress_text.building(done, total))
+    def watch_building(self, context, run):
+        if run.working():
+            total = run.estimate.built
+            done = min(total, int(run.work.fraction * total))
+            window_run.status(context, progress_text.building(done, total))
             return {"PASS_THROUGH"}
-        report = session.worked()
+        report = run.worked()
         addon_session().changed_shapes.settle()
-        session.close(keep=True)
+        run.close(keep=True)
         outcome = self.end(context, {"FINISHED"})
         bpy.ops.ed.undo_push(message=UNDO_NAME)
         self.report({"INFO"}, summary(report))
@@ -130,7 +130,7 @@ class LODESTONE_OT_update_levels(Polled, _InWindow, bpy.types.Operator):
 
     @classmethod
     def refused(cls, context):
-        return sessions.refusal() if context.scene else "There is no scene"
+        return window_run.refusal() if context.scene else "There is no scene"
 
     def execute(self, context):
         try:
@@ -144,19 +144,19 @@ class LODESTONE_OT_update_levels(Polled, _InWindow, bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context, event):
-        return self.begin(context, _Session(context, context.scene.lodestone.scope))
+        return self.begin(context, _Run(context, context.scene.lodestone.scope))
 
-    def step(self, context, session):
-        if session.extraction is not None:
-            return self.watch_building(context, session)
-        if session.reading():
-            if not session.work.stopping:
-                sessions.status(context, "Lodestone: reading the scene   [Esc] Cancel")
+    def step(self, context, run):
+        if run.extraction is not None:
+            return self.watch_building(context, run)
+        if run.reading():
+            if not run.work.stopping:
+                window_run.status(context, "Lodestone: reading the scene   [Esc] Cancel")
             return {"PASS_THROUGH"}
-        if session.estimate.built == 0 or not self.confirm:
-            session.start_building()
+        if run.estimate.built == 0 or not self.confirm:
+            run.start_building()
             return {"PASS_THROUGH"}
-        sessions.status(context, None)
+        window_run.status(context, None)
         self.remove_timer(context)
         bpy.ops.lodestone.build_levels("INVOKE_DEFAULT")
         return {"FINISHED"}
@@ -170,38 +170,38 @@ class LODESTONE_OT_build_levels(_InWindow, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        session = sessions.current(_Session)
-        return session is not None and session.estimate is not None
+        run = window_run.current(_Run)
+        return run is not None and run.estimate is not None
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self, width=320)
 
     def draw(self, context):
-        session = sessions.current(_Session)
+        run = window_run.current(_Run)
         column = self.layout.column(align=True)
-        if session is not None and session.estimate is not None:
-            estimate = session.estimate
+        if run is not None and run.estimate is not None:
+            estimate = run.estimate
             column.label(text=f"{estimate.built:,} of {estimate.objects:,} objects and groups")
             column.label(text=f"{progress_text.count(estimate.triangles)} triangles to simplify")
             column.label(text=f"About {progress_text.clock(max(1.0, estimate.wall_s))} minutes")
-            column.label(text=f"Into {session.store}", icon="FILE_FOLDER")
+            column.label(text=f"Into {run.store}", icon="FILE_FOLDER")
 
     def execute(self, context):
-        session = sessions.current(_Session)
+        run = window_run.current(_Run)
         try:
-            session.start_building()
+            run.start_building()
         except OSError as error:
-            return self.stop(context, session, error)
+            return self.stop(context, run, error)
         return self.watch(context)
 
     def cancel(self, context):
-        session = sessions.current(_Session)
-        if session is not None:
-            session.close()
+        run = window_run.current(_Run)
+        if run is not None:
+            run.close()
             self.end(context, {"CANCELLED"})
 
-    def step(self, context, session):
-        return self.watch_building(context, session)
+    def step(self, context, run):
+        return self.watch_building(context, run)
 
 
 def summary(report):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions: what operators do beside the window, one at a time.
+"""Runs in the window: what operators do beside the window, one at a time.
 
 The scene is read by a render job of the extract engine, then a thread works; a timer watches both
-and Esc stops each. Loading a file or disabling the add-on ends a session, the file as it was.
+and Esc stops each. Loading a file or disabling the add-on ends a run, the file as it was.
 """
 
 import contextlib
@@ -21,17 +21,17 @@ INTERVAL_S = 0.1
 FAILURES = (native.LodestoneError, OSError, RuntimeError, UnicodeDecodeError)
 
 
-class RunningSession:
-    """The session that runs in the window; part of the add-on's."""
+class CurrentRun:
+    """The run that is under way in the window; part of the session."""
 
-    current = None
-
-
-def _running():
-    return addon_session().part(RunningSession)
+    run = None
 
 
-class Session:
+def _current():
+    return addon_session().part(CurrentRun)
+
+
+class WindowRun:
     """One run: what is read, how far the work is, and what has to be put back."""
 
     def __init__(self, request):
@@ -86,7 +86,7 @@ class Session:
         return render_job.runs() or self.working()
 
     def close(self, keep=False):
-        """Puts everything back, but with `keep` what the session has written into the file."""
+        """Puts everything back, but with `keep` what the run has written into the file."""
         self.work.stop()
         if self._thread is not None:
             self._thread.join()
@@ -99,36 +99,36 @@ class Session:
         self.request.poses.close()
 
 
-def current(kind=Session):
-    """The session that runs in the window, if it is one of this kind; else None."""
-    session = _running().current
-    return session if isinstance(session, kind) else None
+def current(kind=WindowRun):
+    """The run that is under way, if it is one of this kind; else None."""
+    run = _current().run
+    return run if isinstance(run, kind) else None
 
 
 def refusal():
-    """Why no session can start now; "" when one can."""
-    if _running().current is not None:
+    """The reason why no run can start now; "" when one can."""
+    if _current().run is not None:
         return "Already running (Esc to cancel)"
     return "A render is running" if render_job.runs() else ""
 
 
 class InWindow:
-    """What operators do while a session runs; no operator itself: Blender does not find the methods
-    of an operator that another one inherits. They have step(context, session), which returns what
+    """What operators do while a run is under way; no operator itself: Blender finds no methods
+    of an operator that another one inherits. They have step(context, run), which returns what
     modal() is to return and may raise."""
 
     failures = FAILURES  # what is told without a traceback
     _timer = None
 
-    def begin(self, context, session):
+    def begin(self, context, run):
         """Starts to read the scene."""
         try:
-            session.start_reading(context)
+            run.start_reading(context)
         except self.failures as error:
-            session.close()
+            run.close()
             self.report({"ERROR"}, sentence(error))
             return {"CANCELLED"}
-        _running().current = session
+        _current().run = run
         return self.watch(context)
 
     def watch(self, context):
@@ -138,43 +138,43 @@ class InWindow:
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        session = _running().current
-        if session is None:  # stopped from outside: a file was loaded, the add-on disabled
+        run = _current().run
+        if run is None:  # stopped from outside: a file was loaded, the add-on disabled
             return self.end(context, {"CANCELLED"})
         if event.type == "ESC" and event.value == "PRESS":
-            return self.stop(context, session, None)
+            return self.stop(context, run, None)
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         try:
-            return self.step(context, session)
+            return self.step(context, run)
         except (*self.failures, background_calls.Stopped) as error:
-            return self.stop(context, session, error)
+            return self.stop(context, run, error)
         except Exception as error:
             traceback.print_exc()
-            return self.stop(context, session, error)
+            return self.stop(context, run, error)
 
-    def stop(self, context, session, error):
+    def stop(self, context, run, error):
         """Esc when there is no error: what runs is told to stop and waited for, the window stays
         usable meanwhile."""
         if error is None:
-            session.stop()
+            run.stop()
             status(context, "Lodestone: stopping")
-            if session.busy():
+            if run.busy():
                 return {"RUNNING_MODAL"}
-        left = self.left_by(session)
-        session.close()
+        left = self.left_by(run)
+        run.close()
         if error is not None and not isinstance(error, background_calls.Stopped):
             self.report({"ERROR"}, sentence(error))
         elif left:
             self.report({"INFO"}, left)
         return self.end(context, {"CANCELLED"})
 
-    def left_by(self, session):
-        """What a session that is stopped leaves behind, as a sentence; "" when that is nothing."""
+    def left_by(self, run):
+        """What a run that is stopped leaves behind, as a sentence; "" when that is nothing."""
         return ""
 
     def end(self, context, outcome):
-        _running().current = None
+        _current().run = None
         self.remove_timer(context)
         status(context, None)
         return outcome
@@ -215,12 +215,12 @@ def _raise_stopped():
 
 
 def stop_running():
-    """Ends a session from outside, leaving the file as it is."""
-    session, _running().current = _running().current, None
-    if session is None:
+    """Ends a run from outside, leaving the file as it is."""
+    run, _current().run = _current().run, None
+    if run is None:
         return
-    session.stop()
-    session.close()
+    run.stop()
+    run.close()
 
 
 @bpy.app.handlers.persistent
