@@ -95,9 +95,18 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
         except UnicodeDecodeError as error:
             request.error = native.LodestoneError(native.Status.BAD_FILE, sentence(error))
         except Exception as error:
-            if not isinstance(error, (Stopped, CameraMissing)):
+            # When the add-on is disabled meanwhile, the settings go first that are read here
+            if not isinstance(error, (Stopped, CameraMissing)) and not _is_stopped(tick):
                 traceback.print_exc()
             request.error = error
+
+
+def _is_stopped(tick):
+    try:
+        tick()
+    except Stopped:
+        return True
+    return False
 
 
 class CameraMissing(Exception):
