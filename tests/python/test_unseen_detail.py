@@ -15,7 +15,7 @@ from lodestone.core.batch import command_line
 from lodestone.core.batch.file_jobs import FileJob
 from lodestone.core.picture import unseen_detail, why_sentences
 from lodestone_native import Drawn, Kind, Met, Modifiers, Object, OffScreen, Rays
-from test_seeing import _Cut
+from test_why_sentences import _Cut
 
 BOTH = Rays.SHADOW | Rays.REFLECTION
 

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards what a picture is expected to take, and what is learned from the one before."""
+
+import math
+import tempfile
+import unittest
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import addon_path  # noqa: F401 - makes the add-on importable
+from lodestone.core.picture import cost_model
+from lodestone_native import Antialias, Camera
+
+WORK = cost_model.Work(245_000_000, 1_000_000, 640 * 360, 640, 360, 1, 1, 2)
+CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
+
+
+class Cost(unittest.TestCase):
+    def test_nothing_to_draw_takes_the_start_and_the_empty_picture(self):
+        found = cost_model.predict(cost_model.Work(0, 0, 0, 640, 360, 0, 1, 1))
+        self.assertEqual((found.parse_cpu_s, found.trace_cpu_s, found.wall_s), (0, 0, 0.6))
+        self.assertAlmostEqual(found.peak_bytes / 1e6, 18 + 3.6864, places=6)
+
+    def test_a_million_triangles_are_read_as_was_measured(self):
+        found = cost_model.predict(WORK)
+        self.assertAlmostEqual(found.parse_cpu_s, 5.2)
+        # 1.65e-7 * 1e6^.2 * 1.5 each, 4 samples a pixel
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4 * 1.65e-7 * 1e6**0.2 * 1.5)
+        self.assertAlmostEqual(found.wall_s, 0.6 + 5.2 + found.trace_cpu_s / 2)
+
+    def test_bounces_are_expected_to_take_what_they_gather(self):
+        direct = cost_model.predict(WORK).trace_cpu_s
+        self.assertEqual(cost_model.gathering(0, 200, 0.6), 0.0)
+        rays = cost_model.gathering(2, 200, 0.5)
+        self.assertAlmostEqual(rays, 0.1 / 0.25 * 200 * 2)
+        bouncing = cost_model.predict(replace(WORK, gathering=rays)).trace_cpu_s
+        self.assertAlmostEqual(bouncing, direct * (4 + rays) / 4)
+
+    def test_depth_of_field_was_expected_to_take_no_longer(self):
+        sharp = cost_model.predict(WORK).trace_cpu_s
+        blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
+        self.assertAlmostEqual(blurred, sharp * 45 / 4)  # both at the usual antialiasing
+        summary = SimpleNamespace(bytes=1, triangles=1)
+        quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
+        for camera, expected in (
+            (CAMERA, True),
+            (replace(CAMERA, aperture=0.0), False),
+            (replace(CAMERA, orthographic=True), False),
+        ):
+            view = SimpleNamespace(camera=camera, width=4, height=3, border=(0, 0, 0, 0))
+            work = cost_model.Work.of(summary, view, 1, Antialias.FINAL, 1, quality)
+            self.assertEqual(work.blurred, expected)
+
+    def test_the_same_picture_again_is_predicted_exactly(self):
+        measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)
+        ratios = cost_model.learn(WORK, measured, cost_model.Ratios())
+        found = cost_model.predict(WORK, ratios)
+        self.assertAlmostEqual(found.parse_cpu_s, 9.0)
+        self.assertAlmostEqual(found.trace_cpu_s, 4.0)
+        self.assertAlmostEqual(found.peak_bytes / 4e8, 1.0, places=6)
+
+    def test_what_is_too_short_or_absurd_teaches_nothing(self):
+        before = cost_model.Ratios(2.0, 3.0, 1.5)
+        short = SimpleNamespace(parse_cpu_s=0.01, trace_cpu_s=math.nan, peak_bytes=0)
+        self.assertEqual(cost_model.learn(WORK, short, before), before)
+        mad = SimpleNamespace(parse_cpu_s=1e9, trace_cpu_s=1.0, peak_bytes=1)
+        self.assertEqual(cost_model.learn(WORK, mad, before).parse, 100.0)
+
+    def test_ratios_are_kept_beside_the_levels_and_survive_nonsense(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = Path(folder)
+            costs = cost_model.CostMemory().of(store)
+            self.assertEqual(costs.read(), cost_model.Ratios())
+            costs.write(cost_model.Ratios(2.0, 0.5, 1.0))
+            later = cost_model.CostMemory().of(store)
+            self.assertEqual(later.read(), cost_model.Ratios(2.0, 0.5, 1.0))
+            for text in ("", "[]", '{"parse": 1e9, "trace": "x", "memory": NaN}', "9" * 5000):
+                (store / cost_model.FILE).write_text(text)
+                later = cost_model.CostMemory().of(store)
+                self.assertEqual(later.read(), cost_model.Ratios(), text[:20])
+        memory = cost_model.CostMemory()
+        memory.of(store).write(cost_model.Ratios(3.0))  # the folder is gone: still known here
+        self.assertEqual(memory.of(store).read().parse, 3.0)
+
+
+if __name__ == "__main__":
+    unittest.main()
