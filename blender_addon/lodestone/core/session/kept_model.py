@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene as it was read last, kept with its levels: other cuts of it take milliseconds.
 
-Of one scene at a time. Any thread may put one, so whoever uses one holds its lock meanwhile.
+One scene is kept at a time. Any thread may put one, so whoever uses one holds its lock.
 """
 
 import threading
