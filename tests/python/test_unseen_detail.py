@@ -45,7 +45,7 @@ class Words(unittest.TestCase):
 
 
 class _Rays:
-    """A cut, as unseen.met() asks it."""
+    """A cut, as unseen_detail.met() asks it."""
 
     def __init__(self, modifiers):
         self.view = SimpleNamespace(modifiers=modifiers)

@@ -27,7 +27,7 @@ class Request:
 
     `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
     (None for the scene's): their frames are in `frames` in the same order. `still`: what
-    motion.sample() found. `structured`: as scene.extract() takes it. `with_poses`: also the `poses`
+    sample() found. `structured`: as extract() takes it. `with_poses`: also the `poses`
     that levels follow; close them when done.
     """
 

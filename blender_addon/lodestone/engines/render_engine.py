@@ -295,7 +295,7 @@ class _Run:
         render_result.hand_over(self.engine, layer, part, self.settings.stamp(), depth)
 
     def _build_options(self, view):
-        """What properties.BUILD_ON_RENDER says."""
+        """What property_groups.BUILD_ON_RENDER says."""
         poses = self.poses.models
         if self.build == "ALL":
             return native.BuildOptions(poses=poses)

@@ -58,7 +58,7 @@ def read(
     tick: Callable[[], None],
 ) -> Poses:
     """`frame_set` brings the depsgraph to a frame: RenderEngine.frame_set, so only inside render();
-    it is called for the frame it was in afterwards. `still`: what motion.sample() found. Nothing
+    it is called for the frame it was in afterwards. `still`: what sample() found. Nothing
     that was read of the depsgraph before may be used after."""
     original = depsgraph.scene
     before = (original.frame_current, original.frame_subframe)

@@ -47,7 +47,7 @@ class Leaf:
     deforms: bool = False  # see Look
     settled: bool = True  # it is the same whoever shows it, and wherever
     glow: Glow | None = None
-    loose: str = "ONE"  # whether the parts of its mesh are one object: see ids.loose_parts()
+    loose: str = "ONE"  # whether its mesh is one object: see datablock_ids.loose_parts()
 
 
 class Look(NamedTuple):
@@ -58,7 +58,7 @@ class Look(NamedTuple):
     ordinary: bool = False
     holdout: bool = False  # all its materials are black
     deforms: bool = False  # its shape is another one in every frame
-    loose: str = datablock_ids.AUTOMATIC  # see ids.loose_parts()
+    loose: str = datablock_ids.AUTOMATIC  # see datablock_ids.loose_parts()
 
 
 class Leaves:

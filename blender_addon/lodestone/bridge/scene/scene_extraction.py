@@ -68,7 +68,7 @@ def extract(
     structured: bool = True,
 ) -> Extraction:
     """Reads a scene into a model. `tick()` is called between meshes; what it raises stops the
-    extraction. `still`: what motion.sample() found out. `structured`: flat collections get groups
+    extraction. `still`: what sample() found out. `structured`: flat collections get groups
     below them, unless the designer wants none. A scene that shows nothing gives a model whose root
     group is empty."""
     with _without_garbage_collection():
