@@ -29,16 +29,17 @@ class AddonSession:
         self.kept_models = KeptModels()
         self.stores = StoreReader()
         self.costs = CostMemory()
-        self._parts: dict[type, Any] = {}
+        self._parts: dict[type[Any], Any] = {}
 
     def part(self, kind: type[Part]) -> Part:
         """The memory of a module above core/, in a class of its own: made when first asked for.
         When it is dropped, its close() is called, if it has one."""
         if kind not in self._parts:
             self._parts.setdefault(kind, kind())
-        return self._parts[kind]
+        found: Part = self._parts[kind]
+        return found
 
-    def drop(self, kind: type) -> None:
+    def drop(self, kind: type[Any]) -> None:
         """Forgets a part; nothing happens when it was never asked for."""
         part = self._parts.pop(kind, None)
         if hasattr(part, "close"):
