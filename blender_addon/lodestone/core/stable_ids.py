@@ -53,7 +53,7 @@ def assign_uids(
     things: Iterable[tuple[str, str, str, str, bool]], taken: Iterable[str] = ()
 ) -> list[str]:
     """The uid each (kind, library, name, stored uid, decided) has to store, in order; "" where its
-    name is enough. What they are then known by is all different and none of taken.
+    name is enough. The names they are then known by are all different and none of taken.
 
     A stored one is kept by the first thing that has it. A copy, and a thing that has none, is known
     by its name, unless it holds a decision or another thing has that id.

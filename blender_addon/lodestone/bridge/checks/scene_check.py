@@ -2,8 +2,8 @@
 """Check Scene: what F12 would report of a scene, without a render and without reading a mesh.
 
 It takes the way of the extraction (shown_instances.py, materials.py, ...) with a stand-in
-for the leaves and one for the model, so that there is one set of rules. What it walks is the
-depsgraph of the viewport, less what renders hide; what only renders show is added as it is stored.
+for the leaves and one for the model, so that there is one set of rules. It walks the depsgraph of
+the viewport, less what renders hide; what only renders show is added as it is stored.
 """
 
 import math

@@ -149,7 +149,7 @@ class Scene:
             self._unknown |= skipped - self._touched - self._reported
 
     def _judge(self, shown: dict[str, Any]) -> None:
-        """Whether what was reported has another shape. What is hidden is told when it is seen."""
+        """Whether reported things have another shape. Hidden ones are told when they are seen."""
         for name in list(self._reported):
             item = shown.get(name) or self._inner.get(name)
             if item is None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The objects that move or change their shape in the course of an animation.
 
-What moves is not grouped with what rests, and nothing stands in for what changes its shape: levels
-would be those of one frame. `Motion` tells from how objects are animated, which errs towards
-"changes"; `sample()` looks at the evaluated objects of a few frames and knows better.
+Things that move are not grouped with those that rest, and nothing stands in for things that change
+their shape: levels would be those of one frame. `Motion` tells from how objects are animated, which
+errs towards "changes"; `sample()` looks at the evaluated objects of a few frames and knows better.
 """
 
 import functools

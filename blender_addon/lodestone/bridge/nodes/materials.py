@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender materials as the backend's.
 
-What cannot be said exactly gets the nearest thing that can, and a problem naming the material:
-nothing turns gray silently. What counts is what Cycles draws: EEVEE's blend modes do nothing.
+A value that cannot be said exactly gets the nearest one that can, and a problem naming the
+material: nothing turns gray silently. Cycles' picture counts: EEVEE's blend modes do nothing.
 """
 
 from dataclasses import dataclass, replace

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The inputs of node sockets as expressions of images' texels and of constants.
 
-What cannot be said is named and stands as a constant for its mean: that of the node's own colors,
-else the value of the input it feeds.
+A value that cannot be said is named and stands as a constant for its mean: that of the node's own
+colors, else the value of the input it feeds.
 """
 
 from collections.abc import Callable

@@ -211,8 +211,8 @@ def _cameras(scene: Any) -> list[Any]:
 
 
 def _add_cameras(model: Any, depsgraph: Any) -> None:
-    """All of the scene, its own one first, for programs that render the store. What is not exact
-    about one is told when it is used."""
+    """All of the scene, its own one first, for programs that render the store. Problems of one are
+    told when it is used."""
     scene = depsgraph.scene  # the original: an evaluated scene's objects are originals as well
     frame = scene_camera.Frame.of(depsgraph.scene_eval.render)
     for item in _cameras(scene):

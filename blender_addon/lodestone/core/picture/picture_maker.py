@@ -226,10 +226,7 @@ def remove_others(folder: Path, used: set[str]) -> None:
 class SceneFolder:
     """The folder of scene files: `keep` is NEVER, FAILED or ALWAYS. A context; `path` names it.
     Files that are not kept are removed on leaving; those of a failed picture stay for the user to
-    look at.
-
-    What is not kept is removed on leaving; a failed one stays for the user to look at.
-    """
+    look at."""
 
     def __init__(self, kept: Path, keep: str) -> None:
         self._keep = keep

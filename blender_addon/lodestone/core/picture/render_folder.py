@@ -46,7 +46,7 @@ class RenderFolder:
 
     def _tidy(self, frame: int) -> None:
         """Removes what neither this frame nor the one before uses: what changes its shape would
-        fill the disk. Of one frame the next view layer may use what the one before it used."""
+        fill the disk. In one frame a view layer may use what the one before it used."""
         before, now = self._used
         if frame != self._frame:
             before, now = now, set()
