@@ -64,7 +64,7 @@ lds_status lds_batch_create(lds_model* model, const lds_cut* cut, size_t positio
             fail(Status::InvalidArgument, "batch ", position, " of ", cut->batches.size());
         const view::ViewerBatch& batch = cut->batches[position];
         const Job progress = job_of(job);
-        std::vector<uint32_t> levels(cut->cut.chosen.size(), choose::kBoxOnly);
+        std::vector<uint32_t> levels(cut->cut.chosen.size(), view::kBoxOnly);
         for (const view::BatchPiece& piece : batch.pieces)
             levels.at(piece.choice) = cut->cut.nodes.at(cut->cut.chosen.at(piece.choice)).lod;
         load_levels(*model, cut->cut, levels, progress);

@@ -37,7 +37,7 @@ void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uin
                  const Job& job) {
     std::map<Hash, std::vector<Representation*>> wanted;
     for (size_t i = 0; i < levels.size(); ++i) {
-        if (levels[i] == choose::kBoxOnly)
+        if (levels[i] == view::kBoxOnly)
             continue;
         const choose::CutNode& node = cut.nodes.at(cut.chosen.at(i));
         Representation& chosen = levels_with(model, node, levels[i])[levels[i]];
