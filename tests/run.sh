@@ -95,7 +95,7 @@ python_step() {
     local name=$1
     shift
     if [ $# -gt 0 ]; then
-        PYTHONPATH=$root/backend/python:$root/tests \
+        PYTHONPATH=$LODESTONE_BUILD/python:$root/tests \
             step "$name" /usr/bin/python3 tests/run_python.py --junit "$logs/$name.xml" "$@"
     fi
 }

@@ -452,12 +452,14 @@ LDS_API lds_status lds_model_add_placements(lds_model* model, lds_object group, 
    (lds_ray_class bits). A group that holds something hidden is always drawn by its children. */
 LDS_API lds_status lds_model_hide_placement(lds_model* model, lds_object group,
                                             uint32_t ray_classes);
+/* A level limit or pin that is none. */
+#define LDS_ANY_LEVEL UINT32_MAX
+
 /* Sets the user's decisions about the placement at `position` of a group (counted from 0, in the
    order they were added).
    importance   how many times finer it and everything below it are drawn, 1/64 to 64; 1: no change
    coarsest     the largest LOD number that may draw it; groups around it are opened for that.
                 LDS_ANY_LEVEL: no limit; 0: the originals of it and of everything below it */
-#define LDS_ANY_LEVEL UINT32_MAX
 LDS_API lds_status lds_model_decide_placement(lds_model* model, lds_object group, size_t position,
                                               double importance, uint32_t coarsest);
 /* Pins the placement to one LOD number, from wherever it is seen; groups around it are opened. An
@@ -627,11 +629,17 @@ LDS_API lds_status lds_model_camera(const lds_model* model, size_t position,
                                     lds_camera* out_camera);
 LDS_API size_t lds_model_light_count(const lds_model* model);
 
+typedef enum lds_severity {
+    LDS_SEVERITY_INFO = 0,
+    LDS_SEVERITY_WARNING = 1,
+    LDS_SEVERITY_ERROR = 2 /* the picture is wrong or incomplete there */
+} lds_severity;
+
 /* Problems of the user's data, found while adding, reading, building, exporting. */
 typedef struct lds_problem {
     uint32_t struct_size;
     const char* object;
-    int32_t severity; /* 0 info, 1 warning, 2 error: the picture is wrong or incomplete there */
+    int32_t severity; /* lds_severity */
     const char* code; /* snake_case, stable */
     const char* message;
 } lds_problem;

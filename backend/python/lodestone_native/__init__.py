@@ -5,10 +5,12 @@ No bpy, no numpy, nothing compiled per Python version. Importing never loads the
 call does, and says in one sentence when it cannot.
 """
 
+from . import records
 from .bake import BakeStep
 from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
 from .cut import BatchMesh, Cut, change_placement, most_demanding, release_meshes
 from .enums import (
+    ANY_LEVEL,
     AlphaMode,
     Antialias,
     BakeOp,
@@ -46,7 +48,7 @@ from .image import (
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
 from .measure import surface_inertia
-from .model import ANY_LEVEL, Model, texture
+from .model import Model, texture
 from .options import (
     BuildOptions,
     LooseOptions,
@@ -63,7 +65,7 @@ from .povray import (
     povray_run,
 )
 from .projection import project_uvs
-from .structs import Object
+from .structs import Object, Texture
 from .view import Budget, Camera, Lens, Light, Modifiers, ScreenLens, View
 
 __all__ = [
@@ -112,6 +114,7 @@ __all__ = [
     "Status",
     "StructureOptions",
     "StrandBuffers",
+    "Texture",
     "View",
     "abi_version",
     "change_placement",
@@ -133,6 +136,7 @@ __all__ = [
     "povray_run",
     "project_uvs",
     "rays_check",
+    "records",
     "release_meshes",
     "surface_inertia",
     "texture",

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures computed from other pictures, texel by texel."""
 
-import ctypes
+from __future__ import annotations
+
 from array import array
 from collections.abc import Sequence
+from ctypes import c_float
 from dataclasses import dataclass
 
 from . import structs
+from .base import pointer_to, text_in
 from .enums import BakeOp
-from .structs import text_in
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class BakeStep:
     op: BakeOp
     args: tuple[int, ...] = ()
     value: tuple[float, ...] = ()
-    table: array | None = None
+    table: array[float] | None = None
 
 
 def bake(
@@ -32,23 +34,26 @@ def bake(
     linear: bool,
 ) -> structs.Bake:
     """Points into the steps' tables: keep them until the call is over."""
-    rows = (structs.BakeStep * len(steps))()
-    for row, step in zip(rows, steps):
-        row.op = step.op
-        row.args = (*step.args, 0, 0, 0)[:3]
-        row.value = (*step.value, 0.0, 0.0, 0.0, 0.0)[:4]
-        if step.table is not None:
-            if step.table.itemsize != 4 or len(step.table) % 4:
-                raise ValueError("a table needs rows of four 4-byte floats")
-            row.table = step.table.buffer_info()[0]
-            row.table_count = len(step.table) // 4
+    rows = (structs.BakeStep * len(steps))(*map(_row, steps))
     return structs.Bake(
         name=text_in(name),
-        steps=ctypes.cast(rows, ctypes.POINTER(structs.BakeStep)),
+        steps=rows,
         step_count=len(steps),
         textures=(structs.Texture * len(textures))(*textures),
         texture_count=len(textures),
         width=size[0],
         height=size[1],
         linear=int(linear),
+    )
+
+
+def _row(step: BakeStep) -> structs.BakeStep:
+    if step.table is not None and (step.table.itemsize != 4 or len(step.table) % 4):
+        raise ValueError("a table needs rows of four 4-byte floats")
+    return structs.BakeStep(
+        op=step.op,
+        args=(*step.args, 0, 0, 0)[:3],
+        value=(*step.value, 0.0, 0.0, 0.0, 0.0)[:4],
+        table=pointer_to(step.table, c_float),
+        table_count=0 if step.table is None else len(step.table) // 4,
     )

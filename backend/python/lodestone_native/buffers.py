@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes, polygons and strands in flat buffers, as the library reads them in place."""
 
-import ctypes
+from __future__ import annotations
+
 from array import array
+from ctypes import c_float, c_int32, c_uint8, c_uint32
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from . import structs
+from .base import pointer_to
 from .library import library
 
-Buffer = array | memoryview  # writable and contiguous
+if TYPE_CHECKING:
+    from .base import Buffer
 
 
 @dataclass
@@ -19,13 +24,13 @@ class MeshBuffers:
     corners[3 t + c] is that of corner c of triangle t (None: corners = triangles).
     """
 
-    positions: array
-    triangles: array
-    corners: array | None = None
-    corner_normals: array | None = None  # [corner][3]; None: flat shaded
-    corner_uvs: array | None = None  # [corner][2]
-    corner_colors: array | None = None  # [corner][4] linear RGBA, straight
-    slots: array | None = None  # [triangle]
+    positions: array[float]
+    triangles: array[int]
+    corners: array[int] | None = None
+    corner_normals: array[float] | None = None  # [corner][3]; None: flat shaded
+    corner_uvs: array[float] | None = None  # [corner][2]
+    corner_colors: array[float] | None = None  # [corner][4] linear RGBA, straight
+    slots: array[int] | None = None  # [triangle]
 
     def struct(self) -> structs.MeshView:
         """Points into the buffers: keep them until the call is over. Raises ValueError when the
@@ -48,16 +53,16 @@ class MeshBuffers:
         if self.slots is not None and count("slots", self.slots, 1) != triangles:
             raise ValueError("slots and triangles differ in length")
         return structs.MeshView(
-            positions=address(self.positions),
+            positions=pointer_to(self.positions, c_float),
             vertex_count=vertices,
-            triangles=address(self.triangles),
+            triangles=pointer_to(self.triangles, c_uint32),
             triangle_count=triangles,
-            corners=address(self.corners),
+            corners=pointer_to(self.corners, c_uint32),
             corner_count=counts.pop() if counts else 0,
-            corner_normals=address(self.corner_normals),
-            corner_uvs=address(self.corner_uvs),
-            corner_colors=address(self.corner_colors),
-            slots=address(self.slots),
+            corner_normals=pointer_to(self.corner_normals, c_float),
+            corner_uvs=pointer_to(self.corner_uvs, c_float),
+            corner_colors=pointer_to(self.corner_colors, c_float),
+            slots=pointer_to(self.slots, c_int32),
         )
 
 
@@ -107,20 +112,20 @@ class FaceBuffers:
             raise ValueError("face_slots has another number of faces")
         triangles = 0 if self.triangles is None else count("triangles", self.triangles, 3)
         return structs.FacesView(
-            positions=address(self.positions),
+            positions=pointer_to(self.positions, c_float),
             vertex_count=vertices,
-            corner_vertices=address(self.corner_vertices),
+            corner_vertices=pointer_to(self.corner_vertices, c_uint32),
             corner_count=corners,
-            face_starts=address(self.face_starts),
+            face_starts=pointer_to(self.face_starts, c_uint32),
             face_count=faces,
-            triangles=address(self.triangles),
+            triangles=pointer_to(self.triangles, c_uint32),
             triangle_count=triangles,
-            face_smooth=address(self.face_smooth),
-            face_slots=address(self.face_slots),
-            corner_normals=address(self.corner_normals),
-            corner_uvs=address(self.corner_uvs),
-            corner_colors=address(self.corner_colors),
-            vertex_colors=address(colors),
+            face_smooth=pointer_to(self.face_smooth, c_uint8),
+            face_slots=pointer_to(self.face_slots, c_int32),
+            corner_normals=pointer_to(self.corner_normals, c_float),
+            corner_uvs=pointer_to(self.corner_uvs, c_float),
+            corner_colors=pointer_to(self.corner_colors, c_float),
+            vertex_colors=pointer_to(colors, c_float),
         )
 
 
@@ -129,11 +134,11 @@ class StrandBuffers:
     """Hair or grass in flat buffers of 4-byte items: points [point][3] and radii [point] of all
     strands in a row, each strand's root first; counts [strand] points of each."""
 
-    points: array
-    radii: array
-    counts: array
-    slots: array | None = None  # [strand]
-    uvs: array | None = None  # [strand][2], of the surface at the root
+    points: array[float]
+    radii: array[float]
+    counts: array[int]
+    slots: array[int] | None = None  # [strand]
+    uvs: array[float] | None = None  # [strand][2], of the surface at the root
 
     def struct(self) -> structs.StrandsView:
         """As MeshBuffers.struct()."""
@@ -146,20 +151,20 @@ class StrandBuffers:
         if self.uvs is not None and count("uvs", self.uvs, 2) != strands:
             raise ValueError("uvs and counts differ in length")
         return structs.StrandsView(
-            points=address(self.points),
-            radii=address(self.radii),
+            points=pointer_to(self.points, c_float),
+            radii=pointer_to(self.radii, c_float),
             point_count=points,
-            counts=address(self.counts),
+            counts=pointer_to(self.counts, c_uint32),
             strand_count=strands,
-            slots=address(self.slots),
-            uvs=address(self.uvs),
+            slots=pointer_to(self.slots, c_int32),
+            uvs=pointer_to(self.uvs, c_float),
         )
 
 
 def largest_face(face_starts: Buffer, corner_count: int) -> int:
     """The most corners that a face has: above four, FaceBuffers need triangles."""
     faces = count("face_starts", face_starts, 1)
-    return library().lds_faces_largest(address(face_starts), faces, corner_count)
+    return library().lds_faces_largest(pointer_to(face_starts, c_uint32), faces, corner_count)
 
 
 def count(name: str, buffer: Buffer, width: int, size: int = 4) -> int:
@@ -168,11 +173,3 @@ def count(name: str, buffer: Buffer, width: int, size: int = 4) -> int:
     if len(buffer) % width:
         raise ValueError(f"{name} has {len(buffer)} items, not a multiple of {width}")
     return len(buffer) // width
-
-
-def address(buffer: Buffer | None) -> int | None:
-    if buffer is None or not len(buffer):
-        return None
-    if isinstance(buffer, memoryview):
-        return ctypes.addressof(ctypes.c_char.from_buffer(buffer))
-    return buffer.buffer_info()[0]

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The cut: which representation of every occurrence a view uses."""
 
+from __future__ import annotations
+
 import ctypes
 from array import array
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
-from . import structs
+from . import records, structs
+from .base import pointer_to, text_out
 from .enums import Drawn, Rays
 from .handle import Handle
 from .job import Job
 from .library import check, library
 from .model import Model
-from .structs import Object, record, text_out
+from .structs import Object
 from .view import Budget, View
 
 
@@ -22,15 +25,21 @@ class BatchMesh(NamedTuple):
     glows; colors array('B') [vertex][4], sRGB and how much light it stops; triangles array('I')
     [triangle][3]. `box`: its lower and its upper corner."""
 
-    positions: array
-    normals: array
-    colors: array
-    triangles: array
+    positions: array[float]
+    normals: array[int]
+    colors: array[int]
+    triangles: array[int]
     box: tuple[float, ...]
 
     @property
     def bytes(self) -> int:
-        return sum(len(part) * part.itemsize for part in self[:4])
+        buffers: tuple[array[Any], ...] = (
+            self.positions,
+            self.normals,
+            self.colors,
+            self.triangles,
+        )
+        return sum(len(part) * part.itemsize for part in buffers)
 
 
 class Choice(NamedTuple):
@@ -57,18 +66,14 @@ class Cut(Handle):
         self.view = view
         self.pixel_error = view.pixel_error
         self.fits = True
-        self._handle: ctypes.c_void_p | None = ctypes.c_void_p()
-        made, lib = ctypes.byref(self._handle), library()
+        made, lib = ctypes.c_void_p(), library()
+        self._handle = made
         if budget is None:
             check(lib.lds_cut_create(model.handle, view.struct(), job, made))
             return
         report = structs.BudgetReport()
-        wanted = ctypes.byref(budget.struct())
-        check(
-            lib.lds_cut_create_within(
-                model.handle, view.struct(), wanted, job, ctypes.byref(report), made
-            )
-        )
+        wanted = budget.struct()
+        check(lib.lds_cut_create_within(model.handle, view.struct(), wanted, job, report, made))
         self.pixel_error = report.pixel_error
         self.fits = report.fits != 0
 
@@ -79,10 +84,10 @@ class Cut(Handle):
         check(library().lds_cut_step(self.model.handle, self.handle, view.struct(), job))
         self.view, self.pixel_error, self.fits = view, view.pixel_error, True
 
-    def summary(self) -> Any:
+    def summary(self) -> records.CutSummary:
         out = structs.CutSummary()
-        check(library().lds_cut_get_summary(self.handle, ctypes.byref(out)))
-        return record(out)
+        check(library().lds_cut_get_summary(self.handle, out))
+        return out.record()
 
     def choices(self) -> list[Choice]:
         return [
@@ -93,38 +98,30 @@ class Cut(Handle):
     def counts(self) -> dict[tuple[Object, int], int]:
         """How often which LOD number of which object is chosen."""
         count, ask = ctypes.c_size_t(), library().lds_cut_level_uses
-        check(ask(self.handle, None, 0, ctypes.byref(count)))
+        check(ask(self.handle, None, 0, count))
         buffer = (structs.LevelUse * count.value)()
-        check(ask(self.handle, buffer, len(buffer), ctypes.byref(count)))
+        check(ask(self.handle, buffer, len(buffer), count))
         return {(Object(*use.object.key), use.lod): use.occurrences for use in buffer}
 
-    def reason(self, position: int) -> Any:
+    def reason(self, position: int) -> records.Reason:
         """Why a choice is what it is: fields as lds_reason's."""
         out = structs.Reason()
-        check(
-            library().lds_cut_choice_reason(
-                self.model.handle, self.handle, position, ctypes.byref(out)
-            )
-        )
-        return record(out)
+        check(library().lds_cut_choice_reason(self.model.handle, self.handle, position, out))
+        return out.record()
 
-    def rays(self, rays: Rays) -> Any:
+    def rays(self, rays: Rays) -> records.RaySummary:
         """What a class of rays meets: fields as lds_ray_summary's."""
         out = structs.RaySummary()
-        check(library().lds_cut_get_rays(self.handle, rays, ctypes.byref(out)))
-        return record(out)
+        check(library().lds_cut_get_rays(self.handle, rays, out))
+        return out.record()
 
-    def choice_rays(self, position: int, rays: Rays) -> Any:
+    def choice_rays(self, position: int, rays: Rays) -> records.RayChoice:
         """What a class of rays meets of a choice: fields as lds_ray_choice's."""
         out, handle = structs.RayChoice(), self.handle
-        check(
-            library().lds_cut_choice_rays(
-                self.model.handle, handle, position, rays, ctypes.byref(out)
-            )
-        )
-        return record(out)
+        check(library().lds_cut_choice_rays(self.model.handle, handle, position, rays, out))
+        return out.record()
 
-    def _buffer(self) -> Any:
+    def _buffer(self) -> ctypes.Array[structs.Choice]:
         count = library().lds_cut_choice_count(self.handle)
         buffer = (structs.Choice * count)()
         check(library().lds_cut_choice_copy(self.handle, buffer, count))
@@ -139,8 +136,8 @@ class Cut(Handle):
         (-1: by none)."""
         rows = (ctypes.c_double * 12)(*world)
         drawn, position = ctypes.c_int32(), ctypes.c_size_t()
-        outs = (ctypes.byref(drawn), ctypes.byref(position))
-        check(library().lds_cut_find_choice(self.model.handle, self.handle, item, rows, *outs))
+        find = library().lds_cut_find_choice
+        check(find(self.model.handle, self.handle, item, rows, drawn, position))
         found = Drawn(drawn.value)
         by_choice = found in (Drawn.ITSELF, Drawn.IN_GROUP)
         return found, position.value if by_choice else -1
@@ -149,7 +146,7 @@ class Cut(Handle):
         """Linear colors of the choices, in their order, of false-colored pictures and surfaces;
         none: those of povray_false_color()."""
         flat = array("d", (value for color in colors for value in color))
-        given = (ctypes.c_double * len(flat)).from_buffer(flat)
+        given = pointer_to(flat, ctypes.c_double)
         check(library().lds_cut_set_colors(self.handle, given, len(flat) // 3))
 
     def set_identities(self) -> None:
@@ -159,40 +156,34 @@ class Cut(Handle):
     def make_surface(self, most_triangles: int, job: Job | None = None) -> int:
         """Makes loose triangles of what cameras see, and returns how many; 0 frees them."""
         out = ctypes.c_uint64()
-        made = ctypes.byref(out)
-        check(
-            library().lds_cut_make_surface(
-                self.model.handle, self.handle, most_triangles, job, made
-            )
-        )
+        make = library().lds_cut_make_surface
+        check(make(self.model.handle, self.handle, most_triangles, job, out))
         return out.value
 
-    def surface(self, triangles: int) -> tuple[array, array]:
+    def surface(self, triangles: int) -> tuple[array[float], array[int]]:
         """Of make_surface(): array('f') [triangles][3][3] in the world, array('B')
         [triangles][3][4] of sRGB."""
         corners, colors = array("f", bytes(36 * triangles)), array("B", bytes(12 * triangles))
         if triangles:
-            floats = ctypes.cast(corners.buffer_info()[0], ctypes.POINTER(ctypes.c_float))
-            bytes_ = ctypes.cast(colors.buffer_info()[0], ctypes.POINTER(ctypes.c_uint8))
-            check(library().lds_cut_surface_copy(self.handle, floats, bytes_, triangles))
+            to = pointer_to(corners, ctypes.c_float), pointer_to(colors, ctypes.c_uint8)
+            check(library().lds_cut_surface_copy(self.handle, *to, triangles))
         return corners, colors
 
-    def make_batches(self) -> tuple[array, array]:
+    def make_batches(self) -> tuple[array[int], array[int]]:
         """Divides what cameras see into batches: (keys, triangles), array('Q') each. Equal keys
         show the same in any cut."""
         out = ctypes.c_size_t()
         lib = library()
-        check(lib.lds_cut_make_batches(self.model.handle, self.handle, ctypes.byref(out)))
-        keys, triangles = (array("Q", bytes(8 * out.value)) for _ in range(2))
-        to = (keys.buffer_info()[0], triangles.buffer_info()[0])
+        check(lib.lds_cut_make_batches(self.model.handle, self.handle, out))
+        keys, triangles = array("Q", bytes(8 * out.value)), array("Q", bytes(8 * out.value))
+        to = pointer_to(keys, ctypes.c_uint64), pointer_to(triangles, ctypes.c_uint64)
         check(lib.lds_cut_batch_keys(self.handle, *to, out.value))
         return keys, triangles
 
     def batch_mesh(self, position: int, job: Job | None = None) -> BatchMesh:
         """Of make_batches(). Reads the meshes it needs."""
         made, lib = ctypes.c_void_p(), library()
-        out = ctypes.byref(made)
-        check(lib.lds_batch_create(self.model.handle, self.handle, position, job, out))
+        check(lib.lds_batch_create(self.model.handle, self.handle, position, job, made))
         try:
             vertices = lib.lds_batch_vertex_count(made)
             box = (ctypes.c_double * 6)()
@@ -204,7 +195,13 @@ class Cut(Handle):
                 array("I", bytes(12 * lib.lds_batch_triangle_count(made))),
                 tuple(box),
             )
-            check(lib.lds_batch_copy(made, *(part.buffer_info()[0] for part in mesh[:4])))
+            to = (
+                pointer_to(mesh.positions, ctypes.c_float),
+                pointer_to(mesh.normals, ctypes.c_int16),
+                pointer_to(mesh.colors, ctypes.c_uint8),
+                pointer_to(mesh.triangles, ctypes.c_uint32),
+            )
+            check(lib.lds_batch_copy(made, *to))
         finally:
             lib.lds_batch_destroy(made)
         return mesh
@@ -213,7 +210,7 @@ class Cut(Handle):
 def most_demanding(model: Model, group: Object) -> str:
     """The path below a group to what opens it by its importance or limit; "" when nothing does."""
     out = ctypes.c_char_p()
-    check(library().lds_model_most_demanding(model.handle, group, ctypes.byref(out)))
+    check(library().lds_model_most_demanding(model.handle, group, out))
     return text_out(out.value)
 
 

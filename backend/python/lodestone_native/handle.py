@@ -2,9 +2,11 @@
 """What Model and Cut share: an opaque pointer of the library and its end."""
 
 import ctypes
-from typing import Any
+from typing import TypeVar
 
 from .library import library
+
+Self = TypeVar("Self", bound="Handle")
 
 
 class Handle:
@@ -13,7 +15,7 @@ class Handle:
     _destroy: str  # the C function that frees it
     _handle: ctypes.c_void_p | None = None
 
-    def __enter__(self) -> Any:
+    def __enter__(self: Self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

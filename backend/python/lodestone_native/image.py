@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures: reading, writing and comparing them."""
 
+from __future__ import annotations
+
 import ctypes
 from array import array
 from collections.abc import Mapping
+from ctypes import c_double, c_float
 from dataclasses import dataclass
-from typing import Any
 
-from . import structs
+from . import records, structs
+from .base import pointer_to, text_in
 from .library import check, library
-from .structs import record, text_in
 
 
 @dataclass(frozen=True)
@@ -18,12 +20,12 @@ class Image:
 
     width: int
     height: int
-    pixels: array
+    pixels: array[float]
 
 
 def image_size(path: str) -> tuple[int, int]:
     width, height = ctypes.c_int32(), ctypes.c_int32()
-    check(library().lds_image_size(text_in(path), ctypes.byref(width), ctypes.byref(height)))
+    check(library().lds_image_size(text_in(path), width, height))
     return width.value, height.value
 
 
@@ -31,7 +33,11 @@ def image_read(path: str, bottom_up: bool = False) -> Image:
     """A PNG, JPEG or EXR. bottom_up: the lowest row first (Blender's order)."""
     width, height = image_size(path)
     pixels = _black(width, height)
-    check(library().lds_image_read(text_in(path), int(bottom_up), _floats(pixels), len(pixels)))
+    check(
+        library().lds_image_read(
+            text_in(path), int(bottom_up), pointer_to(pixels, c_float), len(pixels)
+        )
+    )
     return Image(width, height, pixels)
 
 
@@ -40,7 +46,7 @@ def image_read_part(path: str, part: tuple[int, int, int, int], bottom_up: bool 
     pixels, wanted = _black(*part[2:]), (ctypes.c_int32 * 4)(*part)
     check(
         library().lds_image_read_part(
-            text_in(path), wanted, int(bottom_up), _floats(pixels), len(pixels)
+            text_in(path), wanted, int(bottom_up), pointer_to(pixels, c_float), len(pixels)
         )
     )
     return Image(*part[2:], pixels)
@@ -52,7 +58,7 @@ def image_write_png(path: str, image: Image) -> None:
         raise ValueError("the pixels do not fit the size of the image")
     check(
         library().lds_image_write_png(
-            text_in(path), image.width, image.height, _floats(image.pixels)
+            text_in(path), image.width, image.height, pointer_to(image.pixels, c_float)
         )
     )
 
@@ -65,15 +71,11 @@ def image_add_text(path: str, lines: Mapping[str, str]) -> None:
     check(library().lds_image_add_text(text_in(path), keywords, texts, len(lines)))
 
 
-def image_compare(path_a: str, path_b: str, mask: str | None = None) -> Any:
+def image_compare(path_a: str, path_b: str, mask: str | None = None) -> records.Difference:
     """mask: a picture whose alpha > 1/255 marks the compared pixels."""
     out = structs.Difference()
-    check(
-        library().lds_image_compare(
-            text_in(path_a), text_in(path_b), text_in(mask), ctypes.byref(out)
-        )
-    )
-    return record(out)
+    check(library().lds_image_compare(text_in(path_a), text_in(path_b), text_in(mask), out))
+    return out.record()
 
 
 def image_compare_shown(
@@ -81,26 +83,32 @@ def image_compare_shown(
     shown: tuple[str, str],
     counts: tuple[int, int],
     bottom_up: bool = False,
-) -> tuple[Any, tuple[array, array], Image]:
+) -> tuple[records.Difference, tuple[array[float], array[float]], Image]:
     """Compares two pictures where either shows something. `shown`: pictures of their cuts by
     Cut.set_identities(); `counts`: how many choices these have. Returns the difference, each
     choice's share of it (pixels that show something in the first are put down to that), and a
     picture of it in false colors."""
     width, height = image_size(paths[0])
     picture = Image(width, height, _black(width, height))
-    sums = tuple(array("d", bytes(8 * count)) for count in counts)
+    sums = (array("d", bytes(8 * counts[0])), array("d", bytes(8 * counts[1])))
     out = structs.Difference()
     check(
         library().lds_image_compare_shown(
-            *(text_in(path) for path in (*paths, *shown)),
-            *(part for one in sums for part in (_doubles(one), len(one))),
+            text_in(paths[0]),
+            text_in(paths[1]),
+            text_in(shown[0]),
+            text_in(shown[1]),
+            pointer_to(sums[0], c_double),
+            counts[0],
+            pointer_to(sums[1], c_double),
+            counts[1],
             int(bottom_up),
-            _floats(picture.pixels),
+            pointer_to(picture.pixels, c_float),
             len(picture.pixels),
-            ctypes.byref(out),
+            out,
         )
     )
-    return record(out), (sums[0], sums[1]), picture
+    return out.record(), sums, picture
 
 
 def image_difference_color(difference: float) -> tuple[float, float, float]:
@@ -110,13 +118,5 @@ def image_difference_color(difference: float) -> tuple[float, float, float]:
     return (out[0], out[1], out[2])
 
 
-def _doubles(buffer: array) -> Any:
-    return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_double))
-
-
-def _black(width: int, height: int) -> array:
+def _black(width: int, height: int) -> array[float]:
     return array("f", [0.0]) * (4 * width * height)
-
-
-def _floats(buffer: array) -> Any:
-    return ctypes.cast(buffer.buffer_info()[0], ctypes.POINTER(ctypes.c_float))

@@ -6,13 +6,25 @@ import os
 from functools import lru_cache
 from pathlib import Path
 
-from .enums import Status
+from .base import text_out
+from .enums import ABI_VERSION, Status
 from .errors import LodestoneError
-from .prototypes import declare
-from .structs import text_out
+from .functions import PROTOTYPES, Functions
 
-ABI_VERSION = 4
 NAME = "liblodestone.so"
+
+
+class Library(Functions):
+    """The loaded library. Its calls release the GIL: other threads run during every one."""
+
+    path: Path
+
+    def declare(self) -> None:
+        """Raises AttributeError naming the first function the library lacks."""
+        for name, result, arguments in PROTOTYPES:
+            function = getattr(self, name)
+            function.restype = result
+            function.argtypes = arguments
 
 
 def candidates() -> list[Path]:
@@ -22,24 +34,22 @@ def candidates() -> list[Path]:
         return [Path(chosen)]
     package = Path(__file__).resolve().parent
     places = [package.parent / "lib" / NAME]  # staged: addons/lodestone/{lodestone_native,lib}
-    if package.parent.name == "python":  # a checkout: backend/python/lodestone_native
-        root = package.parents[2]
-        stage = os.environ.get("LODESTONE_STAGE") or str(root / "build" / "release" / "stage")
+    if package.parent.name == "python":  # built: build/release/python/lodestone_native
+        stage = os.environ.get("LODESTONE_STAGE") or str(package.parents[1] / "stage")
         places.append(Path(stage) / "addons" / "lodestone" / "lib" / NAME)
     return places
 
 
 @lru_cache(maxsize=None)
-def library() -> ctypes.CDLL:
-    """The loaded library. CDLL releases the GIL: other threads run during every call."""
+def library() -> Library:
     places = candidates()
     path = next((place for place in places if place.is_file()), None)
     if path is None:
         looked = ", ".join(str(place) for place in places)
         raise LodestoneError(Status.IO, f"{NAME} is missing (looked for {looked})")
     try:
-        loaded = ctypes.CDLL(str(path))
-        abi = loaded.lds_abi_version
+        loaded = Library(str(path))
+        abi = getattr(loaded, "lds_abi_version")
     except (OSError, AttributeError) as error:
         raise LodestoneError(Status.IO, f"{path} cannot be loaded: {error}") from None
     abi.restype = ctypes.c_uint32
@@ -49,10 +59,10 @@ def library() -> ctypes.CDLL:
             Status.INTERNAL, f"{path} has ABI {abi()}, this add-on needs {ABI_VERSION}"
         )
     try:
-        declare(loaded)
+        loaded.declare()
     except AttributeError as error:
         raise LodestoneError(Status.INTERNAL, f"{path} is incomplete: {error}") from None
-    loaded.lodestone_path = path
+    loaded.path = path
     return loaded
 
 
@@ -63,7 +73,7 @@ def check(status: int) -> None:
 
 
 def library_path() -> Path:
-    return library().lodestone_path
+    return library().path
 
 
 def abi_version() -> int:

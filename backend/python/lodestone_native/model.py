@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A model: objects, placements, materials, lights, cameras; building and asking it."""
 
+from __future__ import annotations
+
 import ctypes
 from array import array
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from operator import itemgetter
 from typing import Any
 
-from . import structs
+from . import records, structs
+from .base import pointer_to, text_in, text_out
 from .bake import BakeStep, bake
-from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, address, count
+from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, count
 from .handle import Handle
-from .enums import Channel, Extension, Role
+from .enums import ANY_LEVEL, Channel, Extension, Role
 from .job import Job
 from .library import check, library
 from .options import (
@@ -22,11 +24,9 @@ from .options import (
     StructureOptions,
     changed,
 )
-from .structs import Object, record, text_in
+from .structs import Object
 from .view import Camera, Light, Vector
 
-
-ANY_LEVEL = 0xFFFFFFFF  # of decide_placement(): no limit
 IDENTITY_MAPPING = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
@@ -58,16 +58,16 @@ class Model(Handle):
     _destroy = "lds_model_destroy"
 
     def __init__(self, handle: ctypes.c_void_p | None = None) -> None:
-        self._handle = handle
+        made = handle or ctypes.c_void_p()
+        self._handle = made
         if handle is None:
-            self._handle = ctypes.c_void_p()
-            check(library().lds_model_create(ctypes.byref(self._handle)))
+            check(library().lds_model_create(made))
 
     @classmethod
-    def read(cls, path: str) -> "Model":
+    def read(cls, path: str) -> Model:
         """A .obj, .ply, .glb or .gltf file, or a store."""
         handle = ctypes.c_void_p()
-        check(library().lds_model_read(text_in(path), ctypes.byref(handle)))
+        check(library().lds_model_read(text_in(path), handle))
         return cls(handle)
 
     def write(self, path: str) -> None:
@@ -80,7 +80,7 @@ class Model(Handle):
         name: str,
         path: str | None = None,
         data: bytes | None = None,
-        pixels: array | None = None,
+        pixels: array[float] | None = None,
         size: tuple[int, int] = (0, 0),
         linear: bool = False,
     ) -> int:
@@ -91,15 +91,15 @@ class Model(Handle):
         picture = structs.Picture(
             name=text_in(name),
             path=text_in(path),
-            bytes=data,
+            bytes=None if data is None else ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p),
             byte_count=len(data) if data is not None else 0,
-            pixels=address(pixels),
+            pixels=pointer_to(pixels, ctypes.c_float),
             width=size[0],
             height=size[1],
             linear=int(linear),
         )
         index = ctypes.c_uint32()
-        check(library().lds_model_add_picture(self.handle, picture, ctypes.byref(index)))
+        check(library().lds_model_add_picture(self.handle, picture, index))
         return index.value
 
     def bake_picture(
@@ -114,21 +114,21 @@ class Model(Handle):
         linear as in add_picture(). Its index."""
         given = bake(name, steps, textures, size, linear)
         index = ctypes.c_uint32()
-        check(library().lds_model_bake_picture(self.handle, given, None, ctypes.byref(index)))
+        check(library().lds_model_bake_picture(self.handle, given, None, index))
         return index.value
 
     def texture_mean(self, given: structs.Texture) -> tuple[float, float, float]:
         """Over its whole picture; of a single number the first counts."""
         out = (ctypes.c_double * 3)()
         check(library().lds_model_texture_mean(self.handle, given, out))
-        return tuple(out)
+        return (out[0], out[1], out[2])
 
     def add_material(self, name: str, **fields: Any) -> int:
         """`fields`: those of lodestone.h's lds_material, textures as texture() makes them; the
         rest keeps its default. Its index."""
         made = changed(library().lds_material_default(), {"name": text_in(name), **fields})
         index = ctypes.c_uint32()
-        check(library().lds_model_add_material(self.handle, made, ctypes.byref(index)))
+        check(library().lds_model_add_material(self.handle, made, index))
         return index.value
 
     def add_mesh(
@@ -173,7 +173,7 @@ class Model(Handle):
     ) -> Object:
         out = Object()
         slots = (ctypes.c_uint32 * len(materials))(*materials)
-        check(add(self.handle, info, shape, slots, len(materials), ctypes.byref(out)))
+        check(add(self.handle, info, shape, slots, len(materials), out))
         return out
 
     def add_group(
@@ -181,7 +181,7 @@ class Model(Handle):
     ) -> Object:
         out = Object()
         info = _info(uid, name, role, deforms)
-        check(library().lds_model_add_group(self.handle, info, ctypes.byref(out)))
+        check(library().lds_model_add_group(self.handle, info, out))
         return out
 
     def add_placement(
@@ -211,8 +211,9 @@ class Model(Handle):
         number = len(children)
         if (len(transforms), len(names), len(hidden)) != (12 * number, number, number):
             raise ValueError("columns of placements differ in length")
-        rows = transforms
-        if not isinstance(rows, array) or rows.typecode != "f":
+        if isinstance(transforms, array) and transforms.typecode == "f":
+            rows: array[Any] = transforms
+        else:
             rows = array("f", transforms)
         texts = text_in("\0".join(names)) or b""  # all at a stroke
         if texts.count(0) != max(0, number - 1):
@@ -223,7 +224,7 @@ class Model(Handle):
                 group,
                 number,
                 (Object * number).from_buffer_copy(_packed(children)),
-                rows.buffer_info()[0] if number else None,
+                pointer_to(rows, ctypes.c_float),
                 texts,
                 (ctypes.c_uint32 * number)(*hidden) if any(hidden) else None,
             )
@@ -252,11 +253,7 @@ class Model(Handle):
     def group_by_position(self, group: Object, most_children: int = 64) -> int:
         """Gives a group of more children groups of neighbors; returns how many were added."""
         added = ctypes.c_size_t()
-        check(
-            library().lds_model_group_by_position(
-                self.handle, group, most_children, ctypes.byref(added)
-            )
-        )
+        check(library().lds_model_group_by_position(self.handle, group, most_children, added))
         return added.value
 
     def structure(
@@ -264,7 +261,7 @@ class Model(Handle):
         groups: Sequence[Object] | None = None,
         options: structs.StructureOptions | None = None,
         job: Job | None = None,
-    ) -> Any:
+    ) -> records.StructureReport:
         """Gives flat groups (None: all below the root) small groups of what is near and alike."""
         given = None if groups is None else (Object * len(groups))(*groups)
         out = structs.StructureReport()
@@ -275,17 +272,17 @@ class Model(Handle):
                 len(groups or ()),
                 options or StructureOptions(),
                 job,
-                ctypes.byref(out),
+                out,
             )
         )
-        return record(out)
+        return out.record()
 
     def split_loose_parts(
         self,
         objects: Sequence[Object] | None = None,
         options: structs.LooseOptions | None = None,
         job: Job | None = None,
-    ) -> Any:
+    ) -> records.LooseReport:
         """Makes meshes of many loose parts (None: all below the root) groups of clusters of them,
         in place: each stays one object and one occurrence."""
         given = None if objects is None else (Object * len(objects))(*objects)
@@ -297,10 +294,10 @@ class Model(Handle):
                 len(objects or ()),
                 options or LooseOptions(),
                 job,
-                ctypes.byref(out),
+                out,
             )
         )
-        return record(out)
+        return out.record()
 
     def set_root(self, root: Object) -> None:
         check(library().lds_model_set_root(self.handle, root))
@@ -332,31 +329,33 @@ class Model(Handle):
 
     # ---- Asking ----
 
-    def totals(self) -> Any:
-        return self._ask(library().lds_model_totals, structs.Totals())
+    def totals(self) -> records.Totals:
+        out = structs.Totals()
+        check(library().lds_model_totals(self.handle, out))
+        return out.record()
 
     def objects(self) -> Iterator[Object]:
         for position in range(library().lds_model_object_count(self.handle)):
             out = Object()
-            check(library().lds_model_object_at(self.handle, position, ctypes.byref(out)))
+            check(library().lds_model_object_at(self.handle, position, out))
             yield out
 
     def find_object(self, uid: str) -> Object | None:
         out = Object()
-        check(library().lds_model_find_object(self.handle, text_in(uid), ctypes.byref(out)))
+        check(library().lds_model_find_object(self.handle, text_in(uid), out))
         return out or None
 
-    def object_summary(self, item: Object) -> Any:
+    def object_summary(self, item: Object) -> records.ObjectSummary:
         out = structs.ObjectSummary()
-        check(library().lds_model_object_summary(self.handle, item, ctypes.byref(out)))
-        return record(out)
+        check(library().lds_model_object_summary(self.handle, item, out))
+        return out.record()
 
     def children(self, group: Object) -> Iterator[tuple[Object, Sequence[float], str, int]]:
         """Of a group, as add_placements() takes them."""
         for position in range(self.object_summary(group).child_count):
             out = self._child(group, position)
             placed = Object(*out.object.key)
-            yield placed, tuple(out.transform), record(out).name, out.hidden
+            yield placed, tuple(out.transform), text_out(out.name), out.hidden
 
     def decided(self, group: Object) -> list[tuple[float, int]]:
         """Importance and coarsest level of each child, as decide_placement() takes them."""
@@ -366,19 +365,19 @@ class Model(Handle):
 
     def _child(self, group: Object, position: int) -> structs.Placement:
         out = structs.Placement()
-        check(library().lds_model_child(self.handle, group, position, ctypes.byref(out)))
+        check(library().lds_model_child(self.handle, group, position, out))
         return out
 
-    def representation(self, item: Object, lod: int) -> Any:
+    def representation(self, item: Object, lod: int) -> records.Representation:
         """lod 0 is the finest."""
         out = structs.Representation()
-        check(library().lds_model_representation(self.handle, item, lod, ctypes.byref(out)))
-        return record(out)
+        check(library().lds_model_representation(self.handle, item, lod, out))
+        return out.record()
 
     def occurrences(self) -> list[tuple[Object, tuple[float, ...]]]:
         """Leaves reached along each path of placements, depth first: (object, world transform)."""
         count = ctypes.c_size_t()
-        check(library().lds_model_occurrence_count(self.handle, ctypes.byref(count)))
+        check(library().lds_model_occurrence_count(self.handle, count))
         buffer = (structs.Occurrence * count.value)()
         check(library().lds_model_occurrence_copy(self.handle, buffer, count.value))
         return [(Object(*item.object.key), tuple(item.world)) for item in buffer]
@@ -386,7 +385,7 @@ class Model(Handle):
     def occurrences_hidden(self) -> list[int]:
         """In the order of occurrences(): bits of the RayClasses that do not see them."""
         count = ctypes.c_size_t()
-        check(library().lds_model_occurrence_count(self.handle, ctypes.byref(count)))
+        check(library().lds_model_occurrence_count(self.handle, count))
         buffer = (ctypes.c_uint32 * count.value)()
         check(library().lds_model_occurrence_hidden(self.handle, buffer, count.value))
         return list(buffer)
@@ -398,58 +397,64 @@ class Model(Handle):
         found = []
         for position in range(library().lds_model_camera_count(self.handle)):
             out = structs.Camera()
-            check(library().lds_model_camera(self.handle, position, ctypes.byref(out)))
-            values = vars(record(out))
+            check(library().lds_model_camera(self.handle, position, out))
+            values = vars(out.record())
             values["orthographic"] = bool(values["orthographic"])
             found.append(Camera(**values))
         return found
 
-    def problems(self) -> list[Any]:
+    def problems(self) -> list[records.Problem]:
         found = []
         for position in range(library().lds_model_problem_count(self.handle)):
             out = structs.Problem()
-            check(library().lds_model_problem(self.handle, position, ctypes.byref(out)))
-            found.append(record(out))
+            check(library().lds_model_problem(self.handle, position, out))
+            found.append(out.record())
         return found
 
     # ---- Long calls ----
 
-    def measure(self, item: Object, options: Any = None, job: Job | None = None) -> Any:
+    def measure(
+        self,
+        item: Object,
+        options: structs.MeasureOptions | None = None,
+        job: Job | None = None,
+    ) -> records.Attributes:
         out = structs.Attributes()
-        check(
-            library().lds_model_measure(
-                self.handle, item, options or MeasureOptions(), job, ctypes.byref(out)
-            )
-        )
-        return record(out)
+        check(library().lds_model_measure(self.handle, item, options or MeasureOptions(), job, out))
+        return out.record()
 
-    def simplify(self, options: Any, job: Job | None = None) -> Any:
+    def simplify(
+        self, options: structs.SimplifyOptions, job: Job | None = None
+    ) -> records.SimplifyReport:
         out = structs.SimplifyReport()
-        check(library().lds_model_simplify(self.handle, options, job, ctypes.byref(out)))
-        return record(out)
+        check(library().lds_model_simplify(self.handle, options, job, out))
+        return out.record()
 
-    def build_estimate(self, store: str, options: Any = None) -> Any:
+    def build_estimate(
+        self, store: str, options: structs.BuildOptions | None = None
+    ) -> records.BuildReport:
         out = structs.BuildReport()
         check(
             library().lds_model_build_estimate(
-                self.handle, text_in(store), options or BuildOptions(), ctypes.byref(out)
+                self.handle, text_in(store), options or BuildOptions(), out
             )
         )
-        return record(out)
+        return out.record()
 
-    def build(self, store: str, options: Any = None, job: Job | None = None) -> Any:
+    def build(
+        self,
+        store: str,
+        options: structs.BuildOptions | None = None,
+        job: Job | None = None,
+    ) -> records.BuildReport:
         """Gives every object its stand-ins and brings the store (a folder) up to date."""
         out = structs.BuildReport()
         check(
             library().lds_model_build(
-                self.handle, text_in(store), options or BuildOptions(), job, ctypes.byref(out)
+                self.handle, text_in(store), options or BuildOptions(), job, out
             )
         )
-        return record(out)
-
-    def _ask(self, function: Any, out: Any) -> Any:
-        check(function(self.handle, ctypes.byref(out)))
-        return record(out)
+        return out.record()
 
 
 def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
@@ -458,5 +463,5 @@ def _info(uid: str, name: str, role: int, deforms: bool) -> structs.ObjectInfo:
 
 def _packed(items: Sequence[Object]) -> bytes:
     """One after the other. Many are followed by the same one."""
-    alike = map(list, map(itemgetter(1), groupby(items, id)))
+    alike = [list(same) for _, same in groupby(items, id)]
     return b"".join(bytes(same[0]) * len(same) for same in alike)

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Options of what is done to a model: the library's defaults, with changes by name."""
 
+from __future__ import annotations
+
 import ctypes
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from . import structs
+from .base import Sized
 from .handle import Handle
 from .library import library
 from .structs import Object
+from .view import View
+
+Options = TypeVar("Options", bound=Sized)
 
 
-def changed(options: Any, changes: dict[str, Any]) -> Any:
+def changed(options: Options, changes: dict[str, Any]) -> Options:
     """The same struct. Throws TypeError for what is none of its fields."""
     names = {field[0] for field in options._fields_}
     for name, value in changes.items():
@@ -21,24 +27,29 @@ def changed(options: Any, changes: dict[str, Any]) -> Any:
     return options
 
 
+def _start(options: Sized, defaults: Sized, changes: dict[str, Any]) -> None:
+    ctypes.memmove(ctypes.byref(options), ctypes.byref(defaults), ctypes.sizeof(defaults))
+    changed(options, changes)
+
+
 class StructureOptions(structs.StructureOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return changed(library().lds_structure_options_default(), changes)
+    def __init__(self, **changes: Any) -> None:
+        _start(self, library().lds_structure_options_default(), changes)
 
 
 class LooseOptions(structs.LooseOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return changed(library().lds_loose_options_default(), changes)
+    def __init__(self, **changes: Any) -> None:
+        _start(self, library().lds_loose_options_default(), changes)
 
 
 class MeasureOptions(structs.MeasureOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return changed(library().lds_measure_options_default(), changes)
+    def __init__(self, **changes: Any) -> None:
+        _start(self, library().lds_measure_options_default(), changes)
 
 
 class SimplifyOptions(structs.SimplifyOptions):
-    def __new__(cls, **changes: Any) -> Any:
-        return changed(library().lds_simplify_options_default(), changes)
+    def __init__(self, **changes: Any) -> None:
+        _start(self, library().lds_simplify_options_default(), changes)
 
 
 class BuildOptions(structs.BuildOptions):
@@ -46,21 +57,22 @@ class BuildOptions(structs.BuildOptions):
     the same scene in other frames, to be kept open for as long as the options are used. `view`: a
     View; only what its picture gains most from is built, in `share` of the picture's time."""
 
-    def __new__(
-        cls,
+    def __init__(
+        self,
         scope: Sequence[Object] = (),
         poses: Sequence[Handle] = (),
-        view: Any = None,
+        view: View | None = None,
         **changes: Any,
-    ) -> Any:
-        options = changed(library().lds_build_options_default(), changes)
+    ) -> None:
+        _start(self, library().lds_build_options_default(), changes)
+        # ctypes keeps alive with the options what they point to.
         if poses:
             handles = (ctypes.c_void_p * len(poses))(*(pose.handle for pose in poses))
-            options.poses = handles
-            options.pose_count = len(poses)
+            self.poses = ctypes.cast(handles, ctypes.POINTER(ctypes.c_void_p))
+            self.pose_count = len(poses)
         if scope:
-            options.scope = (Object * len(scope))(*scope)  # ctypes keeps it alive with options
-            options.scope_count = len(scope)
+            given = (Object * len(scope))(*scope)
+            self.scope = ctypes.cast(given, ctypes.POINTER(Object))
+            self.scope_count = len(scope)
         if view is not None:
-            options.view = ctypes.pointer(view.struct())
-        return options
+            self.view = ctypes.pointer(view.struct())

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writing a POV-Ray scene for a cut, and running POV-Ray on it."""
 
+from __future__ import annotations
+
 import ctypes
 from dataclasses import dataclass
-from typing import Any
 
-from . import structs
+from . import records, structs
+from .base import text_in, text_out
 from .cut import Cut
 from .enums import Antialias
 from .job import Job
 from .library import check, library
-from .structs import record, text_in, text_out
+from .view import View
 
 
 _SHADING = (
@@ -64,8 +66,8 @@ class PovrayOptions:
 
 
 def povray_export(
-    cut: Cut, folder: str, options: PovrayOptions, job: Job | None = None, view: Any = None
-) -> Any:
+    cut: Cut, folder: str, options: PovrayOptions, job: Job | None = None, view: View | None = None
+) -> records.ExportReport:
     """Writes scene.pov, scene.ini and r/<16 hex>.inc into folder. `view`: seen from there, not from
     where the cut was made for."""
     out = structs.ExportReport()
@@ -77,36 +79,32 @@ def povray_export(
             text_in(folder),
             options.struct(),
             job,
-            ctypes.byref(out),
+            out,
         )
     )
-    return record(out)
+    return out.record()
 
 
-def povray_run(folder: str, picture: str, options: PovrayOptions, job: Job | None = None) -> Any:
+def povray_run(
+    folder: str, picture: str, options: PovrayOptions, job: Job | None = None
+) -> records.PovrayReport:
     """Renders folder/scene.ini to folder/picture (.exr or .png)."""
     out = structs.PovrayReport()
-    check(
-        library().lds_povray_run(
-            text_in(folder), text_in(picture), options.struct(), job, ctypes.byref(out)
-        )
-    )
-    return record(out)
+    check(library().lds_povray_run(text_in(folder), text_in(picture), options.struct(), job, out))
+    return out.record()
 
 
 def povray_empty_bytes(width: int, height: int, program: str | None = None) -> int:
     """POV-Ray's peak memory on a picture of this size without any object: what to subtract."""
     out = ctypes.c_uint64()
-    check(
-        library().lds_povray_empty_bytes(width, height, text_in(program or None), ctypes.byref(out))
-    )
+    check(library().lds_povray_empty_bytes(width, height, text_in(program or None), out))
     return out.value
 
 
 def povray_find(program: str | None = None) -> str:
     """The program that would be run; raises POVRAY_MISSING saying what to do."""
     out = ctypes.c_char_p()
-    check(library().lds_povray_find(text_in(program or None), ctypes.byref(out)))
+    check(library().lds_povray_find(text_in(program or None), out))
     return text_out(out.value)
 
 

@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Texture coordinates made from positions."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from ctypes import c_float
+from typing import TYPE_CHECKING
 
 from . import structs
-from .buffers import Buffer, FaceBuffers, address
+from .base import pointer_to
+from .buffers import FaceBuffers
 from .enums import Projection
 from .library import check, library
+
+if TYPE_CHECKING:
+    from .base import Buffer
 
 
 def project_uvs(
@@ -29,8 +37,8 @@ def project_uvs(
     given = structs.UvProjection(
         projection=projection,
         to_space=tuple(to_space),
-        points=address(points),
+        points=pointer_to(points, c_float),
         slot=slot,
         slot_count=slot_count,
     )
-    check(library().lds_faces_project_uvs(view, given, address(uvs)))
+    check(library().lds_faces_project_uvs(view, given, pointer_to(uvs, c_float)))

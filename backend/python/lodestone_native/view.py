@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Camera and view: plain values that a cut and an export are made for."""
 
+from __future__ import annotations
+
 import ctypes
 from dataclasses import dataclass
+from typing import Any
 
 from . import structs
+from .base import text_in
 from .enums import Criterion, LensFilter, LensShape, LightKind, OffScreen
 
 Vector = tuple[float, float, float]
@@ -27,7 +31,7 @@ class Camera:
 
     def struct(self) -> structs.Camera:
         return structs.Camera(
-            name=structs.text_in(self.name),
+            name=text_in(self.name),
             orthographic=int(self.orthographic),
             position=self.position,
             direction=self.direction,
@@ -60,8 +64,9 @@ class Light:
     spread: float = 0.0  # area: radians; 0: the whole half space
 
     def struct(self) -> structs.Light:
-        values = {**vars(self), "name": structs.text_in(self.name)}
-        return structs.Light(**{**values, "shadow": int(self.shadow), "round": int(self.round)})
+        values: dict[str, Any] = {**vars(self), "name": text_in(self.name)}
+        values.update(shadow=int(self.shadow), round=int(self.round))
+        return structs.Light(**values)
 
 
 @dataclass(frozen=True)
@@ -86,7 +91,7 @@ class Lens:
             strength=self.strength,
             falloff=self.falloff,
             filter=self.filter,
-            name=structs.text_in(self.name),
+            name=text_in(self.name),
             objects=(structs.Object * len(self.objects))(*self.objects),
             object_count=len(self.objects),
         )
@@ -104,8 +109,9 @@ class ScreenLens:
     in_pixels: bool = False  # else shares of width and height; the radius: of the width
 
     def struct(self) -> structs.ScreenLens:
-        values = {**vars(self), "name": structs.text_in(self.name)}
-        return structs.ScreenLens(**{**values, "in_pixels": int(self.in_pixels)})
+        values: dict[str, Any] = {**vars(self), "name": text_in(self.name)}
+        values.update(in_pixels=int(self.in_pixels))
+        return structs.ScreenLens(**values)
 
 
 @dataclass(frozen=True)
