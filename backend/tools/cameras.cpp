@@ -155,7 +155,8 @@ std::optional<std::pair<int, int>> size_of(const CommandArguments& arguments) {
     return size;
 }
 
-lds_view view_of(const CommandArguments& arguments, lds_model* model, bool frame) {
+lds_view view_of(const CommandArguments& arguments, lds_model* model, bool frame,
+                 lds_camera& camera) {
     const auto size = size_of(arguments);
     const double angle_deg = arguments.number("angle-deg", 50, 0.01, 175);
     const double aspect = size ? static_cast<double>(size->first) / size->second : kAspect;
@@ -167,20 +168,21 @@ lds_view view_of(const CommandArguments& arguments, lds_model* model, bool frame
     const std::optional<lds_camera> own =
         eye ? std::nullopt : camera_named(model, name ? &*name : nullptr);
     if (eye)
-        view.camera = camera_at(vector_of("eye", *eye),
-                                vector_of("look-at", arguments.text("look-at").value_or("0,0,0")),
-                                angle_deg, aspect);
+        camera = camera_at(vector_of("eye", *eye),
+                           vector_of("look-at", arguments.text("look-at").value_or("0,0,0")),
+                           angle_deg, aspect);
     else if (own)
-        view.camera = *own;
+        camera = *own;
     else if (frame)
-        view.camera = camera_around(model, angle_deg, aspect);
+        camera = camera_around(model, angle_deg, aspect);
     else
         throw UsageError("the model has no camera: give --eye X,Y,Z");
-    const double shape = length(view.camera.right) / length(view.camera.up);
+    view.camera = &camera;
+    const double shape = length(camera.right) / length(camera.up);
     view.width = size ? size->first : kWidth;
     view.height = size ? size->second
                        : static_cast<int>(std::clamp(std::round(kWidth / shape), 1.0, 65536.0));
-    for (double& part : view.camera.up)
+    for (double& part : camera.up)
         part *= shape * view.height / view.width;
     return view;
 }

@@ -67,7 +67,7 @@ int32_t word_of(const CommandArguments& arguments, const char* option,
 
 CutOptions::CutOptions(const CommandArguments& arguments, lds_view& view)
     : view_(view),
-      modifiers_(lds_modifiers_default()),
+      modifiers_(usual(lds_modifiers_default)),
       criterion_(arguments.text("criterion").value_or("resolution")) {
     modifiers_.criterion =
         word_of<4>(arguments, "criterion", {"resolution", "feature", "area", "distance"});

@@ -39,6 +39,17 @@ Json json_of(const ReportValue& value) {
     return std::visit([](const auto& held) { return json_of(held); }, value.held());
 }
 
+/// The words of the kinds that can be drawn, with how many occurrences are drawn by each.
+std::vector<std::pair<std::string, uint64_t>> kinds_of(const lds_cut_summary& summary) {
+    std::vector<std::pair<std::string, uint64_t>> found;
+    for (int32_t kind = 0; kind < LDS_KIND_COUNT; ++kind) {
+        const std::string word = lds_kind_name(kind);
+        if (!word.empty() && kind != LDS_KIND_ASSEMBLY)
+            found.emplace_back(word, summary.occurrences_of_kind[kind]);
+    }
+    return found;
+}
+
 }  // namespace
 
 Fields report_of(const char* verb, const std::string& input) {
@@ -46,16 +57,26 @@ Fields report_of(const char* verb, const std::string& input) {
 }
 
 Fields fields_of(const lds_cut_summary& summary) {
-    return {{"kinds", Fields{{"mesh", summary.mesh},
-                             {"box", summary.box},
-                             {"ellipsoid", summary.ellipsoid},
-                             {"composite", summary.composite}}},
+    Fields kinds;
+    for (const auto& [word, occurrences] : kinds_of(summary))
+        kinds.push_back({word, occurrences});
+    return {{"kinds", kinds},
             {"occurrences", summary.occurrences},
             {"originals", summary.originals},
             {"triangles", summary.triangles},
             {"bytes", summary.bytes},
             {"largest_error_px", summary.largest_error_px},
             {"largest_error_name", summary.largest_error_name}};
+}
+
+std::string kinds_line(const lds_cut_summary& summary) {
+    std::string line;
+    for (const auto& [word, occurrences] : kinds_of(summary)) {
+        const bool hisses = word.ends_with("sh") || word.ends_with("x");
+        line += (line.empty() ? "" : ", ") + std::to_string(occurrences) + " " + word;
+        line += hisses ? "es" : "s";
+    }
+    return line;
 }
 
 List problems_of(const lds_model* model) {

@@ -44,6 +44,9 @@ Fields report_of(const char* verb, const std::string& input);
 /// The report's "cut".
 Fields fields_of(const lds_cut_summary& summary);
 
+/// "3 meshes, 1 boxes, ...": the occurrences drawn by each kind.
+std::string kinds_line(const lds_cut_summary& summary);
+
 /// The model's problems as the report's list; printed to stderr too.
 List problems_of(const lds_model* model);
 

@@ -30,6 +30,15 @@ struct DestroyCut {
 using ModelHandle = std::unique_ptr<lds_model, DestroyModel>;
 using CutHandle = std::unique_ptr<lds_cut, DestroyCut>;
 
+/// Options as they are when nothing is asked for. Throws Failure.
+template <typename Options>
+Options usual(lds_status (*fill)(Options*)) {
+    Options options{};
+    options.struct_size = sizeof options;
+    check(fill(&options));
+    return options;
+}
+
 ModelHandle read_model(const std::string& path);
 
 /// Draws a bar on stderr while it lives (only on a terminal) and passes Ctrl-C to the job.

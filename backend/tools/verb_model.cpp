@@ -38,7 +38,7 @@ void split_loose_parts(const CommandArguments& arguments, lds_model* model, int3
         throw UsageError("--loose-parts is '" + way + "'; auto, one or objects expected");
     if (way == "one")
         return;
-    lds_loose_options options = lds_loose_options_default();
+    lds_loose_options options = usual(lds_loose_options_default);
     options.always = way == "objects" ? 1 : 0;
     options.threads = threads;
     lds_loose_report done{};
@@ -137,7 +137,7 @@ void finish(const CommandArguments& arguments, const Fields& report) {
 
 int run_measure(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
-    lds_measure_options options = lds_measure_options_default();
+    lds_measure_options options = usual(lds_measure_options_default);
     options.rays = arguments.count("rays", options.rays);
     const double usual = arguments.text("rays") ? 0 : 0.01;
     options.relative_error = arguments.number("relative-error", usual, 0, 1);
@@ -182,7 +182,7 @@ int run_simplify(const CommandArguments& arguments) {
     mallopt(M_TRIM_THRESHOLD, INT_MAX);
     const std::string& input = arguments.positional()[0];
     const std::string& output = arguments.positional()[1];
-    lds_simplify_options options = lds_simplify_options_default();
+    lds_simplify_options options = usual(lds_simplify_options_default);
     set_target(arguments, options);
     options.mode = mode_of(arguments);
     options.measure = arguments.has("measure") ? 1 : 0;
@@ -225,7 +225,7 @@ int run_simplify(const CommandArguments& arguments) {
 int run_build(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     const std::string& store = arguments.positional()[1];
-    lds_build_options options = lds_build_options_default();
+    lds_build_options options = usual(lds_build_options_default);
     options.level_ratio = arguments.number("level-ratio", options.level_ratio, 0.02, 0.95);
     options.rays = arguments.count("rays", options.rays);
     options.samples = static_cast<uint32_t>(

@@ -117,7 +117,7 @@ int run_povray(const CommandArguments& arguments) {
         throw UsageError("--out X.png is needed: the picture");
     size_of(arguments);  // before anything is read
     const auto program = arguments.text("program");
-    lds_povray_options options = lds_povray_options_default();
+    lds_povray_options options = usual(lds_povray_options_default);
     options.antialias = antialias_of(arguments);
     options.false_color = arguments.has("false-color") ? 1 : 0;
     options.threads = static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
@@ -131,7 +131,8 @@ int run_povray(const CommandArguments& arguments) {
     const ModelHandle model = read_model(input);
     if (lds_model_light_count(model.get()) == 0)
         light_up(model.get());
-    lds_view view = view_of(arguments, model.get(), true);
+    lds_camera eye{};
+    lds_view view = view_of(arguments, model.get(), true, eye);
     view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID |
                  1u << LDS_KIND_COMPOSITE;
     CutOptions choosing(arguments, view);
@@ -142,7 +143,7 @@ int run_povray(const CommandArguments& arguments) {
     exported.struct_size = sizeof exported;
     lds_povray_report rendered{};
     rendered.struct_size = sizeof rendered;
-    const std::string camera = view.camera.name == nullptr ? "--eye" : view.camera.name;
+    const std::string camera = eye.name == nullptr ? "--eye" : eye.name;
     std::string largest;
     Fields rays;
     {

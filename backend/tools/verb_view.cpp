@@ -14,21 +14,18 @@ int run_cut(const CommandArguments& arguments) {
     const std::string& input = arguments.positional()[0];
     size_of(arguments);  // before anything is read
     const ModelHandle model = read_model(input);
-    lds_view view = view_of(arguments, model.get(), false);
+    lds_camera camera{};
+    lds_view view = view_of(arguments, model.get(), false, camera);
     CutOptions choosing(arguments, view);
     const CutHandle cut = choosing.cut(model.get(), nullptr);
     lds_cut_summary summary{};
     summary.struct_size = sizeof summary;
     check(lds_cut_get_summary(cut.get(), &summary));
     std::printf(
-        "%llu occurrences (%llu originals): %llu meshes, %llu boxes, %llu ellipsoids, "
-        "%llu composites; "
-        "%llu triangles, %.1f MB in POV-Ray\nlargest error %.3f px%s; threshold %g\n",
+        "%llu occurrences (%llu originals): %s; %llu triangles, %.1f MB in POV-Ray\n"
+        "largest error %.3f px%s; threshold %g\n",
         static_cast<unsigned long long>(summary.occurrences),
-        static_cast<unsigned long long>(summary.originals),
-        static_cast<unsigned long long>(summary.mesh), static_cast<unsigned long long>(summary.box),
-        static_cast<unsigned long long>(summary.ellipsoid),
-        static_cast<unsigned long long>(summary.composite),
+        static_cast<unsigned long long>(summary.originals), kinds_line(summary).c_str(),
         static_cast<unsigned long long>(summary.triangles),
         static_cast<double>(summary.bytes) * 1e-6, summary.largest_error_px,
         in_brackets(summary.largest_error_name).c_str(), view.pixel_error);

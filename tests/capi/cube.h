@@ -80,11 +80,11 @@ static inline lds_camera camera_before(double distance) {
     return camera;
 }
 
-static inline lds_view view_before(double distance, int32_t width, int32_t height) {
+static inline lds_view view_of(const lds_camera* camera, int32_t width, int32_t height) {
     lds_view view;
     memset(&view, 0, sizeof view);
     view.struct_size = sizeof view;
-    view.camera = camera_before(distance);
+    view.camera = camera;
     view.width = width;
     view.height = height;
     return view;

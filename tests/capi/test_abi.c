@@ -118,7 +118,8 @@ static void test_build_and_cut(const char* scratch) {
     light.color[0] = light.power = 1;
     EXPECT(lds_model_add_light(model, &light) == LDS_OK);
 
-    lds_build_options options = lds_build_options_default();
+    lds_build_options options = {.struct_size = sizeof options};
+    EXPECT(lds_build_options_default(&options) == LDS_OK);
     options.rebuild = 1; /* an earlier run may have left its store here */
     lds_build_report report;
     memset(&report, 0, sizeof report);
@@ -135,8 +136,9 @@ static void test_build_and_cut(const char* scratch) {
     lds_view view;
     memset(&view, 0, sizeof view);
     view.struct_size = sizeof view;
-    view.camera.struct_size = sizeof view.camera;
-    EXPECT(lds_model_camera(model, 0, &view.camera) == LDS_OK);
+    lds_camera stored = {.struct_size = sizeof stored};
+    EXPECT(lds_model_camera(model, 0, &stored) == LDS_OK);
+    view.camera = &stored;
     view.width = 640;
     view.height = 360;
     view.pixel_error = 1;
@@ -147,8 +149,10 @@ static void test_build_and_cut(const char* scratch) {
     summary.struct_size = sizeof summary;
     EXPECT(lds_cut_get_summary(cut, &summary) == LDS_OK);
     EXPECT(summary.occurrences >= 1 && summary.largest_error_px <= 1);
-    EXPECT(summary.mesh + summary.box + summary.ellipsoid + summary.composite ==
-           summary.occurrences);
+    uint64_t drawn = 0;
+    for (int kind = 0; kind < LDS_KIND_ASSEMBLY; ++kind)
+        drawn += summary.occurrences_of_kind[kind];
+    EXPECT(drawn == summary.occurrences && summary.occurrences_of_kind[LDS_KIND_ASSEMBLY] == 0);
     lds_choice choices[8];
     EXPECT(lds_cut_choice_copy(cut, choices, 8) == LDS_OK);
     EXPECT(lds_cut_choice_count(cut) == summary.occurrences);

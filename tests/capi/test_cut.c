@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Guards choosing from C: what bends quality is refused by name where it makes no sense, views of
-   version 1 go on working, budgets say what fits, reasons name every factor. */
+/* Guards choosing from C: what bends quality is refused by name where it makes no sense, budgets
+   say what fits, reasons name every factor. */
 #include "cube.h"
 
 #include <stddef.h>
@@ -8,7 +8,6 @@
 static lds_lens lens_of(double radius, double strength) {
     lds_lens lens;
     memset(&lens, 0, sizeof lens);
-    lens.struct_size = sizeof lens;
     memcpy(lens.transform, kIdentity, sizeof kIdentity);
     lens.radius = radius;
     lens.strength = strength;
@@ -19,7 +18,8 @@ static lds_lens lens_of(double radius, double strength) {
 
 /* The status of a cut with these modifiers. */
 static lds_status status_of(lds_model* model, const lds_modifiers* modifiers) {
-    lds_view view = view_before(30, 640, 360);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
     view.modifiers = modifiers;
     lds_cut* cut = NULL;
     const lds_status status = lds_cut_create(model, &view, NULL, &cut);
@@ -28,20 +28,59 @@ static lds_status status_of(lds_model* model, const lds_modifiers* modifiers) {
     return status;
 }
 
-static void test_a_view_without_modifiers_is_one_of_version_1(void) {
+/* What a later version of a caller may hand in: a summary with a field more. */
+struct longer {
+    lds_cut_summary summary;
+    uint64_t more;
+};
+
+static void test_structs_are_as_long_as_needed_or_longer(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    lds_view view = view_before(30, 640, 360);
+    const lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
+    lds_cut* cut = NULL;
     view.struct_size = offsetof(lds_view, modifiers);
-    view.modifiers = (const lds_modifiers*)1; /* not read */
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT && cut == NULL);
+    EXPECT(strstr(lds_last_error_text(), "view.struct_size is") != NULL);
+    view.struct_size = sizeof view + 16;
+    view.camera = NULL;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT && cut == NULL);
+    EXPECT(strcmp(lds_last_error_text(), "camera is null") == 0);
+    view.camera = &camera;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
+    struct longer longer;
+    memset(&longer, 0, sizeof longer);
+    longer.more = 77;
+    longer.summary.struct_size = sizeof longer.summary - 8;
+    EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(longer.summary.occurrences == 0);
+    longer.summary.struct_size = sizeof longer;
+    EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_OK);
+    EXPECT(longer.summary.occurrences == 2 && longer.more == 77);
+    EXPECT(longer.summary.struct_size == sizeof longer);
+    lds_cut_destroy(cut);
+    lds_model_destroy(model);
+}
+
+static void test_occurrences_are_counted_by_kind(void) {
+    EXPECT(strcmp(lds_kind_name(LDS_KIND_MESH), "mesh") == 0);
+    EXPECT(strcmp(lds_kind_name(LDS_KIND_COMPOSITE), "composite") == 0);
+    EXPECT(strcmp(lds_kind_name(LDS_KIND_COUNT - 1), "assembly") == 0);
+    EXPECT(strcmp(lds_kind_name(LDS_KIND_COUNT), "") == 0);
+    EXPECT(strcmp(lds_kind_name(0), "") == 0 && strcmp(lds_kind_name(-1), "") == 0);
+    lds_object cube;
+    lds_model* model = two_cubes(&cube);
+    const lds_camera camera = camera_before(30);
+    const lds_view view = view_of(&camera, 640, 360);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     lds_cut_summary summary;
     memset(&summary, 0, sizeof summary);
-    summary.struct_size = offsetof(lds_cut_summary, largest_error_choice);
-    summary.largest_error_choice = 77;
+    summary.struct_size = sizeof summary;
     EXPECT(lds_cut_get_summary(cut, &summary) == LDS_OK);
-    EXPECT(summary.occurrences == 2 && summary.largest_error_choice == 77);
+    for (int kind = 0; kind < LDS_KIND_COUNT; ++kind)
+        EXPECT(summary.occurrences_of_kind[kind] == (kind == LDS_KIND_MESH ? 2 : 0));
     lds_cut_destroy(cut);
     lds_model_destroy(model);
 }
@@ -49,7 +88,8 @@ static void test_a_view_without_modifiers_is_one_of_version_1(void) {
 static void test_nonsense_is_refused_by_name(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    lds_modifiers modifiers = lds_modifiers_default();
+    lds_modifiers modifiers = {.struct_size = sizeof modifiers};
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     EXPECT(status_of(model, &modifiers) == LDS_OK);
     lds_lens lens = lens_of(1, 4);
     modifiers.lenses = &lens;
@@ -72,17 +112,15 @@ static void test_nonsense_is_refused_by_name(void) {
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_STALE_ID);
     lens.objects = &cube;
     EXPECT(status_of(model, &modifiers) == LDS_OK);
-    lens.struct_size = 4;
-    EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     modifiers.lenses = NULL;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     modifiers.lens_count = 10000;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(strcmp(lds_last_error_text(), "10000 lenses; at most 1024") == 0);
-    modifiers = lds_modifiers_default();
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     modifiers.criterion = 4;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
-    modifiers = lds_modifiers_default();
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     modifiers.struct_size = 8;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
@@ -90,7 +128,8 @@ static void test_nonsense_is_refused_by_name(void) {
 
 /* A new cut and a step say the same of a view. */
 static lds_status both_of(lds_model* model, const lds_view* view) {
-    const lds_view usual = view_before(30, 640, 360);
+    const lds_camera camera = camera_before(30);
+    const lds_view usual = view_of(&camera, 640, 360);
     lds_cut* stepped = NULL;
     EXPECT(lds_cut_create(model, &usual, NULL, &stepped) == LDS_OK);
     EXPECT(lds_cut_step(model, stepped, &usual, NULL) == LDS_OK);
@@ -110,16 +149,17 @@ static void test_views_of_nonsense_are_refused_and_odd_ones_are_not(void) {
     lds_model* model = two_cubes(&cube);
     const double bad[] = {NAN, INFINITY, -INFINITY, -1, 0};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
-        lds_view view = view_before(30, 640, 360);
-        view.camera.near_clip = bad[i];
+        lds_camera camera = camera_before(30);
+        lds_view view = view_of(&camera, 640, 360);
+        camera.near_clip = bad[i];
         EXPECT(both_of(model, &view) == LDS_ERROR_INVALID_ARGUMENT);
-        view = view_before(30, 640, 360);
+        camera = camera_before(30);
         view.pixel_error = bad[i]; /* 0: the originals */
         EXPECT(both_of(model, &view) == (bad[i] == 0 ? LDS_OK : LDS_ERROR_INVALID_ARGUMENT));
-        double* const frame[] = {view.camera.position, view.camera.direction, view.camera.right,
-                                 view.camera.up};
+        double* const frame[] = {camera.position, camera.direction, camera.right, camera.up};
+        view.pixel_error = 0;
         for (size_t k = 0; k < 4; ++k) {
-            view = view_before(30, 640, 360);
+            camera = camera_before(30);
             for (int axis = 0; axis < 3; ++axis)
                 frame[k][axis] = bad[i];
             /* All -1 is a skewed frame, and all 0 a place. */
@@ -127,20 +167,22 @@ static void test_views_of_nonsense_are_refused_and_odd_ones_are_not(void) {
             EXPECT(both_of(model, &view) == (fine ? LDS_OK : LDS_ERROR_INVALID_ARGUMENT));
         }
     }
-    lds_view view = view_before(30, 640, 360);
-    memcpy(view.camera.direction, view.camera.right, sizeof view.camera.right);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
+    memcpy(camera.direction, camera.right, sizeof camera.right);
     EXPECT(both_of(model, &view) == LDS_ERROR_INVALID_ARGUMENT); /* it looks along the picture */
-    view = view_before(30, 640, 360);
-    view.camera.right[0] *= -1; /* mirrored */
+    camera = camera_before(30);
+    camera.right[0] *= -1; /* mirrored */
     EXPECT(both_of(model, &view) == LDS_OK);
-    view = view_before(0, 640, 360); /* inside of everything */
+    camera = camera_before(0); /* inside of everything */
     EXPECT(both_of(model, &view) == LDS_OK);
-    view = view_before(1e300, 640, 360);
+    camera = camera_before(1e300);
     EXPECT(both_of(model, &view) == LDS_OK);
     lds_lens many[1024];
     for (int i = 0; i < 1024; ++i)
         many[i] = lens_of(i % 2, 4); /* half of them of radius 0 */
-    lds_modifiers modifiers = lds_modifiers_default();
+    lds_modifiers modifiers = {.struct_size = sizeof modifiers};
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     modifiers.lenses = many;
     modifiers.lens_count = 1024;
     EXPECT(status_of(model, &modifiers) == LDS_OK);
@@ -150,7 +192,8 @@ static void test_views_of_nonsense_are_refused_and_odd_ones_are_not(void) {
 static void test_a_budget_says_what_fits(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_view view = view_before(30, 640, 360);
+    const lds_camera camera = camera_before(30);
+    const lds_view view = view_of(&camera, 640, 360);
     lds_budget budget = {sizeof budget, 24, 0};
     lds_budget_report report;
     memset(&report, 0, sizeof report);
@@ -174,10 +217,12 @@ static void test_a_reason_names_every_factor(void) {
     lds_model* model = two_cubes(&cube);
     lds_lens lens = lens_of(1000, 4);
     lens.falloff = 0;
-    lds_modifiers modifiers = lds_modifiers_default();
+    lds_modifiers modifiers = {.struct_size = sizeof modifiers};
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     modifiers.lenses = &lens;
     modifiers.lens_count = 1;
-    lds_view view = view_before(30, 640, 360);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
     view.modifiers = &modifiers;
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
@@ -211,11 +256,13 @@ static void test_what_moves_is_coarser_only_where_that_counts(void) {
     EXPECT(lds_model_move_placement(model, cube, 0, there) == LDS_ERROR_INVALID_ARGUMENT);
     there[0] = NAN;
     EXPECT(lds_model_move_placement(model, pair, 1, there) == LDS_ERROR_INVALID_ARGUMENT);
-    lds_modifiers modifiers = lds_modifiers_default();
+    lds_modifiers modifiers = {.struct_size = sizeof modifiers};
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     modifiers.when_moving = 1;
     for (int counts = 1; counts >= 0; --counts) {
-        lds_view view = view_before(30, 640, 360);
-        view.camera.orthographic = 1; /* a metre is the picture's width */
+        lds_camera camera = camera_before(30);
+        lds_view view = view_of(&camera, 640, 360);
+        camera.orthographic = 1; /* a metre is the picture's width */
         view.modifiers = counts ? &modifiers : NULL;
         lds_cut* cut = NULL;
         lds_reason reason;
@@ -234,10 +281,12 @@ static void test_what_moves_is_coarser_only_where_that_counts(void) {
 static void test_classes_of_rays_are_counted_and_named(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    lds_modifiers modifiers = lds_modifiers_default();
+    lds_modifiers modifiers = {.struct_size = sizeof modifiers};
+    EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
     EXPECT(modifiers.ray_classes == 0);
     modifiers.ray_classes = LDS_RAYS_SHADOW;
-    lds_view view = view_before(30, 640, 360);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
     view.modifiers = &modifiers;
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
@@ -275,13 +324,14 @@ static void test_classes_of_rays_are_counted_and_named(void) {
 static void test_a_cut_goes_along_with_the_camera(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    lds_view view = view_before(30, 640, 360);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     const double color[6] = {1, 0, 0, 0, 1, 0};
     EXPECT(lds_cut_set_colors(cut, color, 2) == LDS_OK);
     for (int step = 0; step < 3; ++step) {
-        view = view_before(30 + 20 * step, 640, 360);
+        camera = camera_before(30 + 20 * step);
         EXPECT(lds_cut_step(model, cut, &view, NULL) == LDS_OK);
         lds_cut* anew = NULL;
         EXPECT(lds_cut_create(model, &view, NULL, &anew) == LDS_OK);
@@ -300,7 +350,7 @@ static void test_a_cut_goes_along_with_the_camera(void) {
     EXPECT(lds_cut_step(model, NULL, &view, NULL) == LDS_ERROR_INVALID_ARGUMENT);
     lds_object other;
     lds_model* foreign = two_cubes(&other);
-    view = view_before(30, 640, 360);
+    view.width = 640;
     EXPECT(lds_cut_step(foreign, cut, &view, NULL) == LDS_ERROR_STALE_ID);
     lds_model_destroy(foreign);
     lds_model_destroy(model);
@@ -322,7 +372,8 @@ static void test_a_cut_is_stale_once_its_groups_are_structured(void) {
         EXPECT(lds_model_add_placement(model, many, cube, moved, "one") == LDS_OK);
     }
     EXPECT(lds_model_set_root(model, many) == LDS_OK);
-    lds_view view = view_before(30, 640, 360);
+    lds_camera camera = camera_before(30);
+    lds_view view = view_of(&camera, 640, 360);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     lds_reason reason;
@@ -349,7 +400,8 @@ static void test_a_cut_is_stale_once_its_groups_are_structured(void) {
 
 int main(void) {
     test_a_cut_is_stale_once_its_groups_are_structured();
-    test_a_view_without_modifiers_is_one_of_version_1();
+    test_structs_are_as_long_as_needed_or_longer();
+    test_occurrences_are_counted_by_kind();
     test_nonsense_is_refused_by_name();
     test_views_of_nonsense_are_refused_and_odd_ones_are_not();
     test_a_budget_says_what_fits();

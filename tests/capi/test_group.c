@@ -85,7 +85,8 @@ static void test_loose_parts_become_clusters_of_one_object(void) {
     const lds_object_info info = info_of("tiles", "Tiles");
     EXPECT(lds_model_add_mesh(model, &info, &view, NULL, 0, &tiles) == LDS_OK);
     EXPECT(lds_model_set_root(model, tiles) == LDS_OK);
-    lds_loose_options options = lds_loose_options_default();
+    lds_loose_options options = {.struct_size = sizeof options};
+    EXPECT(lds_loose_options_default(&options) == LDS_OK);
     lds_loose_report report;
     memset(&report, 0, sizeof report);
     EXPECT(lds_model_split_loose_parts(model, NULL, 0, &options, NULL, &report) ==
@@ -122,7 +123,8 @@ static void test_structuring_keeps_every_occurrence(void) {
         EXPECT(lds_model_add_placement(model, many, cube, place, "one") == LDS_OK);
     }
     EXPECT(lds_model_set_root(model, many) == LDS_OK);
-    lds_structure_options options = lds_structure_options_default();
+    lds_structure_options options = {.struct_size = sizeof options};
+    EXPECT(lds_structure_options_default(&options) == LDS_OK);
     lds_structure_report report;
     memset(&report, 0, sizeof report);
     EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) ==
@@ -135,7 +137,7 @@ static void test_structuring_keeps_every_occurrence(void) {
     EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) ==
            LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(strcmp(lds_last_error_text(), "orders is 0; 1 to 1024 expected") == 0);
-    options = lds_structure_options_default();
+    EXPECT(lds_structure_options_default(&options) == LDS_OK);
     EXPECT(lds_model_structure(model, NULL, 0, &options, NULL, &report) == LDS_OK);
     EXPECT(report.structured == 1 && report.made > 2 && report.cost_after < report.cost_before / 2);
     size_t count = 0;

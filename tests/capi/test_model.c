@@ -90,52 +90,23 @@ static void test_lights_of_every_kind_are_checked(void) {
     lds_model_destroy(model);
 }
 
-/* A program built before cameras and lights had all of today's fields. */
-static void test_older_structs_go_on_working(void) {
+static void test_short_structs_are_refused(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_camera whole = camera_before(20);
-    struct {
-        uint32_t struct_size;
-        char camera[offsetof(lds_camera, focus_distance)];
-        int32_t width, height;
-        double pixel_error;
-        uint32_t kinds;
-    } view;
-    memset(&view, 0, sizeof view);
-    const size_t start = offsetof(lds_view, camera);
-    const uint32_t camera_size = sizeof view.camera;
-    memcpy((char*)&view + start, &whole, camera_size);
-    memcpy((char*)&view + start, &camera_size, sizeof camera_size);
-    const int32_t size[2] = {64, 36};
-    memcpy((char*)&view + start + camera_size, size, sizeof size);
-    view.struct_size = (uint32_t)(start + camera_size + 24);
-    lds_cut* cut = NULL;
-    EXPECT(lds_cut_create(model, (const lds_view*)(const void*)&view, NULL, &cut) == LDS_OK);
-    lds_cut_destroy(cut);
-    view.struct_size -= 8;
-    EXPECT(lds_cut_create(model, (const lds_view*)(const void*)&view, NULL, &cut) ==
-           LDS_ERROR_INVALID_ARGUMENT);
-
-    lds_camera given = whole;
-    given.struct_size = camera_size;
-    given.aperture = 7; /* beyond what this caller knows: not looked at */
-    EXPECT(lds_model_add_camera(model, &given) == LDS_OK);
-    lds_camera back = whole;
-    EXPECT(lds_model_camera(model, 0, &back) == LDS_OK);
-    EXPECT(back.aperture == 0 && back.struct_size == sizeof back);
-    back.aperture = 7;
-    back.struct_size = camera_size;
-    EXPECT(lds_model_camera(model, 0, &back) == LDS_OK);
-    EXPECT(back.aperture == 7 && back.position[1] == -20);
-
+    lds_camera camera = camera_before(20);
+    --camera.struct_size;
+    EXPECT(lds_model_add_camera(model, &camera) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(strstr(lds_last_error_text(), "camera.struct_size is") != NULL);
+    EXPECT(lds_model_camera_count(model) == 0);
     lds_light light;
     memset(&light, 0, sizeof light);
-    light.struct_size = offsetof(lds_light, radius);
-    light.direction[2] = light.radius = -1;
-    EXPECT(lds_model_add_light(model, &light) == LDS_OK);
-    light.struct_size -= 8;
+    light.direction[2] = -1;
     EXPECT(lds_model_add_light(model, &light) == LDS_ERROR_INVALID_ARGUMENT);
+    light.struct_size = sizeof light + 1000;
+    EXPECT(lds_model_add_light(model, &light) == LDS_OK);
+    lds_material material = {.struct_size = 8, .roughness = 7};
+    EXPECT(lds_material_default(&material) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(material.roughness == 7 && lds_material_default(NULL) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
 }
 
@@ -188,7 +159,8 @@ static void test_positions_that_are_not_there_are_refused(void) {
 static void test_materials_mixed_without_end_are_refused(void) {
     lds_model* model = NULL;
     EXPECT(lds_model_create(&model) == LDS_OK);
-    lds_material material = lds_material_default();
+    lds_material material = {.struct_size = sizeof material};
+    EXPECT(lds_material_default(&material) == LDS_OK);
     material.mix = 0.5;
     uint32_t index = 0;
     lds_status status = LDS_OK;
@@ -258,7 +230,8 @@ static void test_pictures_and_textures_are_checked(void) {
     EXPECT(lds_model_bake_picture(model, NULL, NULL, &index) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(index == 1);
 
-    lds_material material = lds_material_default();
+    lds_material material = {.struct_size = sizeof material};
+    EXPECT(lds_material_default(&material) == LDS_OK);
     material.name = "brick";
     material.base_color_texture.picture = 1;
     material.base_color_texture.to_picture[0] = material.base_color_texture.to_picture[4] = 1;
@@ -322,7 +295,8 @@ static void test_texture_coordinates_are_projected(void) {
 static void test_a_cube_is_seen_all_around(void) {
     lds_model* model = NULL;
     EXPECT(lds_model_create(&model) == LDS_OK);
-    lds_material red = lds_material_default();
+    lds_material red = {.struct_size = sizeof red};
+    EXPECT(lds_material_default(&red) == LDS_OK);
     red.name = "red";
     red.base_color[0] = 0.8;
     red.base_color[1] = red.base_color[2] = 0.1;
@@ -338,7 +312,8 @@ static void test_a_cube_is_seen_all_around(void) {
     lds_object cube;
     EXPECT(lds_model_add_mesh(model, &info, &view, &index, 1, &cube) == LDS_OK);
     EXPECT(lds_model_set_root(model, cube) == LDS_OK);
-    const lds_measure_options options = lds_measure_options_default();
+    lds_measure_options options = {.struct_size = sizeof options};
+    EXPECT(lds_measure_options_default(&options) == LDS_OK);
     EXPECT(options.rays == 4096 && options.relative_error == 0);
     lds_job job = {sizeof job, 0, 0, 0};
     lds_attributes a;
@@ -363,7 +338,8 @@ static void test_a_cube_is_seen_all_around(void) {
 static void test_choices_carry_the_path_of_placements(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_view view = view_before(20, 640, 360); /* Pixel Error 0: originals */
+    const lds_camera camera = camera_before(20);
+    const lds_view view = view_of(&camera, 640, 360); /* Pixel Error 0: originals */
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     EXPECT(lds_cut_choice_count(cut) == 2);
@@ -398,7 +374,7 @@ int main(void) {
     test_problems_name_the_object();
     test_cameras_come_back();
     test_lights_of_every_kind_are_checked();
-    test_older_structs_go_on_working();
+    test_short_structs_are_refused();
     test_representations_and_occurrences();
     test_choices_carry_the_path_of_placements();
     test_positions_that_are_not_there_are_refused();

@@ -11,10 +11,12 @@ static void test_two_cubes_are_seen(const char* folder) {
     const lds_world world = {
         .struct_size = sizeof world, .color = {0.5, 0.5, 0.5}, .transparent = 1};
     EXPECT(lds_model_set_world(model, &world) == LDS_OK);
-    const lds_view view = view_before(20, WIDTH, HEIGHT);
+    const lds_camera camera = camera_before(20);
+    const lds_view view = view_of(&camera, WIDTH, HEIGHT);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
-    lds_povray_options options = lds_povray_options_default();
+    lds_povray_options options = {.struct_size = sizeof options};
+    EXPECT(lds_povray_options_default(&options) == LDS_OK);
     options.antialias = LDS_ANTIALIAS_OFF;
     lds_export_report exported;
     memset(&exported, 0, sizeof exported);

@@ -24,10 +24,12 @@ static int count_in(const char* path, const char* part) {
 static void test_two_cubes_share_one_file(const char* folder) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_view view = view_before(20, 64, 36);
+    const lds_camera camera = camera_before(20);
+    const lds_view view = view_of(&camera, 64, 36);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
-    lds_povray_options options = lds_povray_options_default();
+    lds_povray_options options = {.struct_size = sizeof options};
+    EXPECT(lds_povray_options_default(&options) == LDS_OK);
     EXPECT(options.antialias == LDS_ANTIALIAS_FINAL && options.false_color == 0);
     EXPECT(options.light_error < 0); /* the view's Pixel Error */
     lds_export_report report;
@@ -44,17 +46,10 @@ static void test_two_cubes_share_one_file(const char* folder) {
     options.light_error = 2;
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
     EXPECT(report.lamps == 0 && report.lights_each == 0);
-    /* A program built before lights were approximated. */
-    lds_povray_options old = options;
-    old.struct_size = offsetof(lds_povray_options, antialias_threshold);
-    report.struct_size = offsetof(lds_export_report, lamps);
-    report.lamps = 77;
-    EXPECT(lds_povray_export(model, cut, &view, folder, &old, NULL, &report) == LDS_OK);
-    EXPECT(report.files == 3 && report.lamps == 77);
-    --old.struct_size;
-    EXPECT(lds_povray_export(model, cut, &view, folder, &old, NULL, &report) ==
+    lds_povray_options few = options;
+    few.struct_size = offsetof(lds_povray_options, antialias_threshold);
+    EXPECT(lds_povray_export(model, cut, &view, folder, &few, NULL, &report) ==
            LDS_ERROR_INVALID_ARGUMENT);
-    report.struct_size = sizeof report;
     EXPECT(report.files == 3 && report.bytes > 0); /* scene.pov, scene.ini, the cube */
     char path[512];
     snprintf(path, sizeof path, "%s/scene.pov", folder);
@@ -68,11 +63,6 @@ static void test_two_cubes_share_one_file(const char* folder) {
     options.shadow_error = -1;
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) ==
            LDS_ERROR_INVALID_ARGUMENT);
-    /* A caller of version 1 has none of these. */
-    options.struct_size = offsetof(lds_povray_options, antialias_threshold);
-    EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
-    EXPECT(report.bytes == bytes);
-    options.struct_size = sizeof options;
     options.shadow_error = 0;
     options.bounces = 2;
     options.bounce_error = NAN;

@@ -147,7 +147,8 @@ static void test_pictures_of_what_is_shown_must_be_linear(void) {
 int main(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
-    const lds_view view = view_before(20, 64, 36);
+    const lds_camera camera = camera_before(20);
+    const lds_view view = view_of(&camera, 64, 36);
     lds_cut* cut = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK);
     test_a_surface_is_all_that_is_drawn_in_its_colors(model, cut);

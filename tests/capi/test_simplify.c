@@ -40,7 +40,8 @@ static lds_model* flat_grid(lds_object* grid) {
 static void test_simplifying_a_flat_grid_costs_no_shape(void) {
     lds_object grid;
     lds_model* model = flat_grid(&grid);
-    lds_simplify_options options = lds_simplify_options_default();
+    lds_simplify_options options = {.struct_size = sizeof options};
+    EXPECT(lds_simplify_options_default(&options) == LDS_OK);
     lds_simplify_report report;
     memset(&report, 0, sizeof report);
     report.struct_size = sizeof report;
@@ -81,27 +82,27 @@ static void test_simplifying_a_flat_grid_costs_no_shape(void) {
     lds_model_destroy(model);
 }
 
-static void test_simplify_options_of_version_1_go_on_working(void) {
+static void test_short_options_are_refused(void) {
     lds_object grid;
     lds_model* model = flat_grid(&grid);
-    lds_simplify_options options = lds_simplify_options_default();
+    lds_simplify_options options = {.struct_size = sizeof options};
+    EXPECT(lds_simplify_options_default(&options) == LDS_OK);
     lds_simplify_report report;
     memset(&report, 0, sizeof report);
     report.struct_size = sizeof report;
     options.ratio = 0.25;
-    options.pixels = 3; /* behind the end of the older struct */
-    options.mode = 99;
-    options.struct_size = offsetof(lds_simplify_options, pixels);
-    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
-    EXPECT(report.triangles > 0 && report.triangles <= CELLS * CELLS / 2);
     options.struct_size -= 8;
     EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(report.triangles == 0);
+    options.struct_size = sizeof options + 8;
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.triangles > 0 && report.triangles <= CELLS * CELLS / 2);
     lds_model_destroy(model);
 }
 
 int main(void) {
     if (lds_rays_check() == LDS_OK)
         test_simplifying_a_flat_grid_costs_no_shape();
-    test_simplify_options_of_version_1_go_on_working();
+    test_short_options_are_refused();
     return finish();
 }

@@ -11,7 +11,7 @@ from enum import EnumMeta
 from pathlib import Path
 
 import addon_path
-from lodestone_native import enums, functions, library, structs
+from lodestone_native import base, enums, functions, kind_counts, library, structs
 from lodestone_native.job import Job
 
 HEADER = addon_path.ROOT / "backend" / "include" / "lodestone" / "lodestone.h"
@@ -64,6 +64,14 @@ class Structs(unittest.TestCase):
         actual = [int(line) for line in said.split()]
         for (name, ours), theirs in zip(expected, actual, strict=True):
             self.assertEqual(ours, theirs, name)
+
+    def test_structs_that_grow_lie_in_no_other(self):
+        def item(kind):
+            return item(kind._type_) if issubclass(kind, ctypes.Array) else kind
+
+        for struct in bound_structs():
+            for name, kind in struct._fields_:
+                self.assertFalse(issubclass(item(kind), base.Sized), f"{c_name(struct)}.{name}")
 
     def test_struct_size_is_filled(self):
         self.assertEqual(structs.View().struct_size, ctypes.sizeof(structs.View))
@@ -125,6 +133,14 @@ class Functions(unittest.TestCase):
             ours = {member.name: member.value for member in enum}
             ours.pop("OK", None)
             self.assertEqual(ours, named)
+
+    def test_words_of_kinds_are_the_librarys(self):
+        loaded = library.library()
+        named = {k: loaded.lds_kind_name(k).decode() for k in range(-1, enums.KIND_COUNT + 1)}
+        ours = {int(kind): kind.name.lower() for kind in enums.Kind}
+        self.assertEqual({k: word for k, word in named.items() if word}, ours)
+        counted = kind_counts(range(enums.KIND_COUNT))
+        self.assertEqual(counted, {w: k for k, w in ours.items() if w != "assembly"})
 
 
 class Loading(unittest.TestCase):

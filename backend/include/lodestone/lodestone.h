@@ -7,8 +7,11 @@
    transforms  double[12], row-major 3x4, x -> M x + t
    status      LDS_OK (0) or the cause; the sentence that names the thing is lds_last_error_text().
                On failure outputs are untouched
-   structs     start with struct_size; set it to sizeof the struct (lds_..._default does). Later
-               versions may add fields at the end; those that an older struct lacks count as 0
+   structs     those that begin with struct_size may grow at their end in later versions, for
+               which fields that an older caller's lacks count as 0: set struct_size to sizeof the
+               struct before a call reads or fills it. They are passed by pointer alone, so none
+               lies in an array or in another struct. All other structs stay as they are.
+               lds_..._default fills in the usual values
    strings     UTF-8 in, any bytes accepted; strings handed out stay valid until the model or cut
                they came from changes or is destroyed. A null name counts as ""
    arrays      read during the call only, never kept; results are copied into the caller's buffers
@@ -35,7 +38,7 @@ extern "C" {
 #endif
 
 /* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
-#define LDS_ABI_VERSION 4
+#define LDS_ABI_VERSION 1
 
 typedef enum lds_status {
     LDS_OK = 0,
@@ -106,8 +109,12 @@ typedef enum lds_kind {
     LDS_KIND_BOX = 3,
     LDS_KIND_ELLIPSOID = 4,
     LDS_KIND_COMPOSITE = 7, /* several boxes and ellipsoids */
-    LDS_KIND_ASSEMBLY = 8
+    LDS_KIND_ASSEMBLY = 8   /* placements of other objects; drawn by these */
 } lds_kind;
+/* One more than the largest kind: the length of arrays that are indexed by lds_kind. */
+#define LDS_KIND_COUNT 9
+/* The word for a kind in files and reports, "mesh" and so on; "" for a number that is no kind. */
+LDS_API const char* lds_kind_name(int32_t kind);
 
 /* Bits of a mask. Rays refracted by glass count as camera rays. */
 typedef enum lds_ray_class {
@@ -210,7 +217,7 @@ typedef struct lds_material {
     double mix;     /* 0...1: share of the other */
     lds_texture mix_texture;
 } lds_material;
-LDS_API lds_material lds_material_default(void);
+LDS_API lds_status lds_material_default(lds_material* material);
 
 /* A triangle mesh as the caller has it. Normals and uvs belong to corners: entry corners[3 t + c]
    of corner_normals is that of corner c of triangle t. */
@@ -496,7 +503,7 @@ typedef struct lds_structure_options {
     uint64_t seed;
     int32_t threads; /* 0 = all */
 } lds_structure_options;
-LDS_API lds_structure_options lds_structure_options_default(void);
+LDS_API lds_status lds_structure_options_default(lds_structure_options* options);
 
 typedef struct lds_structure_report {
     uint32_t struct_size;
@@ -526,7 +533,7 @@ typedef struct lds_loose_options {
     uint32_t most_clusters;    /* of one mesh, on average; 2 or more, usual 128 */
     int32_t threads;           /* 0 = all */
 } lds_loose_options;
-LDS_API lds_loose_options lds_loose_options_default(void);
+LDS_API lds_status lds_loose_options_default(lds_loose_options* options);
 
 typedef struct lds_loose_report {
     uint32_t struct_size;
@@ -671,7 +678,7 @@ typedef struct lds_measure_options {
     uint64_t seed;
     int32_t threads; /* 0 = all */
 } lds_measure_options;
-LDS_API lds_measure_options lds_measure_options_default(void);
+LDS_API lds_status lds_measure_options_default(lds_measure_options* options);
 
 typedef struct lds_attributes {
     uint32_t struct_size;
@@ -714,7 +721,7 @@ typedef struct lds_simplify_options {
     int32_t keep_topology; /* 1: keep all parts, holes and handles, even if that misses the target;
                               not with LDS_SIMPLIFY_CLUSTER */
 } lds_simplify_options;
-LDS_API lds_simplify_options lds_simplify_options_default(void);
+LDS_API lds_status lds_simplify_options_default(lds_simplify_options* options);
 
 typedef struct lds_simplify_report {
     uint32_t struct_size;
@@ -754,7 +761,7 @@ typedef struct lds_build_options {
     double share; /* with a view: the most time to build, as a share of the picture's own time (both
                      estimated from counts); usual 0.2 */
 } lds_build_options;
-LDS_API lds_build_options lds_build_options_default(void);
+LDS_API lds_status lds_build_options_default(lds_build_options* options);
 
 typedef struct lds_build_report {
     uint32_t struct_size;
@@ -797,7 +804,6 @@ typedef enum lds_lens_filter {
    A bound takes the largest factor anywhere in it. So a group that the lens touches is opened, and
    those of its children that the lens does not touch are not refined. */
 typedef struct lds_lens {
-    uint32_t struct_size;
     int32_t shape;        /* lds_lens_shape */
     double transform[12]; /* its frame -> the world; a singular one: no effect */
     double radius;        /* of the sphere, or half the box's sides, in its frame; 0: no effect */
@@ -810,7 +816,6 @@ typedef struct lds_lens {
 } lds_lens;
 /* The same as a disc on the image. */
 typedef struct lds_screen_lens {
-    uint32_t struct_size;
     int32_t in_pixels; /* 1: center and radius are pixels of the final image; 0: shares of its width
                           and height (the radius: of its width) */
     double center[2];  /* from the left and the top */
@@ -865,13 +870,13 @@ typedef struct lds_modifiers {
     int32_t off_screen;        /* lds_off_screen */
     uint32_t ray_classes;      /* lds_rays that may meet coarser levels; 0: none */
 } lds_modifiers;
-LDS_API lds_modifiers lds_modifiers_default(void);
+LDS_API lds_status lds_modifiers_default(lds_modifiers* modifiers);
 
 typedef struct lds_view {
     uint32_t struct_size;
-    lds_camera camera;
     int32_t width; /* pixels of the final image */
     int32_t height;
+    const lds_camera* camera;
     double pixel_error; /* T, usual 1; larger is coarser and cheaper; 0 = originals */
     uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
     int32_t border[4];  /* the part of the image that is drawn: left, top, width, height in pixels;
@@ -910,16 +915,13 @@ typedef struct lds_cut_summary {
     uint32_t struct_size;
     uint64_t occurrences; /* chosen ones, each drawn once */
     uint64_t opened;      /* groups drawn by their children */
-    uint64_t mesh;        /* occurrences drawn by each kind */
-    uint64_t box;
-    uint64_t ellipsoid;
-    uint64_t originals; /* occurrences drawn at LOD 0 */
-    uint64_t triangles; /* placed */
-    uint64_t bytes;     /* in POV-Ray's memory */
+    uint64_t originals;   /* occurrences drawn at LOD 0 */
+    uint64_t triangles;   /* placed */
+    uint64_t bytes;       /* in POV-Ray's memory */
     double largest_error_px;
-    const char* largest_error_name; /* path of placements */
-    uint64_t composite;             /* occurrences of that kind */
-    uint64_t largest_error_choice;  /* its position among the choices */
+    const char* largest_error_name;               /* path of placements */
+    uint64_t largest_error_choice;                /* its position among the choices */
+    uint64_t occurrences_of_kind[LDS_KIND_COUNT]; /* drawn by each lds_kind */
 } lds_cut_summary;
 LDS_API lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary);
 
@@ -1117,7 +1119,7 @@ typedef struct lds_povray_options {
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual .6, with OFF 1,
                                 with REFERENCE .4 */
 } lds_povray_options;
-LDS_API lds_povray_options lds_povray_options_default(void);
+LDS_API lds_status lds_povray_options_default(lds_povray_options* options);
 
 typedef struct lds_export_report {
     uint32_t struct_size;

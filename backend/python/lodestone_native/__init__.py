@@ -8,7 +8,7 @@ call does, and says in one sentence when it cannot.
 from . import records
 from .bake import BakeStep
 from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
-from .cut import BatchMesh, Cut, change_placement, most_demanding, release_meshes
+from .cut import BatchMesh, Cut, change_placement, kind_counts, most_demanding, release_meshes
 from .enums import (
     ANY_LEVEL,
     AlphaMode,
@@ -126,6 +126,7 @@ __all__ = [
     "image_read_part",
     "image_size",
     "image_write_png",
+    "kind_counts",
     "largest_face",
     "library_path",
     "most_demanding",

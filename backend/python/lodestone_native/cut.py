@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from . import records, structs
 from .base import pointer_to, text_out
-from .enums import Drawn, Rays
+from .enums import Drawn, Kind, Rays
 from .handle import Handle
 from .job import Job
 from .library import check, library
@@ -40,6 +40,12 @@ class BatchMesh(NamedTuple):
             self.triangles,
         )
         return sum(len(part) * part.itemsize for part in buffers)
+
+
+def kind_counts(occurrences_of_kind: Sequence[int]) -> dict[str, int]:
+    """By the words that reports have for the kinds that can be drawn; of Cut.summary()."""
+    drawn = [kind for kind in Kind if kind != Kind.ASSEMBLY]
+    return {kind.name.lower(): occurrences_of_kind[kind] for kind in drawn}
 
 
 class Choice(NamedTuple):

@@ -126,7 +126,9 @@ class Model(Handle):
     def add_material(self, name: str, **fields: Any) -> int:
         """`fields`: those of lodestone.h's lds_material, textures as texture() makes them; the
         rest keeps its default. Its index."""
-        made = changed(library().lds_material_default(), {"name": text_in(name), **fields})
+        made = structs.Material()
+        check(library().lds_material_default(made))
+        changed(made, {"name": text_in(name), **fields})
         index = ctypes.c_uint32()
         check(library().lds_model_add_material(self.handle, made, index))
         return index.value

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from . import structs
 from .base import Sized
 from .handle import Handle
-from .library import library
+from .library import check, library
 from .structs import Object
 from .view import View
 
@@ -27,29 +27,32 @@ def changed(options: Options, changes: dict[str, Any]) -> Options:
     return options
 
 
-def _start(options: Sized, defaults: Sized, changes: dict[str, Any]) -> None:
-    ctypes.memmove(ctypes.byref(options), ctypes.byref(defaults), ctypes.sizeof(defaults))
-    changed(options, changes)
-
-
 class StructureOptions(structs.StructureOptions):
     def __init__(self, **changes: Any) -> None:
-        _start(self, library().lds_structure_options_default(), changes)
+        super().__init__()
+        check(library().lds_structure_options_default(self))
+        changed(self, changes)
 
 
 class LooseOptions(structs.LooseOptions):
     def __init__(self, **changes: Any) -> None:
-        _start(self, library().lds_loose_options_default(), changes)
+        super().__init__()
+        check(library().lds_loose_options_default(self))
+        changed(self, changes)
 
 
 class MeasureOptions(structs.MeasureOptions):
     def __init__(self, **changes: Any) -> None:
-        _start(self, library().lds_measure_options_default(), changes)
+        super().__init__()
+        check(library().lds_measure_options_default(self))
+        changed(self, changes)
 
 
 class SimplifyOptions(structs.SimplifyOptions):
     def __init__(self, **changes: Any) -> None:
-        _start(self, library().lds_simplify_options_default(), changes)
+        super().__init__()
+        check(library().lds_simplify_options_default(self))
+        changed(self, changes)
 
 
 class BuildOptions(structs.BuildOptions):
@@ -64,7 +67,9 @@ class BuildOptions(structs.BuildOptions):
         view: View | None = None,
         **changes: Any,
     ) -> None:
-        _start(self, library().lds_build_options_default(), changes)
+        super().__init__()
+        check(library().lds_build_options_default(self))
+        changed(self, changes)
         # ctypes keeps alive with the options what they point to.
         if poses:
             handles = (ctypes.c_void_p * len(poses))(*(pose.handle for pose in poses))

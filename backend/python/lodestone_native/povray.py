@@ -54,7 +54,8 @@ class PovrayOptions:
     bounce_error: float = 0.0
 
     def struct(self) -> structs.PovrayOptions:
-        out = library().lds_povray_options_default()
+        out = structs.PovrayOptions()
+        check(library().lds_povray_options_default(out))
         out.antialias = self.antialias
         out.false_color = int(self.false_color)
         out.covered_only = int(self.covered_only)

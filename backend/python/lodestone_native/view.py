@@ -173,7 +173,7 @@ class View:
 
     def struct(self) -> structs.View:
         return structs.View(
-            camera=self.camera.struct(),
+            camera=ctypes.pointer(self.camera.struct()),
             width=self.width,
             height=self.height,
             pixel_error=self.pixel_error,

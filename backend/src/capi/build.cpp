@@ -5,16 +5,11 @@
 #include "hierarchy/hierarchy_build.h"
 
 #include <cmath>
-#include <cstddef>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
-
-// Sizes of version 1: callers built with it go on working.
-constexpr size_t kFirstOptions = offsetof(lds_build_options, poses);
-constexpr size_t kFirstReport = offsetof(lds_build_report, left);
 
 hierarchy::BuildSettings settings_of(const lds_model& model, const lds_build_options& options) {
     hierarchy::BuildSettings settings;
@@ -62,17 +57,18 @@ lds_build_report report_of(const hierarchy::BuildReport& report) {
 
 }  // namespace
 
-lds_build_options lds_build_options_default(void) {
-    const hierarchy::BuildSettings settings;
-    lds_build_options options{};
-    options.struct_size = sizeof options;
-    options.level_ratio = settings.level_ratio;
-    options.rays = settings.rays;
-    options.samples = settings.samples;
-    options.group_triangles = settings.group_triangles;
-    options.seed = settings.seed;
-    options.share = hierarchy::BuildDemand().share;
-    return options;
+lds_status lds_build_options_default(lds_build_options* options) {
+    return guard([&] {
+        const hierarchy::BuildSettings settings;
+        lds_build_options out{};
+        out.level_ratio = settings.level_ratio;
+        out.rays = settings.rays;
+        out.samples = settings.samples;
+        out.group_triangles = settings.group_triangles;
+        out.seed = settings.seed;
+        out.share = hierarchy::BuildDemand().share;
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_model_build_estimate(lds_model* model, const char* store,
@@ -81,12 +77,12 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        const lds_build_options given = grown(options, kFirstOptions, "options");
+        const lds_build_options& given = checked(options, "options");
         const ThreadLimit limit(given.threads);
-        hand_out_grown(out_report,
-                       report_of(hierarchy::estimate_build(model->model, segment::Store(store),
-                                                           settings_of(*model, given))),
-                       kFirstReport, "out_report");
+        hand_out(out_report,
+                 report_of(hierarchy::estimate_build(model->model, segment::Store(store),
+                                                     settings_of(*model, given))),
+                 "out_report");
     });
 }
 
@@ -95,8 +91,8 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        require_size(out_report, kFirstReport, "out_report");
-        const lds_build_options given = grown(options, kFirstOptions, "options");
+        checked(out_report, "out_report");
+        const lds_build_options& given = checked(options, "options");
         const hierarchy::BuildSettings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();
@@ -108,6 +104,6 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
         model->store.emplace(target);
         model->summarized = true;
         model->structured += model->model.objects.size() == before ? 0 : 1;
-        hand_out_grown(out_report, report_of(report), kFirstReport, "out_report");
+        hand_out(out_report, report_of(report), "out_report");
     });
 }

@@ -21,7 +21,7 @@ std::vector<Representation>& levels_with(lds_model& model, const choose::CutNode
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);
 
 /// Reads the meshes of these levels of cut.chosen that are not in memory yet; a level that no
-/// object has (choose::kBoxOnly) needs none.
+/// object has (view::kBoxOnly) needs none.
 void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
                  const Job& job);
 

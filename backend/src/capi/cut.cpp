@@ -5,14 +5,11 @@
 #include "capi/rays.h"
 
 #include <algorithm>
-#include <cstddef>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
-
-constexpr size_t kFirstSummary = offsetof(lds_cut_summary, largest_error_choice);
 
 /// What is known of a cut besides it, with what its classes of rays meet.
 void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
@@ -107,27 +104,21 @@ void lds_cut_destroy(lds_cut* cut) {
 lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary) {
     return guard([&] {
         require(cut, "cut");
-        const auto kind = [&](Kind word) -> uint64_t {
-            const auto at = cut->cut.kinds.find(name_of(word));
-            return at == cut->cut.kinds.end() ? 0 : at->second;
-        };
         lds_cut_summary out{};
         out.occurrences = cut->cut.chosen.size();
         out.opened = cut->cut.nodes.size() - cut->cut.chosen.size();
-        out.mesh = kind(Kind::Mesh);
-        out.box = kind(Kind::Box);
-        out.ellipsoid = kind(Kind::Ellipsoid);
         out.originals = cut->cut.originals;
         out.triangles = cut->cut.triangles;
         out.bytes = cut->cut.bytes;
         out.largest_error_px = cut->cut.largest_error_px;
         out.largest_error_name = cut->largest_error_name.c_str();
-        out.composite = kind(Kind::Composite);
         const auto& chosen = cut->cut.chosen;
         const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->cut.largest_error_node);
         if (cut->cut.largest_error_node != choose::kNoParent && at != chosen.end())
             out.largest_error_choice = static_cast<uint64_t>(at - chosen.begin());
-        hand_out_grown(out_summary, out, kFirstSummary, "out_summary");
+        for (const auto& [name, occurrences] : cut->cut.kinds)
+            out.occurrences_of_kind[static_cast<size_t>(kind_named(name))] = occurrences;
+        hand_out(out_summary, out, "out_summary");
     });
 }
 

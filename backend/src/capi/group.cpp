@@ -235,17 +235,18 @@ lds_status lds_model_group_by_position(lds_model* model, lds_object group, uint3
     });
 }
 
-lds_structure_options lds_structure_options_default(void) {
-    const group::StructureOptions defaults;
-    lds_structure_options options{};
-    options.struct_size = sizeof options;
-    options.fewest_children = static_cast<uint32_t>(defaults.fewest);
-    options.most_children = static_cast<uint32_t>(defaults.most);
-    options.orders = defaults.orders;
-    options.similarity = defaults.similarity;
-    options.group_cost = defaults.group_cost;
-    options.seed = defaults.seed;
-    return options;
+lds_status lds_structure_options_default(lds_structure_options* options) {
+    return guard([&] {
+        const group::StructureOptions defaults;
+        lds_structure_options out{};
+        out.fewest_children = static_cast<uint32_t>(defaults.fewest);
+        out.most_children = static_cast<uint32_t>(defaults.most);
+        out.orders = defaults.orders;
+        out.similarity = defaults.similarity;
+        out.group_cost = defaults.group_cost;
+        out.seed = defaults.seed;
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_model_structure(lds_model* model, const lds_object* groups, size_t group_count,
@@ -276,13 +277,14 @@ lds_status lds_model_structure(lds_model* model, const lds_object* groups, size_
     });
 }
 
-lds_loose_options lds_loose_options_default(void) {
-    const group::LooseOptions defaults;
-    lds_loose_options options{};
-    options.struct_size = sizeof options;
-    options.fewest_triangles = static_cast<uint32_t>(defaults.fewest_triangles);
-    options.most_clusters = static_cast<uint32_t>(defaults.most_clusters);
-    return options;
+lds_status lds_loose_options_default(lds_loose_options* options) {
+    return guard([&] {
+        const group::LooseOptions defaults;
+        lds_loose_options out{};
+        out.fewest_triangles = static_cast<uint32_t>(defaults.fewest_triangles);
+        out.most_clusters = static_cast<uint32_t>(defaults.most_clusters);
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_model_split_loose_parts(lds_model* model, const lds_object* objects,

@@ -7,9 +7,7 @@
 #include "base/error.h"
 #include "base/job.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <new>
 
 namespace lodestone::capi {
@@ -50,7 +48,8 @@ inline void require(const void* pointer, const char* what) {
         fail(Status::InvalidArgument, what, " is null");
 }
 
-/// Throws unless a struct's size is one this library knows (callers set struct_size).
+/// Throws unless a struct is at least as long as this library knows it (callers set struct_size).
+/// The version that makes a struct longer has to accept its older length here.
 template <typename Struct>
 const Struct& checked(const Struct* value, const char* what) {
     require(value, what);
@@ -58,34 +57,6 @@ const Struct& checked(const Struct* value, const char* what) {
         fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ",
              sizeof(Struct), " expected");
     return *value;
-}
-
-/// Throws unless a struct that has grown is at least as long as in version 1.
-template <typename Struct>
-void require_size(const Struct* value, size_t least, const char* what) {
-    require(value, what);
-    if (value->struct_size < least)
-        fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ", least,
-             " or more expected");
-}
-
-/// A struct that has grown since version 1: what a caller's older, shorter one lacks is 0. `least`
-/// is the size of version 1.
-template <typename Struct>
-Struct grown(const Struct* value, size_t least, const char* what) {
-    require_size(value, least, what);
-    Struct out{};
-    std::memcpy(&out, value, std::min<size_t>(value->struct_size, sizeof out));
-    return out;
-}
-
-/// Copies as much of a result out as the caller's struct can hold; throws before anything is
-/// written.
-template <typename Struct>
-void hand_out_grown(Struct* out, Struct value, size_t least, const char* what) {
-    require_size(out, least, what);
-    value.struct_size = out->struct_size;
-    std::memcpy(out, &value, std::min<size_t>(value.struct_size, sizeof value));
 }
 
 /// Copies a result out, keeping the caller's struct_size; throws before anything is written.

@@ -81,8 +81,8 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
 /// Views into the caller's memory; throws for lengths and indices that do not fit.
 PolygonMesh faces_of(const lds_faces_view* view);
 lds_model* new_model();
-/// Checked, with what an older caller's lacks.
-lds_object_info object_info(const lds_object_info* info);
+/// Throws unless it is there and long enough.
+const lds_object_info& object_info(const lds_object_info* info);
 /// Adds an object of that uid; throws when the uid is empty or taken.
 ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);
 

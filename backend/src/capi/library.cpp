@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capi/guard.h"
+#include "model/representation.h"
 #include "ray/mesh_scene.h"
 
 using namespace lodestone;
@@ -47,6 +48,20 @@ const char* lds_status_name(lds_status status) {
             return "POVRAY_FAILED";
     }
     return "UNKNOWN";
+}
+
+const char* lds_kind_name(int32_t kind) {
+    static_assert(LDS_KIND_COUNT == static_cast<int>(Kind::Assembly) + 1);
+    switch (kind) {
+        case LDS_KIND_MESH:
+        case LDS_KIND_BOX:
+        case LDS_KIND_ELLIPSOID:
+        case LDS_KIND_COMPOSITE:
+        case LDS_KIND_ASSEMBLY:
+            return name_of(static_cast<Kind>(kind));
+        default:
+            return "";
+    }
 }
 
 const char* lds_last_error_text(void) {

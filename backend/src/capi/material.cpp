@@ -228,23 +228,24 @@ lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
     });
 }
 
-lds_material lds_material_default(void) {
-    const Material standard;
-    lds_material out{};
-    out.struct_size = sizeof out;
-    for (int i = 0; i < 3; ++i) {
-        out.base_color[i] = standard.base_color[i];
-        out.emission[i] = standard.emission[i];
-    }
-    out.roughness = standard.roughness;
-    out.metallic = standard.metallic;
-    out.specular = standard.specular;
-    out.alpha = standard.alpha;
-    out.alpha_cutoff = standard.alpha_cutoff;
-    out.ior = standard.ior;
-    out.clearcoat_roughness = standard.clearcoat_roughness;
-    out.normal_strength = standard.normal_strength;
-    return out;
+lds_status lds_material_default(lds_material* material) {
+    return guard([&] {
+        const Material standard;
+        lds_material out{};
+        for (int i = 0; i < 3; ++i) {
+            out.base_color[i] = standard.base_color[i];
+            out.emission[i] = standard.emission[i];
+        }
+        out.roughness = standard.roughness;
+        out.metallic = standard.metallic;
+        out.specular = standard.specular;
+        out.alpha = standard.alpha;
+        out.alpha_cutoff = standard.alpha_cutoff;
+        out.ior = standard.ior;
+        out.clearcoat_roughness = standard.clearcoat_roughness;
+        out.normal_strength = standard.normal_strength;
+        hand_out(material, out, "material");
+    });
 }
 
 lds_status lds_model_add_material(lds_model* model, const lds_material* material,

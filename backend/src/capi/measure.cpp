@@ -13,8 +13,6 @@ using namespace lodestone::capi;
 
 namespace {
 
-constexpr size_t kSimplifyBefore = offsetof(lds_simplify_options, pixels);
-
 void copy_tensor(const glm::dmat3& tensor, double out[6]) {
     const double values[6] = {tensor[0][0], tensor[1][1], tensor[2][2],
                               tensor[1][0], tensor[2][1], tensor[0][2]};
@@ -49,12 +47,13 @@ lds_status lds_surface_inertia(const float* positions, size_t vertex_count,
     });
 }
 
-lds_measure_options lds_measure_options_default(void) {
-    lds_measure_options options{};
-    options.struct_size = sizeof options;
-    options.rays = 4096;
-    options.seed = 1;
-    return options;
+lds_status lds_measure_options_default(lds_measure_options* options) {
+    return guard([&] {
+        lds_measure_options out{};
+        out.rays = 4096;
+        out.seed = 1;
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_model_measure(lds_model* model, lds_object object,
@@ -101,11 +100,12 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
     });
 }
 
-lds_simplify_options lds_simplify_options_default(void) {
-    lds_simplify_options options{};
-    options.struct_size = sizeof options;
-    options.seed = 1;
-    return options;
+lds_status lds_simplify_options_default(lds_simplify_options* options) {
+    return guard([&] {
+        lds_simplify_options out{};
+        out.seed = 1;
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* options, lds_job* job,
@@ -113,7 +113,7 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
     return guard([&] {
         require(model, "model");
         checked(out_report, "out_report");
-        const lds_simplify_options given = grown(options, kSimplifyBefore, "options");
+        const lds_simplify_options& given = checked(options, "options");
         const ThreadLimit limit(given.threads);
         model->load_finest();
         model->summarize();  // its bound

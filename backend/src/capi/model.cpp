@@ -186,13 +186,13 @@ lds_status add_leaf(lds_model* model, const lds_object_info* info, const uint32_
 
 }  // namespace
 
-lds_object_info lodestone::capi::object_info(const lds_object_info* info) {
-    return grown(info, offsetof(lds_object_info, connectivity), "info");
+const lds_object_info& lodestone::capi::object_info(const lds_object_info* info) {
+    return checked(info, "info");
 }
 
 ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info* info,
                                         Representation finest) {
-    const lds_object_info given = object_info(info);
+    const lds_object_info& given = object_info(info);
     Object object;
     object.uid = name_of(given.uid);
     object.name = name_of(given.name);

@@ -7,17 +7,6 @@
 namespace lodestone::capi {
 namespace {
 
-constexpr size_t kFirstModifiers = sizeof(lds_modifiers);
-
-/// Elements of an array whose struct may have grown: each as long as the first says.
-template <typename Struct>
-const Struct& element(const Struct* first, size_t position, const char* what) {
-    require(first, what);
-    require_size(first, sizeof(Struct), what);
-    const auto* at = reinterpret_cast<const char*>(first) + position * first->struct_size;
-    return checked(reinterpret_cast<const Struct*>(at), what);
-}
-
 DetailLens lens_of(const lds_lens& given, const lds_model* model) {
     DetailLens lens;
     lens.name = name_of(given.name);
@@ -55,7 +44,7 @@ ScreenLens screen_lens_of(const lds_screen_lens& given, int width, int height) {
 
 QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
                               int height) {
-    const lds_modifiers given = grown(modifiers, kFirstModifiers, "modifiers");
+    const lds_modifiers& given = checked(modifiers, "modifiers");
     QualityModifiers out;
     if (given.criterion < LDS_CRITERION_RESOLUTION || given.criterion > LDS_CRITERION_DISTANCE)
         fail(Status::InvalidArgument, "modifiers.criterion is ", given.criterion,
@@ -64,11 +53,14 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
     if (given.lens_count > choose::kMostLenses || given.screen_lens_count > choose::kMostLenses)
         fail(Status::InvalidArgument, std::max(given.lens_count, given.screen_lens_count),
              " lenses; at most ", choose::kMostLenses);
+    if (given.lens_count > 0)
+        require(given.lenses, "modifiers.lenses");
+    if (given.screen_lens_count > 0)
+        require(given.screen_lenses, "modifiers.screen_lenses");
     for (size_t i = 0; i < given.lens_count; ++i)
-        out.lenses.push_back(lens_of(element(given.lenses, i, "modifiers.lenses"), model));
+        out.lenses.push_back(lens_of(given.lenses[i], model));
     for (size_t i = 0; i < given.screen_lens_count; ++i)
-        out.screen_lenses.push_back(screen_lens_of(
-            element(given.screen_lenses, i, "modifiers.screen_lenses"), width, height));
+        out.screen_lenses.push_back(screen_lens_of(given.screen_lenses[i], width, height));
     out.depth = given.depth;
     out.depth_focus = given.depth_focus;
     out.when_moving = given.when_moving != 0;
@@ -93,11 +85,12 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
 using namespace lodestone;
 using namespace lodestone::capi;
 
-lds_modifiers lds_modifiers_default(void) {
-    const QualityModifiers defaults;
-    lds_modifiers modifiers{};
-    modifiers.struct_size = sizeof modifiers;
-    modifiers.depth = defaults.depth;
-    modifiers.depth_focus = defaults.depth_focus;
-    return modifiers;
+lds_status lds_modifiers_default(lds_modifiers* modifiers) {
+    return guard([&] {
+        const QualityModifiers defaults;
+        lds_modifiers out{};
+        out.depth = defaults.depth;
+        out.depth_focus = defaults.depth_focus;
+        hand_out(modifiers, out, "modifiers");
+    });
 }

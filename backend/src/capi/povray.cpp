@@ -11,16 +11,11 @@
 #include "povray_export/texture/surface_finish.h"
 
 #include <cmath>
-#include <cstddef>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
-
-// Size of version 1: callers built with it go on working.
-constexpr size_t kFirstPovrayOptions = offsetof(lds_povray_options, antialias_threshold);
-constexpr size_t kFirstPovrayReport = offsetof(lds_export_report, lamps);
 
 double error_of(double value, const char* what) {
     if (!(value >= 0) || !std::isfinite(value))
@@ -60,12 +55,13 @@ povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
 
 }  // namespace
 
-lds_povray_options lds_povray_options_default(void) {
-    lds_povray_options options{};
-    options.struct_size = sizeof options;
-    options.antialias = LDS_ANTIALIAS_FINAL;
-    options.light_error = -1;
-    return options;
+lds_status lds_povray_options_default(lds_povray_options* options) {
+    return guard([&] {
+        lds_povray_options out{};
+        out.antialias = LDS_ANTIALIAS_FINAL;
+        out.light_error = -1;
+        hand_out(options, out, "options");
+    });
 }
 
 lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,
@@ -75,8 +71,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(model, "model");
         require(cut, "cut");
         require(folder, "folder");
-        require_size(out_report, kFirstPovrayReport, "out_report");
-        const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
+        checked(out_report, "out_report");
+        const lds_povray_options& given = checked(options, "options");
         require_current(*model, *cut);
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
@@ -110,7 +106,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lamps = report.lamps;
         out.lights_each = report.lights_each;
         out.unseen = report.unseen;
-        hand_out_grown(out_report, out, kFirstPovrayReport, "out_report");
+        hand_out(out_report, out, "out_report");
     });
 }
 
@@ -121,7 +117,7 @@ lds_status lds_povray_run(const char* folder, const char* picture,
         require(folder, "folder");
         require(picture, "picture");
         checked(out_report, "out_report");
-        const lds_povray_options given = grown(options, kFirstPovrayOptions, "options");
+        const lds_povray_options& given = checked(options, "options");
         povray::RunOptions wanted;
         wanted.folder = folder;
         wanted.program = given.program == nullptr ? "" : given.program;

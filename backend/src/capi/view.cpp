@@ -5,20 +5,12 @@
 #include "capi/handles.h"
 
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 
 using namespace lodestone;
 using namespace lodestone::capi;
 
 namespace {
-
-// Sizes of version 1: callers built with it go on working.
-constexpr size_t kFirstLight = offsetof(lds_light, radius);
-constexpr size_t kFirstCamera = offsetof(lds_camera, focus_distance);
-constexpr size_t kFirstWorld = offsetof(lds_world, environment_turn);
-constexpr size_t kViewTail = sizeof(lds_view) - offsetof(lds_view, width);
-constexpr size_t kFirstViewTail = offsetof(lds_view, border) - offsetof(lds_view, width);
 
 double at_least(double value, double least, const char* what) {
     if (!std::isfinite(value) || value < least)
@@ -33,7 +25,7 @@ double between(double value, double least, double most, const char* what) {
 }
 
 Light light_of(const lds_light* light) {
-    const lds_light given = grown(light, kFirstLight, "light");
+    const lds_light& given = checked(light, "light");
     Light out;
     out.name = name_of(given.name);
     if (given.kind < LDS_LIGHT_SUN || given.kind > LDS_LIGHT_AREA)
@@ -69,7 +61,7 @@ Light light_of(const lds_light* light) {
 namespace lodestone::capi {
 
 Camera camera_of(const lds_camera* camera) {
-    const lds_camera given = grown(camera, kFirstCamera, "camera");
+    const lds_camera& given = checked(camera, "camera");
     Camera out;
     out.name = name_of(given.name);
     out.orthographic = given.orthographic != 0;
@@ -89,25 +81,14 @@ Camera camera_of(const lds_camera* camera) {
 }
 
 View view_of(const lds_view* view, const lds_model* model) {
-    // A camera of another version is shorter or longer: the view's own fields follow it as the
-    // caller knows it.
-    require(view, "view");
-    const size_t camera_size = view->camera.struct_size;
-    const size_t before = offsetof(lds_view, camera) + camera_size;
-    if (camera_size < kFirstCamera || camera_size % alignof(lds_camera) != 0 ||
-        view->struct_size < before + kFirstViewTail)
-        fail(Status::InvalidArgument, "view.struct_size is ", view->struct_size, ", its camera's ",
-             camera_size, "; ", sizeof(lds_view), " and ", sizeof(lds_camera), " expected");
-    lds_view given{};
-    std::memcpy(&given.width, reinterpret_cast<const char*>(view) + before,
-                std::min<size_t>(view->struct_size - before, kViewTail));
+    const lds_view& given = checked(view, "view");
     View out;
-    out.camera = camera_of(&view->camera);
+    out.camera = camera_of(given.camera);
     out.width = given.width;
     out.height = given.height;
     if (out.width < 1 || out.height < 1 || out.width > 65536 || out.height > 65536)
         fail(Status::InvalidArgument, "a picture of ", out.width, " x ", out.height, " pixels");
-    std::memcpy(&out.pixel_error, &given.pixel_error, sizeof out.pixel_error);
+    out.pixel_error = given.pixel_error;
     if (!(out.pixel_error >= 0) || !std::isfinite(out.pixel_error))
         fail(Status::InvalidArgument, "Pixel Error is ", out.pixel_error, "; it must be 0 or more");
     out.kinds = given.kinds == 0 ? kAllKinds : given.kinds;
@@ -143,7 +124,7 @@ lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera) {
 lds_status lds_model_set_world(lds_model* model, const lds_world* world) {
     return guard([&] {
         require(model, "model");
-        const lds_world given = grown(world, kFirstWorld, "world");
+        const lds_world& given = checked(world, "world");
         World made;
         made.color = vector(given.color, "world.color");
         made.transparent = given.transparent != 0;
@@ -189,7 +170,7 @@ lds_status lds_model_camera(const lds_model* model, size_t position, lds_camera*
         out.near_clip = camera.near_clip;
         out.focus_distance = camera.focus_distance;
         out.aperture = camera.aperture;
-        hand_out_grown(out_camera, out, kFirstCamera, "out_camera");
+        hand_out(out_camera, out, "out_camera");
     });
 }
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from .exit_codes import STATUS, ExitCode
+from .native import lodestone_native as native
 from .problems import Problem
 
 SCHEMA = 1
@@ -52,12 +53,7 @@ def build_part(report: Any) -> dict[str, Any]:
 
 def cut_part(summary: Any) -> dict[str, Any]:
     return {
-        "kinds": {
-            "mesh": summary.mesh,
-            "box": summary.box,
-            "ellipsoid": summary.ellipsoid,
-            "composite": summary.composite,
-        },
+        "kinds": native.kind_counts(summary.occurrences_of_kind),
         "occurrences": summary.occurrences,
         "originals": summary.originals,
         "triangles": summary.triangles,
