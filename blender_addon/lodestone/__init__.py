@@ -5,6 +5,7 @@ Importing this package needs no Blender: batch.py and the tests of core/ use it 
 """
 
 import importlib
+from types import ModuleType
 
 bl_info = {
     "name": "Lodestone",
@@ -44,7 +45,7 @@ _MODULES = (
     "viewport.lens_overlay",
     "panels.stock_panels",
 )
-_loaded: list = []
+_loaded: list[ModuleType] = []
 
 
 def register() -> None:

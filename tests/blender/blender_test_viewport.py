@@ -69,7 +69,7 @@ class Viewport(unittest.TestCase):
         self.assertEqual(set(self.worker.tree.objects), {"Ball", "Other", "Oak"})
         self.assertEqual(set(self.worker.tree.inner), {"Trunk"})
         things = self.preview.things
-        self.assertEqual((things.changes, things.live, things.count), ({}, (), 0))
+        self.assertEqual((things.changes, things.live, things.number), ({}, (), 0))
         self.assertEqual(self.worker.tree.lost, [])
 
     def test_what_is_moved_is_where_it_is_with_its_levels(self):
@@ -78,7 +78,7 @@ class Viewport(unittest.TestCase):
         things = self.refresh()
         self.assertEqual(set(things.changes), {self.slot("Ball").key, self.slot("Oak").key})
         self.assertEqual(things.changes[self.slot("Ball").key].world[3], 20.0)
-        self.assertEqual(things.count, 0)
+        self.assertEqual(things.number, 0)
         self.ball.location.x = 0.0
         self.oak.rotation_euler.z = 0.0
         self.assertEqual(self.refresh().changes, {})
@@ -96,7 +96,7 @@ class Viewport(unittest.TestCase):
         scenes.cube("Helper").hide_render = True
         scenes.cube("Wires").display_type = "WIRE"
         things = self.refresh()
-        self.assertEqual((things.count, len(things.live)), (1, 1))
+        self.assertEqual((things.number, len(things.live)), (1, 1))
         self.assertEqual(things.live[0].model.totals().triangles_placed, 12)
         first = things.live[0]
         scenes.cube("Newer", (5, 5, 5))
@@ -104,24 +104,24 @@ class Viewport(unittest.TestCase):
 
     def test_only_what_has_another_shape_counts_as_edited(self):
         self.preview.touch(["Ball"])  # Blender says so of whatever is tagged or shown again
-        self.assertEqual(self.refresh().count, 0)
+        self.assertEqual(self.refresh().number, 0)
         self.mesh.vertices[0].co.z += 1.0
         self.mesh.update()
         self.preview.touch(["Ball"])
         things = self.refresh()
-        self.assertEqual(things.count, 1)
+        self.assertEqual(things.number, 1)
         self.assertTrue(things.changes[self.slot("Ball").key].hidden)
         self.mesh.vertices[0].co.z -= 1.0
         self.mesh.update()
         self.preview.touch(["Ball"])
-        self.assertEqual(self.refresh().count, 0)
+        self.assertEqual(self.refresh().number, 0)
 
     def test_editing_what_is_instanced_shows_its_instances_as_they_are(self):
         self.trunk.data.vertices[0].co.z += 1.0
         self.trunk.data.update()
         self.preview.touch(["Trunk"])
         things = self.refresh()
-        self.assertEqual(things.count, 1)
+        self.assertEqual(things.number, 1)
         self.assertTrue(things.changes[self.slot("Oak").key].hidden)
         self.assertEqual(things.live[0].model.totals().triangles_placed, 12)
 

@@ -94,7 +94,7 @@ def levels_are_drawn_and_the_file_stays_as_it_is():
     yield from settled()
     shown = picture()
     assert 0 < shown.triangles < shown.triangles_before == PLACES * 1280, shown
-    assert shown.things.count == 0 and state().batches > 0
+    assert shown.things.number == 0 and state().batches > 0
     assert of_user() == before
     pixels_are_red(area)
 
@@ -149,7 +149,7 @@ def moved_hidden_and_new_things_follow():
     yield from settled(area, shown)
     boxes = [preview_pool()._there[key].box for key in picture(area).keys]
     assert max(box[4] for box in boxes) > 5.5, boxes
-    assert picture(area).things.count == 0, "what was only moved is still drawn by its levels"
+    assert picture(area).things.number == 0, "what was only moved is still drawn by its levels"
     drawn = picture(area).drawn
     shown = picture(area)
     bpy.data.objects["Ball 1"].hide_set(True)
@@ -158,7 +158,7 @@ def moved_hidden_and_new_things_follow():
     shown = picture(area)
     scenes.cube("New", (0.0, -4.0, 0.0))
     yield from settled(area, shown)
-    assert picture(area).things.count == 1
+    assert picture(area).things.number == 1
     boxes = [preview_pool()._there[key].box for key in picture(area).keys]
     assert min(box[1] for box in boxes) < -4.4
     with steps.window():
@@ -180,7 +180,7 @@ def what_is_edited_is_drawn_as_it_is():
     bpy.data.objects["Ball 2"].data.vertices[0].co.z += 4.0  # of all of them
     bpy.data.objects["Ball 2"].data.update()
     yield from settled(area_now(), shown)
-    assert picture(area_now()).things.count == PLACES, picture(area_now()).things.count
+    assert picture(area_now()).things.number == PLACES, picture(area_now()).things.number
 
 
 def undo_and_redo_are_followed():
@@ -205,7 +205,7 @@ def a_pin_for_viewports_is_obeyed_and_renders_are_not_affected():
     bpy.data.objects["Ball 3"].lodestone.use_pin_viewport = True
     yield from settled(area, shown)
     assert picture(area).triangles >= 1280
-    assert picture(area).things.count == 0, "deciding about a thing is taken for another shape"
+    assert picture(area).things.number == 0, "deciding about a thing is taken for another shape"
     from lodestone.bridge import datablock_ids
 
     assert datablock_ids.decision_of(bpy.data.objects["Ball 3"]) == datablock_ids.UNDECIDED

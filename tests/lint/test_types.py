@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards the types of Python: mypy --strict on the binding and on what makes it."""
+"""Guards the types of Python: mypy --strict on the binding, on what makes it, and on the add-on's
+core. Above core there is bpy, which has no types in Debian."""
 
 import os
 import subprocess
@@ -60,6 +61,9 @@ class TheRepository(unittest.TestCase):
 
     def test_the_binding_is_strict(self):
         self.assertEqual(complaints("-p", "lodestone_native"), [])
+
+    def test_the_core_of_the_add_on_is_strict(self):
+        self.assertEqual(complaints("-p", "lodestone.core", path=(ROOT / "blender_addon",)), [])
 
     def test_what_makes_the_binding_is_strict(self):
         self.assertEqual(complaints(MAKERS / "generate_binding.py", path=(MAKERS,)), [])

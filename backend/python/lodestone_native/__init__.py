@@ -8,7 +8,15 @@ call does, and says in one sentence when it cannot.
 from . import records
 from .bake import BakeStep
 from .buffers import FaceBuffers, MeshBuffers, StrandBuffers, largest_face
-from .cut import BatchMesh, Cut, change_placement, kind_counts, most_demanding, release_meshes
+from .cut import (
+    BatchMesh,
+    Choice,
+    Cut,
+    change_placement,
+    kind_counts,
+    most_demanding,
+    release_meshes,
+)
 from .enums import (
     ANY_LEVEL,
     AlphaMode,
@@ -79,6 +87,7 @@ __all__ = [
     "BuildOptions",
     "Camera",
     "Channel",
+    "Choice",
     "Criterion",
     "Cut",
     "Drawn",

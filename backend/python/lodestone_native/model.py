@@ -352,7 +352,7 @@ class Model(Handle):
         check(library().lds_model_object_summary(self.handle, item, out))
         return out.record()
 
-    def children(self, group: Object) -> Iterator[tuple[Object, Sequence[float], str, int]]:
+    def children(self, group: Object) -> Iterator[tuple[Object, tuple[float, ...], str, int]]:
         """Of a group, as add_placements() takes them."""
         for position in range(self.object_summary(group).child_count):
             out = self._child(group, position)

@@ -3,9 +3,11 @@
 
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from .native import lodestone_native as native
+
+Result = TypeVar("Result")
 
 
 class Stopped(Exception):
@@ -23,7 +25,7 @@ class Work:
         self._job = native.Job()
         self._stopping = False
 
-    def new_job(self, stage: str) -> Any:
+    def new_job(self, stage: str) -> native.Job:
         """The Job of the next long call, already off when the work was stopped."""
         job = native.Job()
         self.stage, self._job = stage, job
@@ -48,8 +50,8 @@ class Work:
         return self._stopping
 
     def run(
-        self, function: Callable[[], Any], poll: Callable[[], None], interval: float = 0.05
-    ) -> Any:
+        self, function: Callable[[], Result], poll: Callable[[], None], interval: float = 0.05
+    ) -> Result:
         """Calls function on a new thread and poll() on this one until it is done. Returns its
         result or raises what it raised; Stopped when it was cancelled."""
         outcome: dict[str, Any] = {}
@@ -57,7 +59,8 @@ class Work:
         while thread.is_alive():
             poll()
             thread.join(interval)
-        return finish(outcome, self._stopping)
+        result: Result = finish(outcome, self._stopping)
+        return result
 
 
 def start(function: Callable[[], Any], outcome: dict[str, Any]) -> threading.Thread:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """OpenEXR bytes of linear colors: what has no file of its own, brighter than white or smooth."""
 
+from __future__ import annotations
+
 import struct
 import sys
 from array import array
 
 
-def encode(width: int, height: int, pixels: array) -> bytes:
+def encode(width: int, height: int, pixels: array[float]) -> bytes:
     """RGB of float32, uncompressed; pixels: array('f') [height][width][3], lowest row first."""
     if len(pixels) != 3 * width * height or width < 1 or height < 1:
         raise ValueError("the pixels do not fit the size of the picture")

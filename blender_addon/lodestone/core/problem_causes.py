@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from . import stable_ids
-from .problems import ERROR, SEVERITIES, WARNING, Problem, Subject
+from .problems import ERROR, SEVERITIES, WARNING, CauseKey, Problem, Subject
 
 _PLURALS = {"library": "libraries", "": "things"}
 Users = Mapping[Subject, Sequence[Subject]]  # the objects that show a material
@@ -80,15 +80,15 @@ class Split:
 def split(problems: Iterable[Problem], users: Users, ignored: Collection[str] = ()) -> Split:
     """Causes in order of severity, worst first, then as found. `ignored` are keys of problems;
     what is about the setup is never ignored."""
-    shown: dict[tuple, list[Problem]] = {}
-    hidden: dict[tuple, list[Problem]] = {}
+    shown: dict[CauseKey, list[Problem]] = {}
+    hidden: dict[CauseKey, list[Problem]] = {}
     for problem in problems:
         chosen = hidden if problem.object and problem.key in ignored else shown
         chosen.setdefault(problem.cause, []).append(problem)
     return Split(_causes(shown, users), _causes(hidden, users))
 
 
-def _causes(grouped: Mapping[tuple, list[Problem]], users: Users) -> tuple[Cause, ...]:
+def _causes(grouped: Mapping[CauseKey, list[Problem]], users: Users) -> tuple[Cause, ...]:
     made = [Cause(tuple(problems), _objects(problems, users)) for problems in grouped.values()]
     return tuple(sorted(made, key=lambda cause: -SEVERITIES.index(cause.severity)))
 

@@ -4,9 +4,9 @@
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
 
 from . import stable_ids
+from .native import lodestone_native as native
 from .printable_text import valid
 
 INFO, WARNING, ERROR = "info", "warning", "error"
@@ -15,6 +15,7 @@ KINDS = ("material", "object", "light", "camera", "world", "collection", "image"
 TEXTS_PER_CODE = 16  # for one thing: a bound for hostile data
 
 Subject = tuple[str, str, str]  # kind, library, name
+CauseKey = tuple[str, str, str]  # severity, code, message without the name
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Problem:
         return f"{self.object}: {self.message}"
 
     @property
-    def cause(self) -> tuple[str, str, str]:
+    def cause(self) -> CauseKey:
         """The cause, which is equal for problems that differ in nothing but the thing that has
         them."""
         return (self.severity, self.code, self.message.replace(f'"{self.object}"', '""'))
@@ -90,7 +91,7 @@ class Problems:
         for problem in problems:
             self._take(problem)
 
-    def extend_native(self, records: Iterable[Any]) -> None:
+    def extend_native(self, records: Iterable[native.records.Problem]) -> None:
         """Takes what lodestone_native's Model.problems() returns."""
         for item in records:
             severity = SEVERITIES[item.severity] if 0 <= item.severity < 3 else ERROR

@@ -31,7 +31,7 @@ def file_report(verb: str, source: str, code: ExitCode, message: str = "") -> di
     return report
 
 
-def model_part(totals: Any) -> dict[str, int]:
+def model_part(totals: native.records.Totals) -> dict[str, int]:
     return {
         "objects": totals.objects,
         "placements": totals.occurrences,
@@ -40,7 +40,7 @@ def model_part(totals: Any) -> dict[str, int]:
     }
 
 
-def build_part(report: Any) -> dict[str, Any]:
+def build_part(report: native.records.BuildReport) -> dict[str, Any]:
     return {
         "objects": report.objects,
         "built": report.built,
@@ -51,7 +51,7 @@ def build_part(report: Any) -> dict[str, Any]:
     }
 
 
-def cut_part(summary: Any) -> dict[str, Any]:
+def cut_part(summary: native.records.CutSummary) -> dict[str, Any]:
     return {
         "kinds": native.kind_counts(summary.occurrences_of_kind),
         "occurrences": summary.occurrences,
@@ -63,7 +63,7 @@ def cut_part(summary: Any) -> dict[str, Any]:
     }
 
 
-def export_part(report: Any) -> dict[str, Any]:
+def export_part(report: native.records.ExportReport) -> dict[str, Any]:
     return {
         "bytes": report.bytes,
         "files": report.files,
@@ -72,7 +72,7 @@ def export_part(report: Any) -> dict[str, Any]:
     }
 
 
-def povray_part(report: Any) -> dict[str, Any]:
+def povray_part(report: native.records.PovrayReport) -> dict[str, Any]:
     return {
         "parse_cpu_s": report.parse_cpu_s,
         "trace_cpu_s": report.trace_cpu_s,

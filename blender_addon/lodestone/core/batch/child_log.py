@@ -3,6 +3,7 @@
 
 from collections import deque
 from pathlib import Path
+from typing import BinaryIO
 
 _HEAD_BYTES = 4 << 20
 _TAIL_BYTES = 256 << 10
@@ -26,9 +27,11 @@ class ChildLog:
 
     def write(self, data: bytes) -> None:
         """Any part of what it said."""
-        room = _HEAD_BYTES - self._written if self._file is not None and not self._left_out else 0
-        if room > 0:
-            self._put(data[:room])
+        room = _HEAD_BYTES - self._written if not self._left_out else 0
+        if self._file is None or room <= 0:
+            room = 0
+        else:
+            self._put(self._file, data[:room])
         self._left_out += max(0, len(data) - room)
         data = data[-_TAIL_BYTES:]
         self._tail.append(data)
@@ -36,10 +39,10 @@ class ChildLog:
         while self._tail_bytes - len(self._tail[0]) >= _TAIL_BYTES:
             self._tail_bytes -= len(self._tail.popleft())
 
-    def _put(self, data: bytes) -> None:
+    def _put(self, file: BinaryIO, data: bytes) -> None:
         try:
-            self._file.write(data)
-            self._file.flush()  # it may be looked at while the child runs
+            file.write(data)
+            file.flush()  # it may be looked at while the child runs
             self._written += len(data)
         except OSError:  # a full disk must not stop the pictures
             self._left_out += len(data)
@@ -65,8 +68,8 @@ class ChildLog:
         if self._left_out:
             tail = b"".join(self._tail)[-self._left_out :]
             cut = self._left_out - len(tail)
-            self._put(b"\n[... %d bytes left out ...]\n" % cut if cut else b"")
-            self._put(tail)
+            self._put(self._file, b"\n[... %d bytes left out ...]\n" % cut if cut else b"")
+            self._put(self._file, tail)
         try:
             self._file.close()
         except OSError:

@@ -52,7 +52,9 @@ class Child:
             start_new_session=True,
             preexec_fn=process_session.death_with_parent(),
         )
-        os.set_blocking(self._process.stdout.fileno(), False)
+        assert self._process.stdout is not None
+        self._output = self._process.stdout
+        os.set_blocking(self._output.fileno(), False)
 
     @property
     def pid(self) -> int:
@@ -60,7 +62,7 @@ class Child:
         return self._process.pid
 
     def fileno(self) -> int:
-        return self._process.stdout.fileno()
+        return self._output.fileno()
 
     # ---- Output ----
 
@@ -127,7 +129,7 @@ class Child:
         while self.read() and self._more():
             pass
         self.returncode = self._process.wait()
-        self._process.stdout.close()
+        self._output.close()
 
     def _more(self) -> bool:
         """All writers are dead, so what is not there now never comes."""

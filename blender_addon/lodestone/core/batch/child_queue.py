@@ -6,7 +6,7 @@ import selectors
 import signal
 import time
 from collections.abc import Iterable
-from typing import Protocol
+from typing import Any, Protocol
 
 from . import process_session
 from .child_process import CANCELLED, Child
@@ -37,7 +37,7 @@ class Interrupts:
 
     def __init__(self) -> None:
         self.count = 0
-        self._before: dict[int, object] = {}
+        self._before: dict[int, Any] = {}
 
     def __enter__(self) -> "Interrupts":
         for number in self._NUMBERS:
@@ -72,8 +72,9 @@ class Queue:
             while self._running or (self._waiting and not self._interrupts.count):
                 self._fill()
                 for key, _ in self._selector.select(_TICK_S if self._running else 0):
-                    if not key.fileobj.read():
-                        self._selector.unregister(key.fileobj)
+                    child: Child = key.data
+                    if not child.read():
+                        self._selector.unregister(child)
                 if self._interrupts.count > seen:
                     grace = _GRACE_S if seen == 0 else 0.0
                     seen = self._interrupts.count
@@ -93,7 +94,7 @@ class Queue:
             child = task.start()
             if child is not None:
                 self._running[child] = task
-                self._selector.register(child, selectors.EVENT_READ)
+                self._selector.register(child, selectors.EVENT_READ, child)
 
     def _watch(self) -> None:
         now = time.monotonic()

@@ -34,7 +34,7 @@ class PictureRequest:
     @property
     def levels(self) -> bool:
         """Whether anything but originals may be drawn."""
-        return self.pixel_error > 0.0 or bool(self.budget)
+        return (self.pixel_error or 0.0) > 0.0 or bool(self.budget)
 
     def for_frame(self, frame: int) -> "PictureRequest":
         """The request for one frame: out.png becomes out_0001.png."""
@@ -94,14 +94,13 @@ class FileJob:
 
     @classmethod
     def load(cls, text: str) -> "FileJob":
-        values = json.loads(text)
-        pictures = [
-            PictureRequest(**{**p, "size": tuple(p["size"]) if p["size"] else None})
-            for p in values["pictures"]
-        ]
-        frames = tuple(values["frames"]) if values["frames"] else None
-        changed = {"pictures": tuple(pictures), "frames": frames, "skip": tuple(values["skip"])}
-        return cls(**{**values, **changed})
+        values: dict[str, Any] = json.loads(text)
+        for picture in values["pictures"]:
+            picture["size"] = tuple(picture["size"]) if picture["size"] else None
+        values["pictures"] = tuple(PictureRequest(**picture) for picture in values["pictures"])
+        values["frames"] = tuple(values["frames"]) if values["frames"] else None
+        values["skip"] = tuple(values["skip"])
+        return cls(**values)
 
 
 def _hash(value: Any) -> str:

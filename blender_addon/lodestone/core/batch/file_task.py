@@ -79,12 +79,14 @@ class FileTask:
         program = shutil.which(self.around.blender)
         if program is None:
             text = f"Blender was not found ({self.around.blender}): install it, or name it with "
-            return self._refuse(ExitCode.FAILED, text + "--blender")
+            self._refuse(ExitCode.FAILED, text + "--blender")
+            return None
         if not os.path.isfile(job.file) or not os.access(job.file, os.R_OK):
             reason = "cannot be read" if os.path.exists(job.file) else "does not exist"
             if os.path.isdir(job.file):
                 reason = "is a folder"
-            return self._refuse(ExitCode.UNREADABLE, f"the file {reason}")
+            self._refuse(ExitCode.UNREADABLE, f"the file {reason}")
+            return None
         carried = dict(self.found.pictures)
         if self.around.skip_existing:
             for _, picture in job.wanted():
@@ -100,7 +102,8 @@ class FileTask:
         try:
             return self._start_child(program)
         except OSError as error:
-            return self._refuse(ExitCode.FAILED, f"Blender cannot be started: {error}")
+            self._refuse(ExitCode.FAILED, f"Blender cannot be started: {error}")
+            return None
 
     def _start_child(self, program: str) -> Child:
         temporary = Path(tempfile.gettempdir())
@@ -194,9 +197,10 @@ class FileTask:
     def _event(self, event: dict[str, Any]) -> None:
         file = self.job.file
         if "inputs" in event:
-            self._inputs = event["inputs"]
-            name = input_stamps.identity(self._inputs)
-            self.around.record("inputs", id=name, file=file, inputs=self._inputs)
+            inputs: dict[str, Any] = event["inputs"]
+            self._inputs = inputs
+            name = input_stamps.identity(inputs)
+            self.around.record("inputs", id=name, file=file, inputs=inputs)
         elif "made" in event:
             out, made = event["out"], event["made"]
             self._made[out] = made
@@ -243,9 +247,9 @@ class FileTask:
         self._folder.remove()
         self._end(made)
 
-    def _crashed(self, returncode: int) -> dict[str, Any]:
+    def _crashed(self, returncode: int | None) -> dict[str, Any]:
         how = f"exit code {returncode}"
-        if returncode < 0:
+        if returncode is not None and returncode < 0:
             how = f"signal {_signal_name(-returncode)}"
         file = self.job.file
         text = f"Blender died on the file ({how}){blend_header.written_by(file)}"

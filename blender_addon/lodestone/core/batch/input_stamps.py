@@ -13,7 +13,9 @@ _CHUNK = 8 << 20
 _MOST_OTHERS = 100_000
 
 
-def read(blend: str, others: Iterable[str], tick: Callable[[], None] = lambda: None) -> dict:
+def read(
+    blend: str, others: Iterable[str], tick: Callable[[], None] = lambda: None
+) -> dict[str, Any]:
     """Raises OSError when the .blend cannot be read. `others` are paths; <UDIM> and its like stand
     for any text."""
     return {"blend": hash_file(blend, tick), "others": stamps(others)}
@@ -59,12 +61,12 @@ def unchanged(before: Any, blend: str, tick: Callable[[], None] = lambda: None) 
     try:
         if any(stamp(path) != known for path, known in before["others"]):
             return False
-        return hash_file(blend, tick) == before["blend"]
+        return bool(hash_file(blend, tick) == before["blend"])
     except (OSError, KeyError, TypeError, ValueError):
         return False
 
 
-def identity(inputs: dict) -> str:
+def identity(inputs: dict[str, Any]) -> str:
     """A short name for them in a log."""
     text = json.dumps(inputs, sort_keys=True)
     return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()

@@ -65,8 +65,9 @@ def control(wanted: Control) -> Callable[[str], float]:
 
     def value(text: str) -> float:
         found = number(text)
-        if not wanted.least <= found <= wanted.most:
-            limits = f"{wanted.least:g} and {wanted.most:g} {wanted.unit}".rstrip()
+        least, most = wanted.least or 0.0, wanted.most or 0.0
+        if not least <= found <= most:
+            limits = f"{least:g} and {most:g} {wanted.unit}".rstrip()
             raise argparse.ArgumentTypeError(f"{text} is not between {limits}")
         if isinstance(wanted.least, int):
             if found != int(found):

@@ -28,7 +28,7 @@ class Compared(NamedTuple):
     @classmethod
     def of(cls, pictures: Iterable[dict[str, Any]]) -> "Compared | None":
         found = (picture for picture in pictures if "compare" in picture)
-        most = min(found, key=lambda picture: picture["compare"]["ssim"], default=None)
+        most = min(found, key=lambda picture: float(picture["compare"]["ssim"]), default=None)
         if most is None:
             return None
         difference, before = most["compare"], most["originals"]
@@ -84,7 +84,7 @@ class Row:
     def of(cls, report: dict[str, Any]) -> "Row":
         made = report.get("pictures", [report])
         cuts = [picture["cut"] for picture in made if "cut" in picture]
-        worst = max(cuts, key=lambda cut: cut["largest_error_px"], default=None)
+        worst = max(cuts, key=lambda cut: float(cut["largest_error_px"]), default=None)
         code = ExitCode(report["exit_code"])
         return cls(
             file=report["input"],

@@ -5,9 +5,12 @@ Every value is a color (three numbers); a number is a color of three equal ones.
 are those of the backend's bakes (BakeOp), which say what each does.
 """
 
+from __future__ import annotations
+
 import math
+import operator
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,15 +32,21 @@ class Expression:
     """
 
     op: Op
-    args: tuple["Expression", ...] = ()
+    args: tuple[Expression, ...] = ()
     value: Color = (0.0, 0.0, 0.0)
     leaf: Any = None
-    table: array | None = None
+    table: array[float] | None = None
     exact: bool = True
 
     @property
     def constant(self) -> bool:
         return self.op == Op.CONSTANT
+
+
+def color_of(values: Iterable[float]) -> Color:
+    """Of three."""
+    red, green, blue = values
+    return (red, green, blue)
 
 
 def constant(value: Color, exact: bool = True) -> Expression:
@@ -86,7 +95,7 @@ def luma(a: Expression) -> Expression:
     return a if _is_number(a) else Expression(Op.LUMA, (a,))
 
 
-def ramp(a: Expression, table: array) -> Expression:
+def ramp(a: Expression, table: array[float]) -> Expression:
     """A color by a number 0...1; of a mean the table's mean."""
     if not a.constant:
         return Expression(Op.RAMP, (a,), table=table)
@@ -97,10 +106,10 @@ def ramp(a: Expression, table: array) -> Expression:
     return constant((mean[0], mean[1], mean[2]), False)
 
 
-def curves(a: Expression, table: array) -> Expression:
+def curves(a: Expression, table: array[float]) -> Expression:
     if not a.constant:
         return Expression(Op.CURVES, (a,), table=table)
-    return constant(tuple(_row(table, a.value[c])[c] for c in range(3)), a.exact)
+    return constant(color_of(_row(table, a.value[c])[c] for c in range(3)), a.exact)
 
 
 def add(a: Expression, b: Expression) -> Expression:
@@ -170,9 +179,9 @@ def _rebuilt(item: Expression, args: tuple[Expression, ...]) -> Expression:
         return channel(args[0], int(item.value[0]))
     if item.op == Op.LUMA:
         return luma(args[0])
-    if item.op == Op.RAMP:
+    if item.op == Op.RAMP and item.table is not None:
         return ramp(args[0], item.table)
-    if item.op == Op.CURVES:
+    if item.op == Op.CURVES and item.table is not None:
         return curves(args[0], item.table)
     return apply(item.op, *args)
 
@@ -194,7 +203,7 @@ def _bounds(item: Expression, args: list[tuple[float, float]]) -> tuple[float, f
         return (0.0, 1.0)
     if item.op in _SAME_RANGE:
         return (min(low for low, _ in args), max(high for _, high in args))
-    if item.op in {Op.RAMP, Op.CURVES}:
+    if item.op in {Op.RAMP, Op.CURVES} and item.table is not None:
         return (min(item.table), max(item.table))
     if item.op == Op.GREATER:
         return (0.0, 1.0)
@@ -203,7 +212,11 @@ def _bounds(item: Expression, args: list[tuple[float, float]]) -> tuple[float, f
         return (min(corners), max(corners))
     if item.op == Op.POWER and 0.0 <= args[0][0] and args[0][1] <= 1.0 and args[1][0] >= 0.0:
         return (0.0, 1.0)
-    if item.op == Op.POWER and args[0][0] > 0.0 and max(map(abs, (*args[0], *args[1]))) < 100.0:
+    if (
+        item.op == Op.POWER
+        and args[0][0] > 0.0
+        and max(abs(x) for x in (*args[0], *args[1])) < 100.0
+    ):
         corners = [_power(x, y) for x in args[0] for y in args[1]]
         return (min(corners), max(corners))
     if item.op == Op.DIVIDE and not args[1][0] <= 0.0 <= args[1][1]:
@@ -268,14 +281,10 @@ def _folded(op: Op, args: tuple[Expression, ...]) -> Color:
     values = [arg.value for arg in args]
     if op in _BY_CHANNEL:
         function = _BY_CHANNEL[op]
-        result = tuple(_finite(function(*parts)) for parts in zip(*values))
-    elif op == Op.COMBINE:
-        result = (values[0][0], values[1][1], values[2][2])
-    elif op == Op.TO_HSV:
-        result = to_hsv(values[0])
-    else:
-        result = from_hsv(values[0])
-    return (result[0], result[1], result[2])
+        return color_of(_finite(function(*parts)) for parts in zip(*values))
+    if op == Op.COMBINE:
+        return (values[0][0], values[1][1], values[2][2])
+    return to_hsv(values[0]) if op == Op.TO_HSV else from_hsv(values[0])
 
 
 def _finite(value: float) -> float:
@@ -289,12 +298,14 @@ def _power(x: float, y: float) -> float:
         return 0.0
 
 
-def _row(table: array, at: float) -> Color:
+def _row(table: array[float], at: float) -> Color:
     last = len(table) // 4 - 1
     place = min(1.0, max(0.0, at)) * last
     low = min(int(place), last)
     high, part = min(low + 1, last), place - low
-    return tuple(table[4 * low + c] * (1.0 - part) + table[4 * high + c] * part for c in range(3))
+    return color_of(
+        table[4 * low + c] * (1.0 - part) + table[4 * high + c] * part for c in range(3)
+    )
 
 
 def to_hsv(color: Color) -> Color:
@@ -322,14 +333,14 @@ def from_hsv(color: Color) -> Color:
 
 
 _BY_CHANNEL: dict[Op, Callable[..., float]] = {
-    Op.ADD: lambda x, y: x + y,
-    Op.SUBTRACT: lambda x, y: x - y,
-    Op.MULTIPLY: lambda x, y: x * y,
-    Op.DIVIDE: lambda x, y: x / y if y else 0.0,
+    Op.ADD: operator.add,
+    Op.SUBTRACT: operator.sub,
+    Op.MULTIPLY: operator.mul,
+    Op.DIVIDE: lambda x, y: float(x / y) if y else 0.0,
     Op.POWER: _power,
     Op.MINIMUM: min,
     Op.MAXIMUM: max,
-    Op.MIX: lambda x, y, share: x + share * (y - x),
+    Op.MIX: lambda x, y, share: float(x + share * (y - x)),
     Op.GREATER: lambda x, y: 1.0 if x > y else 0.0,
     Op.ABSOLUTE: abs,
     Op.FLOOR: lambda x: float(math.floor(x)) if math.isfinite(x) else 0.0,

@@ -15,6 +15,7 @@ from .color_expression import (
     add,
     apply,
     bounds,
+    color_of,
     constant,
     from_hsv,
     mix,
@@ -186,12 +187,12 @@ def hue_saturation(
     """Blender's node: hue 0.5 and saturation and value 1 change nothing."""
     if color.constant and hue.constant and saturation.constant and value.constant:
         h, s, v = to_hsv(color.value)
-        changed = (
+        turned = (
             (h + hue.value[0] + 0.5) % 1.0,
             min(1.0, max(0.0, s * saturation.value[0])),
             v * value.value[0],
         )
-        return constant(tuple(max(0.0, c) for c in from_hsv(changed)), color.exact)
+        return constant(color_of(max(0.0, c) for c in from_hsv(turned)), color.exact)
     hsv = apply(Op.TO_HSV, color)
     shift = apply(Op.COMBINE, add(hue, HALF), ZERO, ZERO)
     factor = apply(Op.COMBINE, ONE, saturation, value)

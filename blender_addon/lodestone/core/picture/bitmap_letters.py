@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small letters for picture strips: a 5x7 bitmap font, drawn without any library."""
 
+from collections.abc import Iterator
+
 # Seven rows of five pixels a letter, the leftmost pixel is the highest bit.
 _GLYPHS = {
     " ": "00 00 00 00 00 00 00",
@@ -60,7 +62,7 @@ def width(text: str) -> int:
     return max(0, ADVANCE * len(text) - 1)
 
 
-def pixels(text: str):
+def pixels(text: str) -> Iterator[tuple[int, int]]:
     """Yields (x, y) of every pixel that is set, y down from the top; unknown letters are blank."""
     for position, letter in enumerate(text.upper()):
         rows = _GLYPHS.get(letter, _GLYPHS[" "]).split()

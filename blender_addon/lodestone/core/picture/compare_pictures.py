@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..native import lodestone_native as native
 from . import compare_plan
 from .cost_model import StoreCosts
 from .picture_maker import Picture, Settings, make_identities, make_picture
@@ -22,7 +23,7 @@ class Compared:
     pictures: tuple[Picture, ...]
     paths: tuple[Path, ...]
     comparison: compare_plan.Comparison
-    image: Any
+    image: native.Image
 
     @property
     def parts(self) -> dict[str, Any]:
@@ -37,12 +38,12 @@ class Compared:
 
 
 def compare(
-    model: Any,
-    camera: Any,
+    model: native.Model,
+    camera: native.Camera,
     size: tuple[int, int],
     settings: Settings,
     folder: Path,
-    new_job: Callable[[str], Any],
+    new_job: Callable[[str], native.Job],
     costs: StoreCosts | None = None,
 ) -> Compared:
     """Makes two pictures as make_picture() does; everything it writes is in `folder`, which is its

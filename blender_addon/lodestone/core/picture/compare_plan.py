@@ -8,11 +8,13 @@ difference in false colors.
 import os
 import shutil
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..native import lodestone_native as native
+from .picture_maker import Picture
 
 ORIGINALS, LEVELS, DIFFERENCE = 0, 1, 2
 WORDS = ("originals", "levels", "difference")
@@ -76,7 +78,7 @@ class Plan:
     def finished_step(self) -> bool:
         return self.comparison is not None if self.step == DIFFERENCE else self.has_this
 
-    def take(self, made: Any, shown: Path, paths: list[str]) -> None:
+    def take(self, made: Picture, shown: Path, paths: list[str]) -> None:
         """This step's picture_maker.Picture, which of its choices each pixel shows, and their
         paths."""
         os.replace(shown, self._shown(self.step))
@@ -85,17 +87,16 @@ class Plan:
         if self.step == LEVELS:  # a budget may have asked for coarser ones
             self.pixel_error = made.parts["cut"].get("pixel_error", self.pixel_error)
 
-    def compare(self, bottom_up: bool = True) -> Any:
+    def compare(self, bottom_up: bool = True) -> native.Image:
         """The difference as an image, lowest row first (Blender's order) or last; fills
         `comparison`."""
-        steps = (ORIGINALS, LEVELS)
         difference, sums, image = native.image_compare_shown(
-            tuple(str(self.picture(step)) for step in steps),
-            tuple(str(self._shown(step)) for step in steps),
-            tuple(len(self._paths[step]) for step in steps),
+            (str(self.picture(ORIGINALS)), str(self.picture(LEVELS))),
+            (str(self._shown(ORIGINALS)), str(self._shown(LEVELS))),
+            (len(self._paths[ORIGINALS]), len(self._paths[LEVELS])),
             bottom_up=bottom_up,
         )
-        listed = [(self._paths[step], sums[step]) for step in steps]
+        listed = [(self._paths[step], sums[step]) for step in (ORIGINALS, LEVELS)]
         self.comparison = Comparison(
             difference.mean,
             difference.max,
@@ -115,7 +116,9 @@ class Plan:
         return self.root / f"{WORDS[step]}_shown.exr"
 
 
-def worst_of(listed: Any, most: int = _WORST) -> tuple[tuple[str, float], ...]:
+def worst_of(
+    listed: Iterable[tuple[Iterable[str], Iterable[float]]], most: int = _WORST
+) -> tuple[tuple[str, float], ...]:
     """Paths with their share of the whole, from lists of paths and lists of sums; what is in
     several lists counts once."""
     together: dict[str, float] = defaultdict(float)

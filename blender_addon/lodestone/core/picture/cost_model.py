@@ -16,18 +16,21 @@ from pathlib import Path
 from typing import Any
 
 from ..native import lodestone_native as native
+from .quality_tree import Quality
 
 FILE = "cost.json"
 _PARSE_S_PER_BYTE = 5.2e-6 / 245
 _SAMPLE_S = 1.65e-7
 _LAMP_SHARE = 0.5
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
-_SAMPLES = {
+_SAMPLES: dict[int, float] = {
     native.Antialias.OFF: 1.0,
     native.Antialias.FINAL: 4.0,
     native.Antialias.REFERENCE: 16.0,
 }
-_BLURRED = {  # with depth of field, instead of these; measured, on a sharp floor and soft heads
+_BLURRED: dict[
+    int, float
+] = {  # with depth of field, instead of these; measured, on a sharp floor and soft heads
     native.Antialias.OFF: 7.0,
     native.Antialias.FINAL: 45.0,
     native.Antialias.REFERENCE: 153.0,
@@ -79,9 +82,15 @@ class Work:
 
     @classmethod
     def of(
-        cls, summary: Any, view: Any, lights: int, antialias: int, threads: int, quality: Any
+        cls,
+        summary: native.records.CutSummary,
+        view: native.View,
+        lights: int,
+        antialias: int,
+        threads: int,
+        quality: Quality,
     ) -> "Work":
-        """The work of a cut. `quality`: what shades it, a quality_tree.Quality."""
+        """The work of a cut. `quality`: what shades it."""
         width, height = view.border[2:] if view.border[2] else (view.width, view.height)
         threads = threads or len(os.sched_getaffinity(0))
         whole = (view.width, view.height)
@@ -108,7 +117,7 @@ def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     return Prediction(parse, trace, wall, int(peak))
 
 
-def learn(work: Work, measured: Any, before: Ratios) -> Ratios:
+def learn(work: Work, measured: native.records.PovrayReport, before: Ratios) -> Ratios:
     """The ratios that a finished picture teaches; `measured` has parse_cpu_s, trace_cpu_s and
     peak_bytes."""
     plain = predict(work)

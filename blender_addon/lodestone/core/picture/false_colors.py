@@ -4,7 +4,6 @@
 Colors are linear Rec.709, 0...1.
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 from .. import progress_text, srgb
@@ -59,9 +58,9 @@ def of_cost(triangles: int) -> Color:
     return next(color for most, color in _COSTS if triangles <= most)
 
 
-def colors(cut: Any, mode: str) -> list[Color]:
+def colors(cut: native.Cut, mode: str) -> list[Color]:
     """The colors of a cut's choices, in their order."""
-    choices: Sequence[Any] = cut.choices()
+    choices = cut.choices()
     known: dict[Any, Color] = {}
     if mode == ERROR:
         asked = cut.view.pixel_error

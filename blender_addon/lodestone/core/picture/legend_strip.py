@@ -3,8 +3,8 @@
 
 from array import array
 from collections.abc import Sequence
-from typing import Any
 
+from ..native import lodestone_native as native
 from . import bitmap_letters
 from .false_colors import Color
 
@@ -27,7 +27,9 @@ def laid_out(
     return found
 
 
-def with_legend(image: Any, title: str, entries: Sequence[tuple[str, Color]]) -> Any:
+def with_legend(
+    image: native.Image, title: str, entries: Sequence[tuple[str, Color]]
+) -> native.Image:
     """A copy of an image (top row first), opaque and longer by the legend's lines."""
     scale = 2 if image.width >= 900 else 1
     laid = laid_out([(title, BACK), *entries], image.width, scale)
@@ -53,7 +55,7 @@ def with_legend(image: Any, title: str, entries: Sequence[tuple[str, Color]]) ->
     return type(image)(image.width, image.height + height, pixels + strip)
 
 
-def flipped(image: Any) -> Any:
+def flipped(image: native.Image) -> native.Image:
     """Lowest row first, as Blender has images."""
     row = 4 * image.width
     pixels = array("f")

@@ -3,7 +3,6 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 from ..native import lodestone_native as native
 
@@ -13,7 +12,9 @@ _HALF_FOV = math.radians(20)
 Vector = tuple[float, float, float]
 
 
-def overview(camera: Any, center: Vector, radius: float, size: tuple[int, int]) -> Any:
+def overview(
+    camera: native.Camera, center: Vector, radius: float, size: tuple[int, int]
+) -> native.Camera:
     """Looks the way `camera` does, from behind it and above, at the sphere (center, radius) grown
     until the camera is in it."""
     center, radius = _with_point(center, max(radius, 1e-3), camera.position)
@@ -43,10 +44,10 @@ def overview(camera: Any, center: Vector, radius: float, size: tuple[int, int]) 
     )
 
 
-def bound_of(cut: Any) -> tuple[Vector, float]:
+def bound_of(cut: native.Cut) -> tuple[Vector, float]:
     """Center and radius of a sphere around all that a cut draws; what is marked as Environment,
     which may go on for ever, only where there is nothing else."""
-    known: dict[Any, Any] = {}
+    known: dict[tuple[int, int], native.records.ObjectSummary] = {}
     boxes: dict[bool, list[tuple[list[float], list[float]]]] = {True: [], False: []}
     for choice in cut.choices():
         summary = known.get(choice.object.key)

@@ -32,7 +32,7 @@ class Settings:
     pixel_error: float = 1.0
     overrides: Mapping[str, quality_tree.Value] = field(default_factory=dict)
     budget: int = 0
-    modifiers: Any = None  # native.Modifiers; None: nothing bends quality
+    modifiers: native.Modifiers | None = None  # None: nothing bends quality
     false_color: bool = False
     covered_only: bool = False
     threads: int = 0
@@ -55,7 +55,7 @@ class Settings:
     def quality(self) -> quality_tree.Quality:
         return quality_tree.quality(self.pixel_error, self.overrides)
 
-    def povray(self) -> Any:
+    def povray(self) -> native.PovrayOptions:
         quality = self.quality
         return native.PovrayOptions(
             antialias=native.Antialias[quality.antialias],
@@ -66,12 +66,18 @@ class Settings:
             program=self.program,
         )
 
-    def view(self, camera: Any, size: tuple[int, int]) -> Any:
+    def view(self, camera: native.Camera, size: tuple[int, int]) -> native.View:
         return native.View(
             camera, *size, self.pixel_error, POVRAY_KINDS, self.border, self.modifiers
         )
 
-    def cut(self, model: Any, camera: Any, size: tuple[int, int], job: Any = None) -> Any:
+    def cut(
+        self,
+        model: native.Model,
+        camera: native.Camera,
+        size: tuple[int, int],
+        job: native.Job | None = None,
+    ) -> native.Cut:
         """The cut of a view, within the budget if there is one: its `pixel_error` may then be
         larger."""
         budget = native.Budget(bytes=self.budget) if self.budget else None
@@ -82,8 +88,8 @@ class Settings:
     def stamp(self) -> dict[str, str]:
         """The text in a picture's file about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
-        shown = (*self.quality, self.budget, self.false_color, self.covered_only)
-        shown += bent_by(self.modifiers)
+        own = (*self.quality, self.budget, self.false_color, self.covered_only)
+        shown = (*own, *bent_by(self.modifiers))
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
@@ -91,7 +97,7 @@ class Settings:
         }
 
 
-def bent_by(modifiers: Any) -> tuple[str, ...]:
+def bent_by(modifiers: native.Modifiers | None) -> tuple[str, ...]:
     """The texts of what bends quality, the same in every session: without the camera as the shutter
     closes, which belongs to a frame as its camera does."""
     if modifiers is None or modifiers == native.Modifiers(closing=modifiers.closing):
@@ -117,7 +123,12 @@ class Picture:
 
 
 def cut_and_export(
-    model: Any, camera: Any, size: tuple[int, int], settings: Settings, folder: Path, job: Any
+    model: native.Model,
+    camera: native.Camera,
+    size: tuple[int, int],
+    settings: Settings,
+    folder: Path,
+    job: native.Job,
 ) -> tuple[dict[str, Any], dict[str, dict[int, int]]]:
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
@@ -126,7 +137,12 @@ def cut_and_export(
 
 
 def _cut_and_export(
-    model: Any, camera: Any, size: tuple[int, int], settings: Settings, folder: Path, job: Any
+    model: native.Model,
+    camera: native.Camera,
+    size: tuple[int, int],
+    settings: Settings,
+    folder: Path,
+    job: native.Job,
 ) -> tuple[dict[str, Any], dict[str, dict[int, int]], cost_model.Work]:
     folder.mkdir(parents=True, exist_ok=True)
     with settings.cut(model, camera, size, job) as cut:
@@ -148,7 +164,7 @@ def _cut_and_export(
     return parts, in_use, work
 
 
-def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
+def levels_in_use(model: native.Model, cut: native.Cut) -> dict[str, dict[int, int]]:
     """The levels that a cut draws, by uid of the object: how many occurrences draw which LOD
     number."""
     found: dict[str, dict[int, int]] = {}
@@ -158,12 +174,12 @@ def levels_in_use(model: Any, cut: Any) -> dict[str, dict[int, int]]:
 
 
 def make_picture(
-    model: Any,
-    camera: Any,
+    model: native.Model,
+    camera: native.Camera,
     size: tuple[int, int],
     settings: Settings,
     folder: Path,
-    new_job: Callable[[str], Any],
+    new_job: Callable[[str], native.Job],
     costs: cost_model.StoreCosts | None = None,
 ) -> Picture:
     """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
@@ -182,17 +198,18 @@ def make_picture(
 
 
 def make_identities(
-    model: Any,
-    camera: Any,
+    model: native.Model,
+    camera: native.Camera,
     size: tuple[int, int],
     settings: Settings,
     folder: Path,
-    new_job: Callable[[str], Any],
+    new_job: Callable[[str], native.Job],
 ) -> tuple[Path, list[str]]:
     """A picture of which choice each pixel shows, for native.image_compare_shown(), and the
     choices' paths. Sharp, without antialiasing and Environment."""
     folder.mkdir(parents=True, exist_ok=True)
-    overrides = {**settings.overrides, "antialias": quality_tree.OFF}
+    overrides: dict[str, quality_tree.Value] = dict(settings.overrides)
+    overrides["antialias"] = quality_tree.OFF
     plain = replace(settings, overrides=overrides, false_color=True, covered_only=True)
     sharp = replace(camera, aperture=0.0)
     job = new_job("Coverage")

@@ -161,7 +161,7 @@ class Quality(NamedTuple):
     bounce_rays: int
     bounce_error: float
 
-    def povray(self) -> dict[str, float]:
+    def povray(self) -> dict[str, Any]:
         """The values as fields of the library's PovrayOptions, but antialias, which is an enum
         there."""
         return {
@@ -202,16 +202,17 @@ def quality(pixel_error: float, overrides: Mapping[str, Value] | None = None) ->
 def inherits(key: str, pixel_error: float, overrides: Mapping[str, Value] | None = None) -> Value:
     """The value that one control would have without its own override."""
     others = {name: value for name, value in (overrides or {}).items() if name != key}
-    return getattr(quality(pixel_error, others), key)
+    value: Value = getattr(quality(pixel_error, others), key)
+    return value
 
 
 def _value_of(control: Control, otherwise: Any, given: Mapping[str, Value]) -> Any:
     if control.key not in given:
         return otherwise
     value = given[control.key]
-    if control.least is None:
+    if control.least is None or control.most is None:
         known = value in (OFF, ADAPTIVE, REFERENCE)
-        return Sampling(value, 1.0) if known else otherwise
+        return Sampling(str(value), 1.0) if known else otherwise
     if isinstance(value, str) or value != value:
         return otherwise
     limited = within(value, control.least, control.most)

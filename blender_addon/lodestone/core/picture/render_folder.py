@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import TracebackType
 
 from .picture_maker import SceneFolder, remove_others, used_files
 
@@ -33,22 +34,27 @@ class RenderFolder:
             self._end(*sys.exc_info())
             raise
         if not self._held.stays:
-            self._tidy(frame)
+            self._tidy(self._held.path, frame)
 
     def close(self) -> None:
-        self._end(None, None, None)
+        self._end()
 
-    def _end(self, *error) -> None:
+    def _end(
+        self,
+        kind: type[BaseException] | None = None,
+        error: BaseException | None = None,
+        trace: TracebackType | None = None,
+    ) -> None:
         held, self._held = self._held, None
         self._frame, self._used = None, (set(), set())
         if held is not None:
-            held.__exit__(*error)
+            held.__exit__(kind, error, trace)
 
-    def _tidy(self, frame: int) -> None:
+    def _tidy(self, folder: Path, frame: int) -> None:
         """Removes what neither this frame nor the one before uses: what changes its shape would
         fill the disk. In one frame a view layer may use what the one before it used."""
         before, now = self._used
         if frame != self._frame:
             before, now = now, set()
-        self._frame, self._used = frame, (before, now | used_files(self._held.path))
-        remove_others(self._held.path, set.union(*self._used))
+        self._frame, self._used = frame, (before, now | used_files(folder))
+        remove_others(folder, set.union(*self._used))

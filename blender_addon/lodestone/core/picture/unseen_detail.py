@@ -16,7 +16,7 @@ class RayClass(NamedTuple):
     key: str
     word: str
     label: str
-    rays: Any  # native.Rays
+    rays: native.Rays
     description: str
 
 
@@ -88,7 +88,7 @@ def rays_of(text: str) -> int:
     return mask(words)
 
 
-def met(cut: Any) -> Met | None:
+def met(cut: native.Cut) -> Met | None:
     """The numbers of a cut; None where it was made without classes."""
     modifiers = cut.view.modifiers
     wanted = modifiers.ray_classes if modifiers is not None else 0

@@ -5,7 +5,6 @@ store changes."""
 import time
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from .. import run_report
 from ..native import lodestone_native as native
@@ -39,10 +38,10 @@ class Chooser:
     model is the caller's."""
 
     def __init__(self) -> None:
-        self._model: Any = None
+        self._model: native.Model | None = None
         self._before: tuple[int, int] = (0, 0)
         self._known: dict[str, tuple[Hashable, Statistics]] = {}
-        self._cuts: dict[str, Any] = {}  # by what they are for; none of budgets
+        self._cuts: dict[str, native.Cut] = {}  # by what they are for; none of budgets
 
     def close(self) -> None:
         """Frees what is kept."""
@@ -51,9 +50,15 @@ class Chooser:
         self._model, self._known, self._cuts = None, {}, {}
 
     def statistics(
-        self, model: Any, key: Hashable, camera: Any, size: tuple[int, int], settings: Settings,
-        triangles: int = 0, what: str = "render",
-    ) -> Statistics:  # fmt: skip
+        self,
+        model: native.Model,
+        key: Hashable,
+        camera: native.Camera,
+        size: tuple[int, int],
+        settings: Settings,
+        triangles: int = 0,
+        what: str = "render",
+    ) -> Statistics:
         """The statistics of a view whose every input is in `key`. `triangles`: a budget of them,
         instead of the settings' bytes; 0: none. Raises LodestoneError."""
         if model is not self._model:
@@ -67,9 +72,14 @@ class Chooser:
         return found
 
     def _chosen(
-        self, model: Any, camera: Any, size: tuple[int, int], settings: Settings, triangles: int,
+        self,
+        model: native.Model,
+        camera: native.Camera,
+        size: tuple[int, int],
+        settings: Settings,
+        triangles: int,
         what: str,
-    ) -> Statistics:  # fmt: skip
+    ) -> Statistics:
         start = time.perf_counter()
         view = settings.view(camera, size)
         if what == "render" and not settings.levels:
@@ -77,14 +87,13 @@ class Chooser:
         if triangles or settings.budget:
             with native.Cut(model, view, None, native.Budget(triangles, settings.budget)) as cut:
                 return self._statistics(cut, start, cut.pixel_error)
-        cut = self._cuts.get(what)
-        if cut is None:
-            cut = self._cuts[what] = native.Cut(model, view)
+        if what in self._cuts:
+            self._cuts[what].step(view)
         else:
-            cut.step(view)
-        return self._statistics(cut, start, settings.pixel_error)
+            self._cuts[what] = native.Cut(model, view)
+        return self._statistics(self._cuts[what], start, settings.pixel_error)
 
-    def _statistics(self, cut: Any, start: float, pixel_error: float) -> Statistics:
+    def _statistics(self, cut: native.Cut, start: float, pixel_error: float) -> Statistics:
         summary = cut.summary()
         part = run_report.cut_part(summary)
         met = unseen_detail.met(cut)
@@ -104,14 +113,16 @@ class Chooser:
         )
 
 
-def _originals(model: Any, camera: Any, size: tuple[int, int]) -> tuple[int, int]:
+def _originals(
+    model: native.Model, camera: native.Camera, size: tuple[int, int]
+) -> tuple[int, int]:
     """Triangles and bytes of what is placed; the same from everywhere."""
     view = _of_originals(native.View(camera, *size, 0.0, POVRAY_KINDS))
     with native.Cut(model, view) as cut:
         return (model.totals().triangles_placed, cut.summary().bytes)
 
 
-def _of_originals(view: Any) -> Any:
+def _of_originals(view: native.View) -> native.View:
     """A view that draws all originals, also of what is scaled to nothing, whose levels have no
     error on screen: here nothing but an original is good enough, however far it is."""
     modifiers = replace(view.modifiers or native.Modifiers(), criterion=native.Criterion.DISTANCE)

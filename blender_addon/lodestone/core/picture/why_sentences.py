@@ -3,13 +3,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from .. import progress_text
 from ..native import lodestone_native as native
 from . import unseen_detail
 
-KINDS = {
+KINDS: dict[int, str] = {
     native.Kind.MESH: "Simplified",
     native.Kind.BOX: "Box",
     native.Kind.ELLIPSOID: "Ellipsoid",
@@ -58,7 +57,7 @@ def level_name(lod: int, kind: int) -> str:
     return f"LOD {lod}  {'Original' if lod == 0 else KINDS.get(kind, '?')}"
 
 
-def explain(cut: Any, drawn: Any, position: int) -> Explanation:
+def explain(cut: native.Cut, drawn: native.Drawn, position: int) -> Explanation:
     """The explanation of something that a cut was asked for by Kept.find()."""
     if drawn == native.Drawn.MISSING:
         return Explanation(
@@ -82,14 +81,14 @@ def explain(cut: Any, drawn: Any, position: int) -> Explanation:
     return Explanation(title, tuple(lines))
 
 
-_KEPT = {
+_KEPT: dict[int, str] = {
     native.Met.NEED: "nothing coarser is good enough",
     native.Met.SHAPE: "a coarser one would cover the original",
     native.Met.CONTACT: "something else is too near",
 }
 
 
-def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
+def _ray_lines(cut: native.Cut, choice: native.Choice, position: int) -> list[str]:
     """Lines about the levels that its shadow and its images in mirrors are of, where they may be
     coarser."""
     modifiers, lines = cut.view.modifiers, []
@@ -107,7 +106,7 @@ def _ray_lines(cut: Any, choice: Any, position: int) -> list[str]:
     return lines
 
 
-def _main_line(reason: Any, asked: float) -> str:
+def _main_line(reason: native.records.Reason, asked: float) -> str:
     """The line with the numbers of the choice, as "41 m · 11 mm = 0.9 px ≤ 1 px"."""
     error = reason.error * reason.stretch
     text = f"{metres(reason.z)} {_DOT} {progress_text.length(error)}"
@@ -121,7 +120,7 @@ def _main_line(reason: Any, asked: float) -> str:
     return text if sign == _AT_MOST else text + ": nothing finer can be drawn"
 
 
-def _factor_lines(reason: Any) -> list[str]:
+def _factor_lines(reason: native.records.Reason) -> list[str]:
     lines = []
     for field, word in _FINER:
         value = getattr(reason, field)
@@ -146,11 +145,13 @@ def _demand_line(what: str, demand: float) -> str:
     return f"{what} is drawn {factor(demand)} times as fine"
 
 
-def _coarser_lines(cut: Any, choice: Any, reason: Any) -> list[str]:
+def _coarser_lines(
+    cut: native.Cut, choice: native.Choice, reason: native.records.Reason
+) -> list[str]:
     """Lines about the level that would be seen instead, and what keeps it from being used."""
     if not reason.coarser_object:
         return ["There is no coarser level"]
-    own = reason.coarser_object == choice.object.key or reason.coarser_object == choice.object
+    own = reason.coarser_object == choice.object
     what = level_name(reason.coarser_lod, reason.coarser_kind)
     if not own:
         group = cut.model.object_summary(reason.coarser_object).name

@@ -8,7 +8,7 @@ them may be objects or collections is asked of whoever knows the scene.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..native import lodestone_native as native
 from ..placement_decision import ANY_LEVEL
@@ -35,7 +35,7 @@ class Slot(NamedTuple):
     first way to it; `above`: its group. `follows`: it stands where its object does; else it is
     given in the world (particles, for example)."""
 
-    group: Any
+    group: native.Object
     position: int
     above: Rows
     world: Rows
@@ -101,13 +101,16 @@ def same(a: Rows, b: Rows) -> bool:
 
 
 def tree_of(
-    model: Any, root: Any, is_object: Callable[[str], bool], collection: Callable[[str], str | None]
+    model: native.Model,
+    root: native.Object,
+    is_object: Callable[[str], bool],
+    collection: Callable[[str], str | None],
 ) -> Tree:
     """The tree of a model. `collection`: the name of the collection with a uid, None where there is
     no such one."""
     tree = Tree()
     seen: set[int] = set()
-    waiting: list[tuple[Any, Rows, bool, int]] = [(root, IDENTITY, True, 0)]
+    waiting: list[tuple[native.Object, Rows, bool, int]] = [(root, IDENTITY, True, 0)]
     while waiting:
         group, world, in_scene, depth = waiting.pop()
         if group.index in seen or depth > _MOST_NESTED:
@@ -144,16 +147,16 @@ def _owner(name: str, is_object: Callable[[str], bool]) -> str | None:
     return None
 
 
-def leaves_of(model: Any, root: Any) -> list[tuple[Any, int]]:
+def leaves_of(model: native.Model, root: native.Object) -> list[tuple[native.Object, int]]:
     """Every placement of what is no group: (group, position), each once."""
-    found: list[tuple[Any, int]] = []
+    found: list[tuple[native.Object, int]] = []
     is_group: dict[int, bool] = {root.index: True}
     waiting = [root]
     while waiting:
         group = waiting.pop()
         for position, (child, *_) in enumerate(model.children(group)):
             if child.index not in is_group:
-                is_group[child.index] = model.object_summary(child).group
+                is_group[child.index] = model.object_summary(child).group != 0
                 if is_group[child.index]:
                     waiting.append(child)
             if not is_group[child.index]:
@@ -175,7 +178,7 @@ class Change(NamedTuple):
 Changes = dict[tuple[int, int], Change]
 
 
-def apply(model: Any, slot: Slot, change: Change) -> None:
+def apply(model: native.Model, slot: Slot, change: Change) -> None:
     """Makes a placement what it is now."""
     model.decide_placement(slot.group, slot.position, change.importance, change.coarsest)
     if change.pinned:
@@ -190,7 +193,7 @@ def apply(model: Any, slot: Slot, change: Change) -> None:
     native.change_placement(model, slot.group, slot.position, local, hidden)
 
 
-def take_back(model: Any, slot: Slot, plain: Change) -> None:
+def take_back(model: native.Model, slot: Slot, plain: Change) -> None:
     """Makes a placement what it was, but for `plain`'s decisions."""
     back = inverse(slot.above)
     local = None if back is None else multiply(back, slot.world)
@@ -202,11 +205,12 @@ class Decided:
     """A model read from a store, and what of it was changed since. A model of another scene has an
     empty tree."""
 
-    def __init__(self, model: Any, names: Names) -> None:
+    def __init__(self, model: native.Model, names: Names) -> None:
         self.model = model
         self._root = root = model.find_object(names.scene_uid)
         self.found = root is not None
-        self._leaves: list[tuple[Any, int]] | None = None  # looked for when they are needed
+        # Looked for when they are needed.
+        self._leaves: list[tuple[native.Object, int]] | None = None
         self.tree = Tree()
         if root is not None:
             is_object = names.objects.__contains__
@@ -242,7 +246,7 @@ class Decided:
             if change != Change():
                 made[key] = change
         if self._leaves is None:
-            self._leaves = leaves_of(self.model, self._root)
+            self._leaves = [] if self._root is None else leaves_of(self.model, self._root)
             for group, position in self._leaves:
                 slot = Slot(group, position, IDENTITY, IDENTITY, False, 1.0, ANY_LEVEL)
                 self._slots.setdefault(slot.key, slot)

@@ -14,7 +14,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from .. import progress_text
 from ..native import lodestone_native as native
@@ -38,7 +38,7 @@ class LiveThing:
     """Some objects that the levels do not know as they are, drawn as they are: a model of its own
     whose root places them. Belongs to the worker once it was asked for."""
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: native.Model) -> None:
         self.model = model
 
 
@@ -48,11 +48,11 @@ class Wanted:
     uids of the collections that they list. `force`: the LOD number of every object, whatever the
     Pixel Error and what is decided."""
 
-    camera: Any
+    camera: native.Camera
     size: tuple[int, int]
     pixel_error: float
     triangles: int = 0  # budget; 0: none
-    lenses: tuple[tuple[Any, str], ...] = ()
+    lenses: tuple[tuple[native.Lens, str], ...] = ()
     mode: str = NO_COLORS
     force: int = NOT_FORCED
     state: Hashable = 0
@@ -63,12 +63,12 @@ class Wanted:
 
 
 class Things(NamedTuple):
-    """The objects that are drawn as they are. `count`: how many there are; `left_out`: of those
+    """The objects that are drawn as they are. `number`: how many there are; `left_out`: of those
     there is no room for."""
 
     changes: Changes = {}
     live: tuple[LiveThing, ...] = ()
-    count: int = 0
+    number: int = 0
     left_out: int = 0
 
 
@@ -76,7 +76,7 @@ class Made(NamedTuple):
     """A batch."""
 
     key: int
-    mesh: Any
+    mesh: native.BatchMesh
 
 
 @dataclass(frozen=True)
@@ -111,14 +111,14 @@ class Worker:
         self.ready = False  # it was read, or cannot be
         self.problem = ""  # why there are no levels
         self._folder, self._names = folder, names
-        self._model: Any = None
-        self._last: Any = None  # cut without a budget
+        self._model: native.Model | None = None
+        self._last: native.Cut | None = None  # cut without a budget
         self._before: tuple[int, int] = (0, 0)  # triangles, occurrences
-        self._decided: Any = None
+        self._decided: preview_tree.Decided | None = None
         self._asked: OrderedDict[Hashable, Wanted] = OrderedDict()
         self._pictured: set[Hashable] = set()
         self._have: set[int] = set()
-        self._out: deque = deque()
+        self._out: deque[Made | Picture | Failed] = deque()
         self._changed = threading.Condition()
         self._job = native.Job()
         self._closing = False
@@ -245,10 +245,10 @@ class Worker:
         error, fits, choose_s = wanted.pixel_error, True, 0.0
         things = wanted.things
         assert things is not None
-        if self._model is not None:
+        if self._model is not None and self._decided is not None:
             start = time.perf_counter()
             self._decided.apply(things.changes, wanted.force)
-            with self._cut(viewport, wanted) as cut:
+            with self._cut(self._model, viewport, wanted) as cut:
                 choose_s = time.perf_counter() - start
                 if cut is None:
                     return False
@@ -275,7 +275,7 @@ class Worker:
         )  # fmt: skip
         return True
 
-    def _view(self, wanted: Wanted) -> Any:
+    def _view(self, wanted: Wanted) -> native.View:
         lenses = []
         for lens, uid in wanted.lenses:
             if uid:
@@ -287,20 +287,22 @@ class Worker:
             wanted.camera, *wanted.size, wanted.pixel_error, POVRAY_KINDS, modifiers=modifiers
         )
 
-    def _along(self, view: Any) -> Any:
+    def _along(self, model: native.Model, view: native.View) -> native.Cut:
         """The last cut, gone along to this view."""
         if self._last is None:
-            self._last = native.Cut(self._model, view, self._job)
+            self._last = native.Cut(model, view, self._job)
         else:
             self._last.step(view, self._job)
         return self._last
 
     @contextmanager
-    def _cut(self, viewport: Hashable, wanted: Wanted) -> Iterator[Any]:
+    def _cut(
+        self, model: native.Model, viewport: Hashable, wanted: Wanted
+    ) -> Iterator[native.Cut | None]:
         """None: what is forced is too much, which the viewport is told."""
         view, most = self._view(wanted), MOST_TRIANGLES
         if wanted.force != NOT_FORCED or not wanted.triangles:
-            cut = self._along(view)
+            cut = self._along(model, view)
             triangles = cut.summary().triangles
             if triangles <= most:
                 yield cut
@@ -313,12 +315,12 @@ class Worker:
                 return
         else:
             most = min(most, wanted.triangles)
-        with native.Cut(self._model, view, self._job, native.Budget(triangles=most)) as cut:
+        with native.Cut(model, view, self._job, native.Budget(triangles=most)) as cut:
             cut.view = replace(view, pixel_error=cut.pixel_error)  # that false colors are told by
             yield cut
 
     def _batches(
-        self, viewport: Hashable, cut: Any, mode: str, keys: list[int], since: float
+        self, viewport: Hashable, cut: native.Cut, mode: str, keys: list[int], since: float
     ) -> int | None:
         """Hands out those that are not there yet. How many triangles all have; None: given up."""
         if mode != NO_COLORS:

@@ -2,8 +2,7 @@
 """The state that a viewport keeps between two redraws: the picture it shows, the next one, what is
 in sight. It needs neither Blender nor a GPU."""
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Hashable, Iterable, Sequence
 
 from .. import progress_text
 from .preview_tree import NOT_FORCED
@@ -38,7 +37,7 @@ class View:
     """The state of one viewport. `shown` is complete; `next` waits for its batches."""
 
     def __init__(self) -> None:
-        self.asked: Any = None  # key of the last Wanted
+        self.asked: Hashable = None  # key of the last Wanted
         self.shown: Picture | None = None
         self.next: Picture | None = None
         self.problem = ""
@@ -88,8 +87,8 @@ class View:
             parts[-1] = f"every object at LOD {picture.wanted.force}"
         if not picture.fits:
             parts.append("even the coarsest levels are more than the budget")
-        if picture.things.count:
-            parts.append(f"{picture.things.count:,} without levels are drawn as they are")
+        if picture.things.number:
+            parts.append(f"{picture.things.number:,} without levels are drawn as they are")
         if picture.things.left_out:
             parts.append(f"{picture.things.left_out:,} without levels are too much and left out")
         if not picture.final or self.next is not None:

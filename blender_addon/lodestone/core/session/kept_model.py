@@ -7,7 +7,7 @@ One scene is kept at a time. Any thread may put one, so whoever uses one holds i
 import threading
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..native import lodestone_native as native
 
@@ -17,7 +17,7 @@ Key = tuple[str, str, str]  # as bridge.datablock_ids.Key
 class Asked(NamedTuple):
     """A view, and how many bytes POV-Ray's scene may take; 0: any number."""
 
-    view: Any
+    view: native.View
     budget: int = 0
 
 
@@ -25,42 +25,52 @@ class Kept:
     """A model that is built (meshes that are in its store need not be in memory) and the view it
     was read for. `parts`: what the model's objects came from. Use it inside `with kept.lock`."""
 
-    def __init__(self, model: Any, view: Any, parts: dict[Key, list[Any]], frame: int) -> None:
+    def __init__(
+        self,
+        model: native.Model,
+        view: native.View,
+        parts: dict[Key, list[native.Object]],
+        frame: int,
+    ) -> None:
         self.lock = threading.RLock()
         self.view = view
         self.parts = parts
         self.frame = frame
         self.outdated = False  # the scene has changed since
-        self._model: Any = model
-        self._cut: Any = None
+        self._model: native.Model | None = model
+        self._cut: native.Cut | None = None
         self._asked: Asked | None = None  # the view that the cut is for
 
     @property
     def closed(self) -> bool:
         return self._model is None
 
-    def cut(self, asked: Asked) -> Any:
+    def cut(self, asked: Asked) -> native.Cut:
         """The cut for this view; the last one when it was for the same. A budget may make the Pixel
         Error of its `view` larger. Valid until the next call."""
-        if self._asked == asked:
+        if self._cut is not None and self._asked == asked:
             return self._cut
+        if self._model is None:
+            raise ValueError("the kept model is closed")
         if asked.budget:
             made = native.Cut(self._model, asked.view, None, native.Budget(bytes=asked.budget))
             made.view = replace(made.view, pixel_error=made.pixel_error)
             self._drop_cut()
-            self._cut = made
         elif self._cut is None:
-            self._cut = native.Cut(self._model, asked.view)
+            made = native.Cut(self._model, asked.view)
         else:
-            self._cut.step(asked.view)
-        self._asked = asked
-        return self._cut
+            made = self._cut
+            made.step(asked.view)
+        self._cut, self._asked = made, asked
+        return made
 
-    def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[Any, int]:
+    def find(self, keys: Iterable[Key], world: Iterable[float]) -> tuple[native.Drawn, int]:
         """The way the last cut draws the occurrence of a datablock at a place: (Drawn,
         position)."""
         rows = tuple(world)
         found = (native.Drawn.MISSING, -1)
+        if self._cut is None:
+            return found
         for item in dict.fromkeys(item for key in keys for item in self.parts.get(key, ())):
             found = self._cut.find_choice(item, rows)
             if found[0] != native.Drawn.MISSING:

@@ -5,7 +5,6 @@ twice."""
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ..native import lodestone_native as native
 
@@ -27,7 +26,7 @@ class Store:
         self.folder = folder
         self.problem = ""
         self._levels: dict[str, tuple[Level, ...]] = {}
-        self._model: Any = None
+        self._model: native.Model | None = None
         if not (folder / INDEX).is_file():
             return
         try:
@@ -36,7 +35,7 @@ class Store:
             self.problem = str(error)
 
     @property
-    def model(self) -> Any:
+    def model(self) -> native.Model | None:
         """All of it, the meshes on the disk; None when there is none."""
         return self._model
 
@@ -45,16 +44,16 @@ class Store:
         if self._model is None:
             return ()
         if uid not in self._levels:
-            self._levels[uid] = self._read(uid)
+            self._levels[uid] = self._read(self._model, uid)
         return self._levels[uid]
 
-    def _read(self, uid: str) -> tuple[Level, ...]:
+    def _read(self, model: native.Model, uid: str) -> tuple[Level, ...]:
         try:
-            item = self._model.find_object(uid)
+            item = model.find_object(uid)
             if item is None:
                 return ()
-            count = self._model.object_summary(item).representation_count
-            found = [self._model.representation(item, lod) for lod in range(count)]
+            count = model.object_summary(item).representation_count
+            found = [model.representation(item, lod) for lod in range(count)]
         except native.LodestoneError as error:
             self.problem = str(error)
             return ()
