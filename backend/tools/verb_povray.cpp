@@ -133,8 +133,6 @@ int run_povray(const CommandArguments& arguments) {
         light_up(model.get());
     lds_camera eye{};
     lds_view view = view_of(arguments, model.get(), true, eye);
-    view.kinds = 1u << LDS_KIND_MESH | 1u << LDS_KIND_BOX | 1u << LDS_KIND_ELLIPSOID |
-                 1u << LDS_KIND_COMPOSITE;
     CutOptions choosing(arguments, view);
     const SceneFolder folder(arguments.text("scene"));
     lds_cut_summary summary{};

@@ -19,6 +19,7 @@ from .cut import (
 )
 from .enums import (
     ANY_LEVEL,
+    KIND_COUNT,
     AlphaMode,
     Antialias,
     BakeOp,
@@ -95,6 +96,7 @@ __all__ = [
     "FaceBuffers",
     "Image",
     "Job",
+    "KIND_COUNT",
     "Kind",
     "Lens",
     "LensFilter",

@@ -6,17 +6,9 @@ from bpy.types import Panel
 
 from ..bridge import datablock_ids, object_decisions
 from ..core import progress_text
-from ..core.native import lodestone_native as native
+from ..core.kind_words import level_word
 from ..core.session.addon_session import addon_session
 from ..core.store import store_path
-
-_KINDS = {
-    native.Kind.MESH: "Simplified",
-    native.Kind.BOX: "Box",
-    native.Kind.ELLIPSOID: "Ellipsoid",
-    native.Kind.COMPOSITE: "Composite",
-    native.Kind.ASSEMBLY: "Group",
-}
 
 
 def _draw_decisions(layout, context, item):
@@ -69,9 +61,8 @@ def draw_levels(layout, context, item):
     for level in store.levels(uid):
         row = box.row(align=True)
         icon = "RADIOBUT_ON" if level.lod in in_use else "RADIOBUT_OFF"
-        kind = "Original" if level.lod == 0 else _KINDS.get(level.kind, "?")
         row.label(text=f"LOD {level.lod}", icon=icon)
-        row.label(text=kind)
+        row.label(text=level_word(level.lod, level.kind))
         row.label(text=progress_text.count(level.triangles))
         row.label(text=progress_text.length(level.error))
         times = in_use.get(level.lod, 0)

@@ -9,11 +9,11 @@ from .. import handlers
 from ..bridge.live import live_view
 from ..bridge.scene import quality_lenses
 from ..core import progress_text
+from ..core.kind_words import DRAWN_KINDS, KIND_WORDS
 from ..core.native import lodestone_native as native
 from ..core.session.addon_session import addon_session
 
 _ARROW = "\N{RIGHTWARDS ARROW}"
-_KINDS = {"mesh": "Meshes", "box": "Boxes", "ellipsoid": "Ellipsoids", "composite": "Composites"}
 
 
 class LODESTONE_RENDER_PT_levels_view(Panel):
@@ -102,9 +102,10 @@ def _change(written, before, after):
 
 
 def _draw_kinds(names, values, kinds):
-    for kind, name in _KINDS.items():
-        if kinds[kind]:
-            _row(names, values, name, f"{kinds[kind]:,}")
+    for kind in DRAWN_KINDS:
+        number = kinds[kind.name.lower()]
+        if number:
+            _row(names, values, KIND_WORDS[kind].occurrences, f"{number:,}")
 
 
 def _draw_largest(names, values, error, name):

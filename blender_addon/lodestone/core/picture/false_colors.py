@@ -7,6 +7,7 @@ Colors are linear Rec.709, 0...1.
 from typing import Any
 
 from .. import progress_text, srgb
+from ..kind_words import DRAWN_KINDS, level_word
 from ..native import lodestone_native as native
 
 Color = tuple[float, float, float]
@@ -92,8 +93,8 @@ def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
         return [("Box, ellipsoid", _COSTS[0][1]), *bounds, (more, _COSTS[-1][1])]
     words = ["Original", *(f"LOD {lod}" for lod in range(1, _LEVELS)), f"LOD {_LEVELS}+"]
     meshes = [(word, of_level(native.Kind.MESH, lod)) for lod, word in enumerate(words)]
-    solids = (native.Kind.BOX, native.Kind.ELLIPSOID, native.Kind.COMPOSITE)
-    return [*meshes, *((kind.name.title(), of_level(kind, 1)) for kind in solids)]
+    solids = [kind for kind in DRAWN_KINDS if kind != native.Kind.MESH]
+    return [*meshes, *((level_word(1, kind), of_level(kind, 1)) for kind in solids)]
 
 
 def displayed(color: Color) -> Color:

@@ -8,19 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from .. import locked_folder, run_report, stable_ids
+from ..kind_words import DRAWN_KINDS
 from ..native import lodestone_native as native
 from . import cost_model, quality_tree, unseen_detail
 
 PICTURE = "picture.exr"
-POVRAY_KINDS = sum(
-    1 << kind
-    for kind in (
-        native.Kind.MESH,
-        native.Kind.BOX,
-        native.Kind.ELLIPSOID,
-        native.Kind.COMPOSITE,
-    )
-)
+POVRAY_KINDS = sum(1 << kind for kind in DRAWN_KINDS)
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,10 @@ import math
 from dataclasses import dataclass
 
 from .. import progress_text
+from ..kind_words import level_word
 from ..native import lodestone_native as native
 from . import unseen_detail
 
-KINDS: dict[int, str] = {
-    native.Kind.MESH: "Simplified",
-    native.Kind.BOX: "Box",
-    native.Kind.ELLIPSOID: "Ellipsoid",
-    native.Kind.COMPOSITE: "Composite",
-    native.Kind.ASSEMBLY: "Group",
-}
 # Fields of a reason that make finer where above 1, and those that make coarser
 _FINER = (
     ("importance", "Importance"),
@@ -54,7 +48,7 @@ def factor(value: float) -> str:
 
 
 def level_name(lod: int, kind: int) -> str:
-    return f"LOD {lod}  {'Original' if lod == 0 else KINDS.get(kind, '?')}"
+    return f"LOD {lod}  {level_word(lod, kind)}"
 
 
 def explain(cut: native.Cut, drawn: native.Drawn, position: int) -> Explanation:
