@@ -121,7 +121,7 @@ std::string IncludeFiles::statements() const {
     std::string out;
     for (const IncludeFile& include : files_) {
         if (include.drawn)
-            out += "#include \"r/" + hex16(include.hash) + ".inc\"\n";
+            out.append("#include \"r/").append(hex16(include.hash)).append(".inc\"\n");
     }
     return out;
 }

@@ -76,7 +76,9 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
 }
 
 std::string identifier_of(Hash file) {
-    return "LDS_R_" + hex16(file);
+    std::string name = "LDS_R_";
+    name += hex16(file);
+    return name;
 }
 
 std::string representation_text(const Model& model, const Representation& representation,
