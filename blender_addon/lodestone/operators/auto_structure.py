@@ -20,7 +20,7 @@ from ..core.printable_text import sentence
 from ..core.store import motion_file, store_path
 from ..engines import extract_engine
 from . import window_run
-from .polled import Polled
+from .polled_operator import Polled
 
 FEWEST = 8  # a collection of at most so many is not structured
 GROUP_COST = 20.0  # fewer and larger groups than those nobody sees

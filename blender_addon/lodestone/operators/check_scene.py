@@ -12,7 +12,7 @@ from ..core.printable_text import sentence
 from ..core.problems import Problems
 from ..core.session.addon_session import addon_session
 from ..core.store import store_path
-from .polled import Polled
+from .polled_operator import Polled
 
 
 def check_scene(context):

@@ -7,7 +7,7 @@ from bpy.props import BoolProperty
 from ..bridge import object_decisions
 from ..core.session.addon_session import addon_session
 from ..core.store import store_path
-from .polled import Polled
+from .polled_operator import Polled
 
 
 def clear_levels(with_decisions):

@@ -20,7 +20,7 @@ from ..core.picture import compare_plan
 from ..core.session.addon_session import addon_session
 from ..engines import render_engine
 from . import window_run
-from .polled import Polled
+from .polled_operator import Polled
 
 SLOTS = 3
 _INTERVAL_S = 0.1

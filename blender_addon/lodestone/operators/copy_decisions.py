@@ -4,7 +4,7 @@
 import bpy
 
 from ..bridge import object_decisions
-from .polled import Polled
+from .polled_operator import Polled
 
 
 class LODESTONE_OT_copy_decisions(Polled, bpy.types.Operator):

@@ -7,7 +7,7 @@ from bpy.types import Menu, Operator
 from bpy_extras.object_utils import AddObjectHelper
 
 from ..bridge.scene.quality_lenses import DISPLAY, is_lens
-from .polled import InObjectMode, Polled
+from .polled_operator import InObjectMode, Polled
 
 SHAPES = (
     ("SPHERE", "Sphere", "All directions alike", "SPHERE", 0),

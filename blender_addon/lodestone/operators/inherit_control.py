@@ -6,7 +6,7 @@ from bpy.props import StringProperty
 
 from ..bridge import quality_settings
 from ..core.picture import quality_tree
-from .polled import Polled
+from .polled_operator import Polled
 
 
 class LODESTONE_OT_inherit_control(Polled, bpy.types.Operator):

@@ -7,7 +7,7 @@ from bpy.props import StringProperty
 from ..bridge import datablock_ids, ignored_problems
 from ..core import problem_causes
 from ..core.session.addon_session import addon_session
-from .polled import InObjectMode, Polled
+from .polled_operator import InObjectMode, Polled
 
 
 def split(context):

@@ -19,7 +19,7 @@ from ..core.store.store_levels import is_store
 from ..engines import extract_engine
 from . import window_run
 from ..core.session.addon_session import addon_session
-from .polled import Polled
+from .polled_operator import Polled
 
 FAILURES = (*window_run.FAILURES, extract_engine.CameraMissing)
 

@@ -7,7 +7,7 @@ from bpy.types import Operator
 
 from ..bridge import datablock_ids
 from ..bridge.live import camera_image
-from .polled import Polled
+from .polled_operator import Polled
 
 MOST = 64  # a list that nobody reads; each is looked at for everything that is drawn
 

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import StringProperty
 
-from .polled import InObjectMode
+from .polled_operator import InObjectMode
 
 
 _EMITTED = " instances"  # ends the name of the group of what an object's nodes or particles show

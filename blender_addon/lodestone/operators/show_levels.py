@@ -5,7 +5,7 @@ import bpy
 
 from ..core.session.addon_session import addon_session
 from ..viewport import levels_preview
-from .polled import Polled
+from .polled_operator import Polled
 
 
 class ShadingBefore(dict):

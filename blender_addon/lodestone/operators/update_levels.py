@@ -15,7 +15,7 @@ from ..core.session.addon_session import addon_session
 from ..core.store import motion_file, store_path
 from ..engines import extract_engine
 from . import window_run
-from .polled import Polled
+from .polled_operator import Polled
 
 UNDO_NAME = "Update Levels"
 STOPPED = "Stopped. Finished levels are kept, but for those of about the last 20 seconds"

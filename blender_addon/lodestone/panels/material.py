@@ -6,7 +6,7 @@ from bl_ui.properties_material import EEVEE_MATERIAL_PT_context_material
 from bpy.types import Panel
 
 from . import ENGINE, EnginePanel
-from .nodes import draw_node, shader_behind
+from .node_drawing import draw_node, shader_behind
 
 # What of the principled shader POV-Ray is told, in Blender's order; names of 3.4, then of 4.0
 DRAWN = (

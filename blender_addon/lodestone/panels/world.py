@@ -5,7 +5,7 @@ import bpy
 from bpy.types import Panel
 
 from . import EnginePanel
-from .nodes import draw_node
+from .node_drawing import draw_node
 
 
 class LODESTONE_WORLD_PT_surface(EnginePanel, Panel):
