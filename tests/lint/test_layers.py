@@ -40,7 +40,9 @@ class TheCheck(unittest.TestCase):
 
     def test_includes_may_not_point_up(self):
         self.assert_wrong("backend/src/base/a.h", '#include "model/mesh.h"', "above base")
-        self.assert_wrong("backend/src/hierarchy/a.h", '  # include "povray_export/x.h"', "above hierarchy")
+        self.assert_wrong(
+            "backend/src/hierarchy/a.h", '  # include "povray_export/x.h"', "above hierarchy"
+        )
         self.assert_wrong("backend/src/ray/a.cpp", '#include "../capi/x.h"', "climbs out")
         self.assert_wrong("backend/src/ray/a.cpp", '#include "ray.h"', "on no floor")
         self.assert_wrong("backend/src/ray/a.cpp", '#include "lodestone/lodestone.h"', "only capi")
@@ -72,7 +74,7 @@ class TheCheck(unittest.TestCase):
                 self.assert_right(f"backend/src/{folder}/{name}", f"#include <{header}>")
                 self.assert_wrong("backend/src/base/a.cpp", f"#include <{header}>", "may not see")
                 self.assert_wrong(
-                    f"backend/src/{folder}/simplify.h", f"#include <{header}>", "in a header"
+                    f"backend/src/{folder}/repair.h", f"#include <{header}>", "in a header"
                 )
         self.assert_right("backend/src/base/parallel.cpp", "#include <tbb/parallel_for.h>")
         self.assert_wrong("backend/src/base/a.cpp", "#include <tbb/parallel_for.h>", "may not see")

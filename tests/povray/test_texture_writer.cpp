@@ -43,7 +43,6 @@ glm::dvec2 uv_of(int x, int y, double low = -1.25, double high = 2.25) {
     return {low + (high - low) * (x + 0.5) / 28, high - (high - low) * (y + 0.5) / 28};
 }
 
-/// A folder's name: tests run at the same time.
 /// The largest difference of each texture to what its sampler says, in one picture.
 std::vector<double> differences(const std::vector<Texture>& textures, double low = -1.25,
                                 double high = 2.25) {
@@ -457,25 +456,6 @@ TEST(PovrayTextures, VertexColorsRunBetweenVerticesAndMultiplyThePicture) {
     EXPECT_NEAR(image.at(7, 7).x, 0.8 * 7.5 / 28, 0.006);
     EXPECT_NEAR(image.at(21, 7).y, 0.6 * 0.25, 0.006);
     EXPECT_NEAR(image.at(7, 21).z, 0.9 * (1 - 7.5 / 28), 0.01);
-}
-
-TEST(PovrayTextures, ManyVertexColorsAreRoundedToAFewThousand) {
-    Builder builder;
-    Mesh mesh = shapes::terrain(128);
-    for (size_t i = 0; i < mesh.positions.size(); ++i)
-        mesh.colors.emplace_back(float(i % 128) / 128.0F, float(i) / 16384.0F,
-                                 float(i * 37 % 101) / 101.0F, 1);
-    Material material = scenes::textured({});
-    material.vertex_colors = true;
-    const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
-    PictureWriter pictures;
-    const std::string text = representation_text(
-        builder.model, builder.model.objects[object].representations[0], "X", {}, pictures, {});
-    const size_t at = text.find("texture_list{");
-    ASSERT_NE(at, std::string::npos);
-    const int textures = std::stoi(text.substr(at + 13));
-    EXPECT_LE(textures, 4096);
-    EXPECT_GT(textures, 500);
 }
 
 TEST(PovrayTextures, HostileTexturesGiveTextThatPovrayReads) {
