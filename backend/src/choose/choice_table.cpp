@@ -9,10 +9,14 @@
 namespace lodestone::choose {
 namespace {
 
-// Nothing that is drawn costs less than this: a primitive, placed once.
+// The least cost of anything that is drawn: a primitive, placed once.
 constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
-// So many groups deep an opening is looked for below another one; deeper ones count as closed.
+// How many groups deep the costs below a group are looked at for openings; deeper groups count as
+// closed.
+// Taste: a larger depth finds more openings and makes tables slower.
 constexpr int kDeepestOpening = 3;
+// The most levels of an object.
+// Law: level_count is a bit field of 28 bits.
 constexpr uint32_t kMostLevels = (uint32_t{1} << 28u) - 1;
 
 double own_cost(const TableLevel& level) {
@@ -136,7 +140,7 @@ void ChoiceTable::expand(uint32_t row) {
         set_openings(made);
 }
 
-/// Tells all placements where their objects' children are, and rows whether they last.
+/// Tells all placements where the children of their objects are, and rows whether they last.
 void ChoiceTable::link() {
     for (TableChild& child : children_) {
         child.first_child = objects_[child.row].first_child;
@@ -149,7 +153,7 @@ void ChoiceTable::link() {
     for (TableRow& row : rows_)
         row.lasting = row.drawable && !row.group && row.level_count > 0;
     for (auto row = static_cast<uint32_t>(rows_.size());
-         row-- > 0;) {  // most groups precede theirs
+         row-- > 0;) {  // most groups come before the groups around them
         const TableObject& object = objects_[row];
         bool lasting = rows_[row].lasting;
         for (uint32_t i = 0; !lasting && i < object.child_count; ++i) {
@@ -166,8 +170,8 @@ double ChoiceTable::stretch_of(const TableChild& child) const {
     return child.linear == kUnturned ? 1 : stretches_[child.linear];
 }
 
-/// For each stand-in of a group that costs more than its children could, from which error on they
-/// do.
+/// Finds, for each stand-in of a group that costs more than its children could, from which error on
+/// it does.
 void ChoiceTable::set_openings(uint32_t row) {
     const TableRow group = rows_[row];
     if (objects_[row].openings)
@@ -177,7 +181,7 @@ void ChoiceTable::set_openings(uint32_t row) {
         return;
     const std::vector<Placement>& placements =
         model_.objects[objects_[row].object].representations[0].assembly().placements;
-    std::vector<double> steps;  // errors at which a child changes
+    std::vector<double> steps;  // the errors at which a child changes its level
     for (uint32_t i = group.level_count; i-- > 0;) {
         const TableLevel level = levels_[group.first_level + i];
         if (level.sealed || level.bytes + kBytesPerOccurrence <= kLeastBytes * placements.size())
@@ -210,7 +214,7 @@ void ChoiceTable::set_openings(uint32_t row) {
         };
         if (!pays(within.back()))
             continue;
-        size_t fails = 0;  // what is below costs less, the more error is allowed
+        size_t fails = 0;  // the children cost less, the more error is allowed
         size_t works = within.size() - 1;
         if (pays(within[0]))
             works = 0;
@@ -222,7 +226,7 @@ void ChoiceTable::set_openings(uint32_t row) {
     }
 }
 
-/// What is drawn for it costs at most, where an error of so much is allowed.
+/// The most that the levels of an object cost where this error is allowed.
 double ChoiceTable::cost_at(uint32_t row, double error, int depth) {
     set_openings(row);
     const TableRow here = rows_[row];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ChoiceTable: all that choosing reads of a model, in flat arrays, siblings beside each other and
-// subtrees together, so that a visit misses few caches. Made once per change of the model.
+// Choice table: all that choosing reads of a model, in flat arrays. Siblings lie beside each other
+// and subtrees together, so that a visit misses the cache seldom. It is made once per change of the
+// model.
 #pragma once
 
 #include "model/model.h"
@@ -12,79 +13,82 @@ namespace lodestone::choose {
 
 /// A representation that the view can draw (never an assembly).
 struct TableLevel {
-    double error = 0;  // metres, object's frame
-    /// From this error on its group's children cost less (in bytes, those of shared representations
-    /// counted each time) than this stand-in; infinite: never. Children are farther than their
-    /// group and ask for no less error than it does, so what is then chosen below costs less
-    /// indeed. Never where it is sealed.
+    double error = 0;  // in metres, in the object's frame
+    /// From this error on, the children of the group cost less than this stand-in (in bytes; shared
+    /// representations are counted at each use); infinite: they never do. Children are farther away
+    /// than their group and ask for no smaller error than it does, so the levels that are then
+    /// chosen below cost less, too. It is infinite for a sealed level.
     double opens_from = 0;
     uint64_t bytes = 0;
     uint64_t triangles = 0;
     uint32_t lod = 0;
-    uint32_t distinct = 0;  // equal numbers draw the same
+    uint32_t distinct = 0;  // levels with equal numbers draw the same
     Kind kind = Kind::Mesh;
     bool sealed = false;
 };
 
-/// What is particular of a placement, or of its object; of nearly all nothing is.
+/// The decisions that a user made for a placement or for its object. Nearly all have none.
 struct PlacementOverrides {
     double importance = 1;
-    double demand = 1;  // of the object
+    double demand = 1;  // that of the object
     uint32_t coarsest = kAnyLevel;
     uint32_t finest = 0;
     RayMask hidden = 0;
 };
 
+/// The `linear` of a child that is moved only, neither turned nor scaled.
 inline constexpr uint32_t kUnturned = ~uint32_t{0};
 
-/// A placement, with what its object is looked at first by: a line of a cache.
+/// A placement, with the numbers of its object that are read first. It fills one line of a cache.
 struct alignas(64) TableChild {
     glm::dvec3 offset{0.0};
-    double finest_error = 0;  // the least of its object's levels; infinite without any
+    /// The least error of the object's levels; infinite if it has no level.
+    double finest_error = 0;
     ObjectIndex object = kNoObject;
     uint32_t row = 0;
     uint32_t linear = kUnturned;  // in linears(); kUnturned: moved only
     uint32_t overrides = 0;       // in overrides(); 0: none
-    // Of its object's children; of a whole table alone.
+    // The children of its object; these two are known in a whole table only.
     uint32_t first_child = 0;
     uint32_t child_count = 0;
-    // Of the first of them; the others' lie behind, if they are used nowhere before.
+    // The rows and levels of the first child; those of the others follow, if no placement before
+    // uses them.
     uint32_t first_row = 0;
     uint32_t first_level = 0;
 };
 
-/// An object as it is seen: a line of a cache.
+/// An object as it is seen. It fills one line of a cache.
 struct alignas(64) TableRow {
     Box3 box;
     double radius = 0;
-    uint32_t first_level = 0;  // finest first
+    uint32_t first_level = 0;  // the finest level is first
     uint32_t level_count : 28 = 0;
     bool group : 1 = false;
     bool drawable : 1 = false;  // it has representations
-    bool centered : 1 = false;  // its bound's center is its box's
-    /// However it is seen, it or something in it is drawn, where a placement forbids no level. Of a
-    /// whole table alone; false: it may be so.
+    bool centered : 1 = false;  // the center of its bound is the center of its box
+    /// However it is seen, the object or something in it is drawn, unless a placement forbids
+    /// levels. It is known in a whole table only; false means that it may or may not be so.
     bool lasting : 1 = false;
 };
 
-/// The rest of it.
+/// The data of an object that are read seldom.
 struct TableObject {
-    glm::dvec3 center{0.0};  // of its bound
+    glm::dvec3 center{0.0};  // the center of its bound
     double demand = 1;
     ObjectIndex object = kNoObject;
-    uint32_t all_levels = 0;  // those that the view cannot draw included
+    uint32_t all_levels = 0;  // the levels that the view cannot draw are counted, too
     uint32_t first_child = 0;
     uint32_t child_count = 0;
     bool expanded = false;  // its children are in the table
-    bool openings = false;  // its levels' opens_from is known
+    bool openings = false;  // the opens_from of its levels is known
 };
 
 class ChoiceTable {
 public:
-    /// Empty; rows are made when they are asked for. The model must stay as it is.
+    /// The table is empty; rows are made when they are asked for. The model must not change.
     ChoiceTable(const Model& model, KindMask kinds) : model_(model), kinds_(kinds) {}
 
-    /// Of everything below an object. Never changes afterwards: safe from any thread.
+    /// The table of everything below an object. It never changes afterwards: safe from any thread.
     static ChoiceTable whole(const Model& model, ObjectIndex root, KindMask kinds);
 
     KindMask kinds() const { return kinds_; }
@@ -99,17 +103,17 @@ public:
     const TableChild& child(uint32_t index) const { return children_[index]; }
     const glm::dmat3& linear(uint32_t index) const { return linears_[index]; }
     const PlacementOverrides& overrides(uint32_t index) const { return overrides_[index]; }
-    /// Of a group that is expanded; the table keeps it.
+    /// The assembly of a group that is expanded; the table keeps it alive.
     const Assembly& assembly(uint32_t row) const { return *assemblies_[row]; }
     size_t size() const { return rows_.size(); }
     size_t distinct() const { return distinct_.size(); }
-    /// Brings nearer what is read of a child and of those behind it.
+    /// Prefetches the row and the first levels of a child.
     void prefetch(uint32_t child) const {
         const uint32_t row = children_[child].row;
         prefetch(rows_, row);
         prefetch(levels_, rows_[row].first_level);
     }
-    /// The same of a placed group's first children, before their placements are known.
+    /// Prefetches the same of a placed group's first children, before their placements are known.
     void prefetch_below(uint32_t first_child, uint32_t first_row, uint32_t first_level,
                         uint32_t count) const {
         for (uint32_t i = 0; i < count; ++i) {
@@ -118,17 +122,18 @@ public:
             prefetch(levels_, first_level + i);
         }
     }
-    /// Nodes of the cut before: what the next one makes room for. A hint; nothing depends on it.
+    /// The number of nodes of the last cut, for which the next one reserves memory. It is a hint;
+    /// no result depends on it.
     size_t expected() const { return expected_.value.load(std::memory_order_relaxed); }
     void expect(size_t nodes) const {
         expected_.value.store(nodes + nodes / 8, std::memory_order_relaxed);
     }
 
-    /// The row of an object; made, with its levels, if it is not there.
+    /// The row of an object. It is made, with its levels, if the table has none.
     uint32_t row_of(ObjectIndex object);
     /// The row of an object that is in the table.
     uint32_t find(ObjectIndex object) const { return by_object_.at(object); }
-    /// Makes the rows of what a group places.
+    /// Makes the rows of the objects that a group places.
     void expand(uint32_t row);
 
 private:
@@ -159,9 +164,10 @@ private:
     std::vector<TableLevel> levels_;
     std::vector<TableChild> children_;
     std::vector<glm::dmat3> linears_;
-    std::vector<double> stretches_;  // of them
+    std::vector<double> stretches_;  // by the index of the linear map
     std::vector<PlacementOverrides> overrides_{PlacementOverrides{}};
-    std::vector<std::shared_ptr<const Assembly>> assemblies_;  // by row; null of what is no group
+    /// By row; null for an object that is no group.
+    std::vector<std::shared_ptr<const Assembly>> assemblies_;
     std::unordered_map<ObjectIndex, uint32_t> by_object_;
     std::unordered_map<Hash, uint32_t> distinct_;
 };

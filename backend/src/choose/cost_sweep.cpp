@@ -7,7 +7,8 @@
 namespace lodestone::choose {
 namespace {
 
-// Children whose memory is asked for before they are visited.
+// How many children ahead memory is asked for.
+// Taste: as kAhead in cut_chooser.cpp; more displace what is still needed, fewer come too late.
 constexpr uint32_t kAheadOfSweep = 4;
 
 }  // namespace
@@ -53,7 +54,7 @@ bool CostSweep::too_many() const {
     return nodes_ > kMostNodes || visited_.size() > 4 * kMostNodes;
 }
 
-/// Finds what a node is drawn by from the threshold of now down to `low`.
+/// Finds the levels that draw a node, from the threshold of now down to `low`.
 void CostSweep::visit(uint32_t index, const PlacedNode& placed, double demand, double enlarge,
                       FactorField::FactorPath path, double low) {
     if ((visited_.size() & 1023u) == 0)
@@ -64,7 +65,7 @@ void CostSweep::visit(uint32_t index, const PlacedNode& placed, double demand, d
     if (!row.drawable || !find_sight(view_, field_, placed, row.group, table_.bound(index), demand,
                                      enlarge, path, sight, factors))
         return;
-    // Between two of these decide_level() decides alike.
+    // Between two neighbors of these thresholds decide_level() decides alike.
     thresholds_.assign(1, low);
     const size_t levels = by_error(view_) ? 0 : table_.object(index).all_levels;
     const auto add = [&](const TableLevel& level, double error) {

@@ -39,7 +39,7 @@ bool good_enough(const View& view, double error, double stretch, double z, doubl
 
 namespace {
 
-/// least_threshold(), but for rounding.
+/// The result of least_threshold(), but for rounding.
 double near_threshold(const View& view, const OccurrenceSight& sight, double error, size_t lod,
                       size_t levels) {
     if (view.modifiers.criterion == DetailCriterion::Feature) {
@@ -62,7 +62,7 @@ double picture_area(const View& view, double z) {
 
 double least_threshold(View& view, const OccurrenceSight& sight, double error, size_t lod,
                        size_t levels) {
-    // From 0 on numbers are in the order of their bits.
+    // Numbers from 0 on are in the order of their bits.
     const auto good = [&](uint64_t threshold) {
         view.pixel_error = std::bit_cast<double>(threshold);
         return good_enough(view, sight, error, lod, levels);
@@ -78,7 +78,7 @@ double least_threshold(View& view, const OccurrenceSight& sight, double error, s
             (good(threshold) ? works : fails) = threshold;
     };
     const double guess = near_threshold(view, sight, error, lod, levels);
-    if (guess > 0) {  // a number, and but for rounding the one
+    if (guess > 0) {  // the guess is a number and, but for rounding, the result
         const auto near = std::bit_cast<uint64_t>(guess);
         narrow(near);
         narrow(near - 1);

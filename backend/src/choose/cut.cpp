@@ -59,6 +59,7 @@ Cut choose_cut(const ChoiceTable& table, const View& view, const Job& job) {
 }
 
 std::vector<LevelUse> level_uses(const Cut& cut) {
+    // Law: LOD numbers have 32 bits.
     constexpr unsigned kLodBits = 32;
     std::unordered_map<uint64_t, uint64_t> uses;
     std::pair<const uint64_t, uint64_t>* last = nullptr;  // neighbors are often drawn alike
@@ -158,7 +159,7 @@ ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut
 
 namespace {
 
-/// `name`: of the placement of a node.
+/// `name`: a function that gives the name of a node's placement.
 template <typename Name>
 std::string joined_names(const Cut& cut, uint32_t node, const Name& name) {
     std::vector<const std::string*> names;

@@ -8,7 +8,9 @@
 namespace lodestone::choose {
 namespace {
 
-// Children whose memory is asked for before they are visited.
+// How many children ahead memory is asked for.
+// Taste: more displace what is still needed,
+// fewer come too late.
 constexpr uint32_t kAhead = 4;
 
 }  // namespace
@@ -98,8 +100,8 @@ bool place_child(const ChoiceTable& table, const CutNode& group, const Affine& a
     return true;
 }
 
-/// The cheapest good level, else the finest that can be drawn, else none. Errors rise strictly and
-/// costs fall from finest to coarsest.
+/// Decides for the cheapest good level, else the finest that can be drawn, else none. From finest
+/// to coarsest, errors rise strictly and costs fall.
 LevelDecision decide_level(const ChoiceTable& table, const View& view, uint32_t index,
                            const CutNode& node, const OccurrenceSight& sight) {
     const TableRow& row = table.row(index);
@@ -248,7 +250,7 @@ void CutChooser::visit_child(const PendingChild& entry) {
           placed, enlarge, path_, entry.depth);
 }
 
-/// Of the nodes; their transforms are in the same order.
+/// Appends a node; the transforms are in the same order as the nodes.
 uint32_t CutChooser::append(PlacedNode& placed, const SeenNode& seen) {
     const auto index = static_cast<uint32_t>(nodes_->size());
     placed.node.transform = index;
@@ -271,7 +273,7 @@ void CutChooser::visit(const KnownObject& known, PlacedNode& placed, double enla
                     enlarge, path, sight, factors))
         return;
     LevelDecision made;
-    // Most groups that are opened have no level that is good enough: none is read.
+    // Most groups that are opened have no level that is good enough: then none is read.
     if (row.group && node.coarsest == kAnyLevel && node.finest == 0 &&
         view_.modifiers.criterion == DetailCriterion::Resolution &&
         !good_enough(view_, sight, known.finest_error, 0, 0))
@@ -317,7 +319,7 @@ void CutChooser::push_children(const KnownObject& known, uint32_t index, double 
         stack_.push_back({index, first + i, i, depth + 1});
 }
 
-/// Counts what is drawn. `shown_px`: what of its error the picture shows.
+/// Counts a node that is drawn. `shown_px`: the part of its error that the picture shows.
 void CutChooser::take(uint32_t index, const TableLevel& level, double shown_px) {
     cut_->chosen.push_back(index);
     cut_->triangles += level.triangles;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CutChooser: goes down from the root and decides at each occurrence how it is drawn. Inside of cut
-// and step.
+// Cut chooser: goes down from the root and decides at each occurrence how it is drawn. Only cut and
+// follow use it.
 #pragma once
 
 #include "choose/criterion.h"
@@ -11,56 +11,60 @@
 
 namespace lodestone::choose {
 
-/// More nodes than this are refused: as many occurrences take POV-Ray 25 GB, and groups that place
-/// another twice, so many deep, would not end.
+/// The most nodes of a cut; more are refused. Taste: as many occurrences take POV-Ray 25 GB, and a
+/// chain of groups that each place the next one twice would not end.
 inline constexpr size_t kMostNodes = size_t{1} << 24u;
 
+/// The number of kinds.
+/// Law: Assembly is the last enumerator of Kind.
 inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
 
 /// Throws Error(InvalidArgument) for a view that makes no sense.
 void refuse_nonsense(const View& view);
 
-/// A node and where it is, before they are kept apart.
+/// A node and its transform, before they are stored apart.
 struct PlacedNode {
     CutNode node;
     Affine world;
 };
 
-/// How a node is seen. False when a lens hides it. `path` becomes that of what is below it.
+/// Finds how a node is seen. False when a lens hides it. `path` becomes the path of its children.
 bool find_sight(const View& view, FactorField& field, const PlacedNode& placed, bool group,
                 const Bound& local, double demand, double enlarge, FactorField::FactorPath& path,
                 OccurrenceSight& sight, DetailFactors& factors);
 
-/// What a group, opened, places (`around`: where it is): the node, where it is and by whom it is
-/// seen, its stretch (from the group's) and its object's demand. False: nothing would show it.
+/// Finds a child that an opened group places (`around`: the group's transform): its node, transform
+/// and ray classes, its stretch (from the group's) and the demand of its object. False: no ray
+/// would see it.
 bool place_child(const ChoiceTable& table, const CutNode& group, const Affine& around,
                  const TableChild& child, PlacedNode& placed, double& enlarge, double& demand);
 
-/// Whether levels are judged by their errors.
+/// Whether the view judges levels by their errors.
 inline bool by_error(const View& view) {
     return view.modifiers.criterion == DetailCriterion::Resolution ||
            view.modifiers.criterion == DetailCriterion::Feature;
 }
 
-/// By which level something is drawn.
+/// The level by which something is drawn.
 struct LevelDecision {
-    const TableLevel* level = nullptr;  // null: there is none that is allowed
-    bool good = false;                  // good enough
-    bool pinned = false;                // no other one is allowed
-    bool cheaper = false;               // opened for that, though good enough
+    const TableLevel* level = nullptr;  // null: no level is allowed
+    bool good = false;                  // the level is good enough
+    bool pinned = false;                // no other level is allowed
+    bool cheaper = false;  // opened because that is cheaper, though the level is good enough
     bool opened = false;
-    bool drawn = false;  // neither: it has nothing to be drawn by
+    bool drawn = false;  // false and not opened: nothing can draw it
 };
 LevelDecision decide_level(const ChoiceTable& table, const View& view, uint32_t row,
                            const CutNode& node, const OccurrenceSight& sight);
 
-/// What stepping a cut keeps of a node, beside its transform.
+/// The facts about a node that following a cut keeps, beside its transform.
 struct SeenNode {
     uint32_t row = 0;
-    uint32_t level = 0;  // of the table; LevelDecision's, any where that has none
+    /// The index in the table of the level of LevelDecision; any number where that has none.
+    uint32_t level = 0;
     double stretch = 1;
-    double total = 1;   // as OccurrenceSight's
-    bool good = false;  // as LevelDecision's, and so is the next
+    double total = 1;   // the same as in OccurrenceSight
+    bool good = false;  // the same as in LevelDecision, like `cheaper`
     bool cheaper = false;
 
     SeenNode() = default;
@@ -74,7 +78,8 @@ struct SeenNode {
           cheaper(made.cheaper) {}
 };
 
-/// What was visited, in the order of a cut; transforms and what is kept in the order of the nodes.
+/// The visited nodes in the order of a cut; transforms and kept facts are in the order of the
+/// nodes.
 struct VisitedNodes {
     std::vector<CutNode> nodes;
     std::vector<Affine> transforms;
@@ -84,40 +89,42 @@ struct VisitedNodes {
     void reserve(size_t count);
 };
 
-/// Visits what is drawn and the groups above it, depth first, each once.
+/// Visits the occurrences that are drawn and the groups above them, depth first, each once.
 class CutChooser {
 public:
-    /// `growing`: the same table, where rows are made on the way. All must outlive it.
-    /// `most`: nodes; where there would be more, Error(InvalidArgument) is thrown, or it is too
-    /// dear.
+    /// `growing`: the same table, if rows are made on the way. All arguments must outlive the
+    /// chooser. `most`: the most nodes; if there are more, Error(InvalidArgument) is thrown, or
+    /// with a budget the cut does not fit.
     CutChooser(const ChoiceTable& table, ChoiceTable* growing, const View& view, FactorField& field,
                const Job& job, size_t most = kMostNodes)
         : table_(table), growing_(growing), view_(view), field_(field), job_(job), most_(most) {}
 
-    /// All of a cut, but its kinds and sums where `budget` was exceeded, or with one `most`: false.
+    /// Makes the whole cut. False: it exceeds `budget` or `most`, and its kinds and sums are not
+    /// complete.
     bool run(uint32_t root, const CutBudget& budget, Cut& cut);
 
-    /// Appends the nodes alone, and what is kept of each.
+    /// Appends the nodes alone, with the facts that are kept of each.
     void run(uint32_t root, VisitedNodes& out);
-    /// The same for what is below a group: itself, opened, and the nodes below. `path`: of what it
-    /// places. Their parents are indices in `out`, its own is left as it is.
+    /// Appends a group, opened, and the nodes below it. `path`: the path of the objects it places.
+    /// The parents of the nodes below are indices in `out`; the parent of the group is left as it
+    /// is.
     void open(const PlacedNode& group, const SeenNode& known, const FactorField::FactorPath& path,
               VisitedNodes& out);
 
 private:
     struct PendingChild {
         uint32_t parent;    // node
-        uint32_t child;     // of the table
+        uint32_t child;     // in the table
         uint32_t position;  // among the placements
         uint32_t depth;
     };
     /// The group at some depth that is being visited.
     struct GroupFrame {
         double stretch = 1;
-        FactorField::FactorPath path;  // of what it places
+        FactorField::FactorPath path;  // that of the objects it places
     };
 
-    /// What is known of an object before its row is looked at.
+    /// The facts about an object that are known before its row is read.
     struct KnownObject {
         uint32_t row = 0;
         double demand = 1;
@@ -147,11 +154,12 @@ private:
     const Job& job_;
     const size_t most_;
     const CutBudget* budget_ = nullptr;
-    Cut* cut_ = nullptr;                     // whose sums are made; null: none are
-    std::vector<CutNode>* nodes_ = nullptr;  // what is appended to
+    Cut* cut_ = nullptr;                     // its sums are computed; null: none are
+    std::vector<CutNode>* nodes_ = nullptr;  // the nodes are appended here
     std::vector<Affine>* transforms_ = nullptr;
-    std::vector<SeenNode>* seen_ = nullptr;  // null: nothing is kept
-    FactorField::FactorPath path_;           // of what is visited; of motion only where that counts
+    std::vector<SeenNode>* seen_ = nullptr;  // null: no facts are kept
+    /// The path of the visited node; with motion only where motion counts.
+    FactorField::FactorPath path_;
     std::vector<PendingChild> stack_;
     std::vector<GroupFrame> frames_;  // by depth
     std::vector<bool> drawn_;         // by TableLevel::distinct
@@ -159,7 +167,7 @@ private:
     size_t visits_ = 0;
 };
 
-/// The words of kinds, and how many are drawn by each.
+/// The words of the kinds, with the number of occurrences drawn by each.
 std::map<std::string, uint64_t> counts_by_kind(std::span<const uint64_t, kKinds> kinds);
 
 }  // namespace lodestone::choose

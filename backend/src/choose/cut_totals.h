@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CutTotals: a cut's sums, kept while nodes come and go.
+// Cut totals: the sums of a cut, kept up to date while nodes come and go.
 #pragma once
 
 #include "choose/cut_chooser.h"
@@ -8,9 +8,10 @@ namespace lodestone::choose {
 
 class CutTotals {
 public:
-    /// Of nothing.
+    /// Starts again with an empty cut of the levels of this table.
     void clear(const ChoiceTable& table);
-    /// Adds what something costs that is drawn by a level to the cut's sums, or takes it away.
+    /// Adds the cost of an occurrence that is drawn by a level to the sums of the cut, or subtracts
+    /// it.
     void count(const TableLevel& level, bool more, Cut& cut);
     const std::array<uint64_t, kKinds>& kinds() const { return kinds_; }
 

@@ -14,8 +14,14 @@
 namespace lodestone::choose {
 namespace {
 
-constexpr double kSteepest = 8;       // depth exaggeration
-constexpr double kMiddleShown = 0.5;  // what is displayed brighter needs all detail
+// The largest depth exaggeration.
+// Taste: a larger one coarsens more behind the focus than an artist could mean.
+constexpr double kSteepest = 8;
+// The displayed value from which on nothing is coarser for darkness.
+// Taste: a larger one coarsens middle tones, too.
+constexpr double kMiddleShown = 0.5;
+// The displayed value below which nothing becomes coarser any more.
+// Taste: a smaller one coarsens more in black; so the factor is at most 64, as all factors.
 constexpr double kLeastShown = 1.0 / 128;
 
 void refuse_nonsense(const QualityModifiers& modifiers) {
@@ -58,14 +64,15 @@ bool glows(const Model& model, const Representation& representation) {
                        });
 }
 
-/// Brightest radiance that a white surface at this place may send from this light.
-/// source: Blender's energy units, see DESIGN 8
+/// The brightest radiance that a white surface at this place may send back of this light's. source:
+/// Blender's energy units: a sun's strength in W/m^2, a lamp's power in W
 double lit(const Light& light, const Bound& bound) {
     const double power = std::max(0.0, light.power) * largest(light.color);
     if (light.kind == LightKind::Sun)
         return power / kPi;
     double reach = light.radius;
-    double concentrated = 1;  // a Lambert area sends four times a sphere's mean along its axis
+    // A Lambert area sends, along its axis, four times the mean of a sphere.
+    double concentrated = 1;
     if (light.kind == LightKind::Area) {
         reach = 0.5 * (glm::length(light.edge_u) + glm::length(light.edge_v));
         concentrated = 4;
@@ -124,7 +131,7 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
         }
     }
     if (modifiers.when_dark) {
-        // What is put behind a transparent film may be bright, and so may a picture of the sky.
+        // The background behind a transparent film may be bright, and so may a picture of the sky.
         const World& world = model.world;
         background_ =
             world.transparent || world.environment ? 1 : displayed_radiance(largest(world.color));
@@ -200,12 +207,13 @@ double FactorField::screen_lenses(const Bound& bound) const {
     return refine;
 }
 
-/// By the least motion of the bound's center and of the middles of its box's sides.
+/// The factor of motion, by the least motion of the bound's center and of the middles of its box's
+/// sides.
 double FactorField::motion(ObjectIndex object, const Bound& local, const Affine& world,
                            const FactorPath& path) const {
     if (!closing_ && !path.moving)
         return 1;
-    if (moves_below_[object] != 0 || local.empty())  // each part in its own way
+    if (moves_below_[object] != 0 || local.empty())  // each of its parts moves in its own way
         return 1;
     const Affine& later = path.moving ? path.closing : world;
     const ImageFrame& frame = closing_ ? *closing_ : frame_;
@@ -226,7 +234,8 @@ double FactorField::motion(ObjectIndex object, const Bound& local, const Affine&
     return std::isfinite(least) ? coarser_by_motion(least) : 1;
 }
 
-/// By what a white surface anywhere in the bound would show, without any shadow.
+/// The factor of darkness, by the value that a white surface anywhere in the bound would show
+/// without any shadow.
 double FactorField::darkness(ObjectIndex object, const Bound& bound) const {
     if (glows_[object] != 0 || bound.empty())
         return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DetailFactors: all that makes one occurrence finer or coarser than Pixel Error alone (5.5.5).
+// Detail factors: all that makes one occurrence finer or coarser than Pixel Error alone (5.5.5).
 #pragma once
 
 #include "choose/image_frame.h"
@@ -10,10 +10,11 @@
 
 namespace lodestone::choose {
 
-/// Each is kept, so that "why this level?" can name it. The first four refine, the others coarsen.
+/// Each factor is kept, so that "why this level?" can name it. The first four refine, the others
+/// coarsen.
 struct DetailFactors {
-    double importance = 1;  // of the placements along its path
-    double demand = 1;      // of what is most important below it
+    double importance = 1;  // the product over the placements along its path
+    double demand = 1;      // that of the most important object below it
     double lenses = 1;
     double screen_lenses = 1;
     double depth = 1;
@@ -21,22 +22,23 @@ struct DetailFactors {
     double darkness = 1;
     double off_screen = 1;
 
-    /// Error counts so many times: refine / coarsen, within 1/64 ... 64, or infinite.
+    /// The error is multiplied by this: refine / coarsen, within 1/64 ... 64, or infinite.
     double total() const;
 };
 
-/// Radiance as a display shows it: 0 ... 1 and beyond.
+/// The radiance as a display shows it: 0 ... 1 and above.
 double displayed_radiance(double radiance);
-/// What motion over so many pixels while the shutter is open coarsens: sharpness of a pixel and of
-/// the way, squares added.
+/// The factor by which motion over `pixels` pixels, while the shutter is open, coarsens. The
+/// squares of the widths of a pixel and of the motion are added.
 double coarser_by_motion(double pixels);
-/// What light coarsens: differences are differences of what is displayed.
+/// The factor by which darkness or brightness coarsens: an error is the difference between
+/// displayed values.
 double coarser_by_darkness(double shown);
 
 class FactorField {
 public:
-    /// Throws Error(InvalidArgument) for modifiers that make no sense.
-    /// `in_any_order`: paths stay valid, whatever was visited since.
+    /// Throws Error(InvalidArgument) for modifiers that make no sense. `in_any_order`: paths stay
+    /// valid, whatever was visited since.
     FactorField(const Model& model, const View& view, bool in_any_order = false);
     FactorField(const FactorField&) = delete;
     FactorField& operator=(const FactorField&) = delete;
@@ -44,14 +46,14 @@ public:
     /// False: all factors but importance and demand are 1 everywhere.
     bool bends() const { return bends_; }
 
-    /// What is known along a path.
+    /// The facts that are known along a path.
     struct FactorPath {
         LensField::LensPath lenses;
-        Affine closing;       // -> world when the shutter closes
+        Affine closing;       // the map to the world when the shutter closes
         bool moving = false;  // a placement along it moves
     };
     FactorPath root();
-    /// For a child, once `at` was asked for its group.
+    /// The path of a child, after `at` was asked for its group.
     FactorPath below(const FactorPath& group, const Affine& world,
                      const Placement& placement) const;
 
@@ -60,12 +62,13 @@ public:
         bool open = false;
         bool gone = false;
     };
-    /// Occurrences in depth-first order, or in any where that was asked for. `path` becomes that of
-    /// what is below it.
+    /// The effect on an occurrence. Occurrences are asked for in depth-first order, or in any order
+    /// where the constructor was told so. `path` becomes the path of its children.
     FactorEffect at(ObjectIndex object, bool group, const Bound& local, const Affine& world,
                     const Bound& bound, double z, FactorPath& path);
 
-    /// False: neither here nor below, for lenses are all there is, and none is near.
+    /// False: all factors are 1 here and below, because there are only lenses and none of them is
+    /// near.
     bool bends(const FactorPath& path) const {
         return bends_ && (path.lenses.begin < path.lenses.end || !lenses_alone_);
     }
@@ -88,12 +91,13 @@ private:
     ImageFrame frame_;
     std::optional<ImageFrame> closing_;
     std::optional<OffScreenField> off_screen_;
-    std::vector<uint8_t> moves_below_;  // by object; when moving counts
-    std::vector<uint8_t> glows_;        // by object, or below it; when darkness counts
-    double background_ = 0;             // display value of the world
-    double pixel_ = 0;                  // at 1 m
+    std::vector<uint8_t> moves_below_;  // by object; empty where motion does not count
+    /// By object, true also if something below glows; empty where darkness does not count.
+    std::vector<uint8_t> glows_;
+    double background_ = 0;  // the displayed value of the world
+    double pixel_ = 0;       // the size of a pixel at 1 m
     bool bends_ = false;
-    bool lenses_alone_ = false;  // nothing else bends
+    bool lenses_alone_ = false;  // lenses are the only factors
 };
 
 }  // namespace lodestone::choose

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t kNone = ~uint32_t{0};
 
-/// Which objects are, or hold, the one.
+/// By object, whether it is `object` or holds it.
 std::vector<uint8_t> holders(const Model& model, ObjectIndex object) {
     std::vector<uint8_t> holds(model.objects.size(), 0);
     holds.at(object) = 1;
@@ -47,13 +47,13 @@ double tolerance(const Affine& world) {
 
 struct OccurrenceVisit {
     ObjectIndex object = kNoObject;
-    uint32_t parent = kNone;  // index of a visit
+    uint32_t parent = kNone;  // the index of a visit
     uint32_t placement = 0;
     Affine world;
 };
 
-/// Positions of placements from the root down to the nearest occurrence; nothing when there is
-/// none.
+/// The positions of the placements from the root down to the nearest occurrence; none when there is
+/// no occurrence.
 std::optional<std::vector<uint32_t>> path_to(const Model& model, ObjectIndex object,
                                              const Affine& world) {
     const std::vector<uint8_t> holds = holders(model, object);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Find a choice: by which representation a cut draws one thing of the scene.
+// Find a choice: the representation by which a cut draws one thing of the scene.
 #pragma once
 
 #include "choose/cut.h"
@@ -19,17 +19,18 @@ enum class DrawnState : uint8_t {
 
 struct FoundChoice {
     DrawnState drawn = DrawnState::Missing;
-    uint32_t node = kNoParent;  // the chosen or opened one
+    uint32_t node = kNoParent;  // the chosen node or the opened one
 };
 
-/// Of the occurrence of `object` whose transform is nearest to `world` (of equally near ones the
-/// first), Missing when that is off by more than 1/1000 of the distance from the origin, or 1 mm.
-/// cost: one visit for each group that holds the object, and each of its occurrences.
+/// Finds the occurrence of `object` whose transform is nearest to `world` (the first of equally
+/// near ones). The result is Missing when the two differ by more than 1/1000 of the distance from
+/// the origin, or than 1 mm. cost: one visit for each group that holds the object, and for each of
+/// its occurrences.
 FoundChoice find_choice(const Model& model, const Cut& cut, ObjectIndex object,
                         const Affine& world);
 
-/// The path of placements below a group to what makes the group's `demand` as large as it is; ""
-/// where nothing in it is more important than the group.
+/// The path of placements below a group to the object that makes the group's `demand` as large as
+/// it is; "" where nothing in the group is more important than the group itself.
 std::string most_demanding(const Model& model, ObjectIndex group);
 
 }  // namespace lodestone::choose

@@ -23,7 +23,7 @@ ImageRect nothing() {
     return rect;
 }
 
-/// The two u for which the plane (row - u depth) . x = 0 through the eye touches the sphere.
+/// Finds the two u for which the plane (row - u depth) . x = 0 through the eye touches the sphere.
 bool tangents(const glm::dvec3& row, const glm::dvec3& depth, const glm::dvec3& center,
               double radius, double& low, double& high) {
     const double a = glm::dot(row, center);

@@ -6,14 +6,14 @@
 
 namespace lodestone::choose {
 
-/// Part of the image plane, pixels from the left and the top; it may reach beyond the picture.
+/// A part of the image plane, in pixels from the left and the top; it may reach beyond the picture.
 struct ImageRect {
     glm::dvec2 low{0.0};
     glm::dvec2 high{0.0};
     bool behind = false;  // nothing of it is in front of the eye
 
     double area() const;
-    /// Least and greatest distance of a point of it from `point`.
+    /// The least and the greatest distance of a point of the rectangle from `point`.
     double nearest(const glm::dvec2& point) const;
     double farthest(const glm::dvec2& point) const;
 };
@@ -23,12 +23,13 @@ public:
     /// Throws Error(InvalidArgument) for a camera whose image is a line or a point.
     ImageFrame(const Camera& camera, int width, int height);
 
-    /// Contains the image of everything in the bound; the whole plane where the eye may be inside.
-    /// source: tangent planes through the eye, for the sphere; the corners, for the box
+    /// A rectangle that contains the image of everything in the bound; the whole plane where the
+    /// eye may be inside. source: tangent planes through the eye, for the sphere; the corners, for
+    /// the box
     ImageRect rect(const Bound& bound) const;
-    /// The bounding rectangle of the box's image (5.2.2, Figure 5.6).
+    /// The bounding rectangle of the image of the bound's box (5.2.2, Figure 5.6).
     ImageRect rect_of_box(const Bound& bound) const;
-    /// The image of a point. `in_front`: whether the eye looks towards it.
+    /// The image of a point. `in_front`: whether the point lies in front of the eye.
     glm::dvec2 point(const glm::dvec3& at, bool& in_front) const;
     double width() const { return size_.x; }
     double height() const { return size_.y; }
@@ -39,7 +40,7 @@ private:
 
     bool orthographic_;
     glm::dvec3 eye_;
-    // In the frame's own coordinates: along the direction, and across it.
+    // The axes of the frame: along the direction of view, and across it.
     glm::dvec3 depth_;
     glm::dvec3 across_;
     glm::dvec3 upward_;

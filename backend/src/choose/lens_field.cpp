@@ -26,7 +26,7 @@ void refuse_nonsense(const DetailLens& lens) {
         fail(Status::InvalidArgument, "the transform of lens '", lens.name, "' is not finite");
 }
 
-/// Whether the lens has an inside.
+/// Whether the lens has no inside.
 bool flat(const DetailLens& lens) {
     const glm::dmat3& m = lens.transform.linear;
     const double volume = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
@@ -52,7 +52,7 @@ LensField::Lens LensField::prepared(const DetailLens& lens) {
     out.row_lengths = {glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])};
     out.stretch = stretch({out.linear, {}});
     out.center = lens.transform.offset;
-    // A box reaches to its corners.
+    // The sphere around a box reaches to its corners.
     out.world_radius = lens.radius * stretch(lens.transform) *
                        (lens.shape == LensShape::Box ? std::numbers::sqrt3 : 1);
     out.radius = lens.radius;
@@ -136,7 +136,8 @@ LensField::LensEffect LensField::at(ObjectIndex object, bool group, const Bound&
                                     const LensPath& above) {
     LensEffect effect;
     if (!in_any_order_)
-        touching_.resize(above.end);  // all that was visited below an earlier one is done
+        // Everything that was visited below an earlier group is done.
+        touching_.resize(above.end);
     const auto first = static_cast<uint32_t>(touching_.size());
     effect.below = {first, first, above.lists};
     if (!in_list_.empty())
@@ -157,7 +158,7 @@ LensField::LensEffect LensField::at(ObjectIndex object, bool group, const Bound&
         if (group)
             touching_.push_back(touching_[i]);
         if (holds) {
-            // What coarsens must not coarsen what is in the group, but not listed.
+            // A lens that coarsens must not coarsen objects in the group that it does not list.
             const double d = lens.strength < 1 ? reached.farthest : reached.nearest;
             const double value = lens_profile(lens.strength, lens.radius, lens.falloff, d);
             effect.refine *= listed ? value : std::max(1.0, value);
@@ -177,7 +178,8 @@ LensField::LensEffect LensField::at(ObjectIndex object, bool group, const Bound&
     }
     effect.below.end = static_cast<uint32_t>(touching_.size());
     if (in_any_order_ &&
-        effect.below.end - first == above.end - above.begin) {  // all that touch it
+        // The same lenses touch it as the group above.
+        effect.below.end - first == above.end - above.begin) {
         touching_.resize(first);
         effect.below.begin = above.begin;
         effect.below.end = above.end;

@@ -12,29 +12,35 @@
 namespace lodestone::choose {
 namespace {
 
-// Rougher surfaces show no images (povray_export/texture/surface_finish fades them out before)
+// Rougher surfaces show no images.
+// Taste: povray_export/texture/surface_finish.cpp fades out images before this roughness of metal.
 constexpr double kRoughMetal = 0.35;
+// Taste: povray_export/texture/surface_finish.cpp fades out images before this roughness of a coat.
 constexpr double kRoughCoat = 0.25;
-// Fresnel's reflectance of a dielectric with an index of 1.45, mean over the half space, and what
-// of it a coat's is
+// The reflectance of a dielectric, the mean over the half space.
+// Law: Fresnel's equations with an index of refraction of 1.45.
 constexpr double kDielectric = 0.085;
+// The reflectance of a coat, in parts of a dielectric's.
+// Law: Disney's principled model gives a clear coat a quarter of it.
 constexpr double kCoat = 0.25;
-// A picture of the sky becomes at least so many suns: each has such a part of its light.
+// How many suns a picture of the sky becomes at least; each has this part of its light.
+// Law: drafts light with 12 suns, others with more (light/environment_lights).
 constexpr double kSkySuns = 12;
-// What mirrors weighs by the pixels it covers, up to so many: what is wrong in a door knob is small
-// whatever it shows, and bent so strongly that nothing in it is as large as in a flat mirror.
+// The pixels from which on a mirror counts fully. The image in a smaller one, such as a door knob,
+// is small and so strongly bent that nothing in it is as large as in a flat mirror.
+// Taste: a larger number lets things outside the picture be coarser.
 constexpr double kWholeMirror = 64.0 * 64.0;
 
-/// How far from its place a light's surface reaches, metres.
+/// How far the surface of a light reaches from its position, in metres.
 double extent(const Light& light) {
     return light.kind == LightKind::Area
                ? 0.5 * (glm::length(light.edge_u) + glm::length(light.edge_v))
                : std::max(0.0, light.radius);
 }
 
-/// Of every object, what is below it included, whatever levels are drawn.
+/// The share of an object, with everything below it, whatever levels are drawn.
 struct ImagingShare {
-    double share = 0;  // the largest; 0: the reach is not known
+    double share = 0;  // the largest share; 0: the reach is not known
     Bound reach;
 };
 std::vector<ImagingShare> images_below(const Model& model) {
@@ -120,7 +126,7 @@ ShadowReach shadow_reach(const Light& light, const Bound& bound, const ViewPyram
         return reach;
     reach.seen = true;
     reach.last = seen.last;
-    // The nearest that the ball, as large as it ends, comes to the eye
+    // The least distance from the ball, at its largest, to the eye
     const double along =
         std::clamp(glm::dot(eye - sweep.start, sweep.direction), seen.first, seen.last);
     reach.z = std::max(0.0, glm::length(sweep.start + along * sweep.direction - eye) -
@@ -143,7 +149,7 @@ void OffScreenField::find_mirrors(const Model& model) {
         ObjectIndex object = kNoObject;
         Affine world;
         MirrorGroup mirror;
-        size_t number = 0;  // the order they were found in
+        size_t number = 0;  // the order in which they were found
 
         bool operator<(const MirrorCandidate& other) const {
             return mirror.share != other.mirror.share ? mirror.share < other.mirror.share
@@ -165,7 +171,8 @@ void OffScreenField::find_mirrors(const Model& model) {
             parts.push({index, world, {bound, away, share}, number++});
     };
     add(model.root, Affine{});
-    // What shows most is parted as long as there are few: a group is nearer than the mirrors in it
+    // The group that shows most is split as long as there are few: a group is nearer than its
+    // mirrors.
     while (!parts.empty()) {
         const MirrorCandidate part = parts.top();
         parts.pop();
@@ -186,7 +193,7 @@ double OffScreenField::shadow_pixel(const Light& light, const Bound& bound) cons
     if (!reach.seen)
         return kInfinity;
     if (reach.away == 0)
-        return 0;  // all around it may be in its shadow
+        return 0;  // everything around it may be in its shadow
     return pixel_size(view_, reach.z) / (1 + reach.last / reach.away);
 }
 

@@ -19,12 +19,13 @@ HalfSpace side(const glm::dvec3& point, const glm::dvec3& normal, const glm::dve
     return {unit, -glm::dot(unit, point)};
 }
 
-/// Half the frame's width or height, a pixel and a lens's blur added, in parts of it.
+/// Half the width or height of the frame, a pixel and a lens's blur added, relative to the frame.
 double half_frame(const View& view, int pixels, double extent) {
     const Camera& camera = view.camera;
     double half = 0.5 + 1.0 / std::max(1, pixels);
     if (!camera.orthographic && camera.focus_distance > 0 && camera.aperture > 0 && extent > 0) {
-        // The circle of confusion of the nearest thing; what is far is blurred less than 1 / focus
+        // The circle of confusion of the nearest thing; far things are blurred by less than 1 /
+        // focus
         const double nearest = 1 / std::max(camera.near_clip, 1e-3);
         const double sharp = 1 / camera.focus_distance;
         half += 0.5 * camera.aperture * std::max(std::abs(nearest - sharp), sharp) / extent;
@@ -35,7 +36,7 @@ double half_frame(const View& view, int pixels, double extent) {
 }  // namespace
 
 void SweepInterval::cut_by(const SweptBall& sweep, const HalfSpace& space) {
-    // The ball touches it where slope * t + at_start >= 0
+    // The ball touches the half space where slope * t + at_start >= 0
     const double at_start = glm::dot(space.normal, sweep.start) + space.offset + sweep.radius;
     const double slope = glm::dot(space.normal, sweep.direction) + sweep.growth;
     if (slope > 0)
@@ -51,7 +52,7 @@ bool touches(const SweptBall& sweep, const glm::dvec3& center, double radius) {
     const glm::dvec3 to = center - sweep.start;
     if (glm::length(to) <= both || sweep.growth >= 1)
         return true;
-    // Of the distance less what the ball has grown by: the least along the way
+    // The least value along the way of the distance minus the growth of the ball
     const double along = glm::dot(to, sweep.direction);
     const double beside = glm::length(to - along * sweep.direction);
     const double slope = std::sqrt(1 - sweep.growth * sweep.growth);
@@ -76,7 +77,7 @@ ViewPyramid::ViewPyramid(const View& view) {
     const glm::dvec3 up = camera.up * half_frame(view, view.height, glm::length(camera.up));
     const glm::dvec3& eye = camera.position;
     const glm::dvec3 ahead = eye + camera.direction;
-    // Through a corner of the frame (perspective: at distance 1), and along the view
+    // A plane through a corner of the frame (perspective: at distance 1), and along the view
     const auto edge = [&](const glm::dvec3& to, const glm::dvec3& along) {
         const glm::dvec3 corner = camera.orthographic ? eye + to : ahead + to;
         const glm::dvec3 view_ray = camera.orthographic ? camera.direction : corner - eye;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ViewPyramid: the part of the world that a picture shows, and what of a growing ball's way lies in it.
+// View pyramid: the part of the world that a picture shows, and the part of a growing ball's way
+// that lies in it.
 #pragma once
 
 #include "model/view.h"
@@ -8,7 +9,7 @@
 
 namespace lodestone::choose {
 
-/// Points x with dot(normal, x) + offset >= 0; the normal has length 1.
+/// The points x with dot(normal, x) + offset >= 0; the normal has length 1.
 struct HalfSpace {
     glm::dvec3 normal{0, 0, 1};
     double offset = 0;
@@ -17,39 +18,41 @@ struct HalfSpace {
 /// A ball of radius `radius + growth * t` around `start + t * direction`, for t from 0 on.
 struct SweptBall {
     glm::dvec3 start{0.0};
-    glm::dvec3 direction{0, 0, -1};  // of length 1
+    glm::dvec3 direction{0, 0, -1};  // has length 1
     double radius = 0;
     double growth = 0;
 };
 
-/// From `first` to `last`, in metres along a sweep; empty where last < first.
+/// The interval from `first` to `last`, in metres along a sweep; empty where last < first.
 struct SweepInterval {
     double first = 0;
     double last = 0;
 
     bool empty() const { return !(first <= last); }
-    /// What of it the sweep's ball touches the half space in.
+    /// Keeps the part in which the sweep's ball touches the half space.
     void cut_by(const SweptBall& sweep, const HalfSpace& space);
 };
 
-/// Whether any of a sweep's balls touches another ball.
+/// Whether any ball of a sweep touches another ball.
 bool touches(const SweptBall& sweep, const glm::dvec3& center, double radius);
 
-/// What of a sweep, from its start on, touches a box.
+/// The part of a sweep, from its start on, that touches a box.
 SweepInterval touched_interval(const SweptBall& sweep, const Box3& box);
 
-/// Four sides through the eye (orthographic: along the view) and what is in front of it, a little
-/// wider than the frame: by a pixel, and by how far a lens blurs what is at the near clip.
+/// Four sides through the eye (orthographic: along the view) and a fifth for what is in front of
+/// it. They are a little wider than the frame: by a pixel, and by how far a lens blurs a point at
+/// the near clip.
 class ViewPyramid {
 public:
-    /// Of the whole frame, whatever border is rendered. Throws Error(InvalidArgument) for a camera
-    /// whose image is a line or a point.
+    /// The pyramid of the whole frame, even if a border is rendered. Throws Error(InvalidArgument)
+    /// for a camera whose image is a line or a point.
     explicit ViewPyramid(const View& view);
 
-    /// True only when nothing of the bound is in it.
+    /// True only when no point of the bound is in the pyramid.
     bool outside(const Bound& bound) const;
 
-    /// The part of a sweep, within `box`, whose balls may touch the pyramid (never less than true).
+    /// The part of a sweep, within `box`, whose balls may touch the pyramid (never less than the
+    /// truth).
     SweepInterval touched_interval(const SweptBall& sweep, const Box3& box) const;
 
 private:

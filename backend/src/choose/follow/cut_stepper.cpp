@@ -9,20 +9,27 @@
 namespace lodestone::choose {
 namespace {
 
-// Choosing anew is sooner where of so many nodes less than one is not expired, or more than one has
-// to be decided again; some are never too many.
+// The limits from which on choosing anew is faster than a step. Either less than one of kLeastKept
+// nodes has not expired, or more than one of kLeastShare has to be decided again; kSome nodes are
+// never too many.
+// Fitted: by tests/bench/bench_cut.cpp, leaps of 1000 m over 1,048,576 houses.
 constexpr size_t kLeastKept = 4;
+// Fitted: by tests/bench/bench_cut.cpp, steps of 100 m over 1,048,576 houses.
 constexpr size_t kLeastShare = 16;
+// Taste: a larger number makes steps of small cuts slower, a smaller one chooses more anew.
 constexpr size_t kSome = 64;
-// Choosing anew takes twice as long with what is kept for steps. After a step that was in vain
-// nothing is kept once, after the next three times, and so on up to this often.
+// The most choices in a row that keep no facts for steps. Choosing takes twice as long when it
+// keeps them. After a useless step none are kept once, after the next one three times, and so on up
+// to this.
+// Fitted: by tests/bench/bench_cut.cpp, a walk over 1,048,576 houses with steps of 100 m.
 constexpr uint32_t kMostPlain = 31;
-// Nodes whose memory is asked for before they are looked at.
+// How many nodes ahead memory is asked for.
+// Taste: as kAhead in cut_chooser.cpp; more displace what is still needed, fewer come too late.
 constexpr size_t kFetched = 8;
 
-/// Nothing that bends quality depends on the eye.
+/// True if no modifier that changes detail depends on the eye.
 bool rigid(const QualityModifiers& modifiers) {
-    // Whoever adds one has to think of it here.
+    // A new modifier breaks this line, so that its author decides here.
     const auto& [criterion, lenses, screen_lenses, depth, focus, when_moving, closing, when_dark,
                  off_screen, ray_classes] = modifiers;  // classes do not change the camera's cut
     return criterion == DetailCriterion::Resolution && screen_lenses.empty() && depth == 1 &&
@@ -46,8 +53,8 @@ void CutStepper::step(const View& view, Cut& cut, const Job& job) {
     choose_anew(view, cut, job);
 }
 
-/// Whether the view differs from the last alone in where the eye is, what way it looks, and in
-/// lenses that hide nothing.
+/// Whether the view differs from the last one only in where the eye is, in which direction it
+/// looks, and in lenses that hide nothing.
 bool CutStepper::steps(const View& view) const {
     const auto& [camera, width, height, pixel_error, kinds, border, modifiers] = view;
     const View& last = walk_->view;
@@ -97,7 +104,7 @@ void CutStepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     kept_.free.clear();
     std::swap(kept_.slack, fresh_.slack);
     kept_.slack.find_largest(*walk_, kept_.seen, kept_.ranges, made, kNoParent);
-    fresh_.nodes.swap(cut.nodes);  // for their memory
+    fresh_.nodes.swap(cut.nodes);  // so that their memory is used again
     fresh_.transforms.swap(cut.transforms);
     cut = std::move(made);
     table_->expect(cut.nodes.size());
@@ -105,11 +112,11 @@ void CutStepper::choose_anew(const View& view, Cut& cut, const Job& job) {
     known_ = true;
 }
 
-/// False: nothing was done, and it should be chosen anew.
+/// False: nothing was done, and the cut should be chosen anew.
 bool CutStepper::move(const View& view, Cut& cut, const Job& job) {
     job.check();
     const ImageFrame refused(view.camera, view.width, view.height);
-    known_ = false;  // until all is done
+    known_ = false;  // until the step is complete
     if (!walk_->advance_to(view))
         return false;
     kept_.slack.find_expired(walk_->travel, expired_);
@@ -133,7 +140,7 @@ bool CutStepper::move(const View& view, Cut& cut, const Job& job) {
     return true;
 }
 
-/// Of what is expired only what is now too near or too far stays so.
+/// Removes from the expired nodes all that are still within their range.
 void CutStepper::keep_what_holds(const Cut& cut) {
     const size_t count = expired_.size();
     size_t left = 0;
@@ -154,7 +161,7 @@ void CutStepper::keep_what_holds(const Cut& cut) {
     expired_.resize(left);
 }
 
-/// Adds what changed lenses reach to what is expired. False: it may be that something appears.
+/// Adds the nodes that changed lenses reach to the expired ones. False: something may appear.
 bool CutStepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut& cut) {
     const auto changed = changed_lenses(walk_->view.modifiers.lenses, lenses);
     if (changed.empty())
@@ -171,7 +178,7 @@ bool CutStepper::change_lenses(const std::vector<DetailLens>& lenses, const Cut&
     return true;
 }
 
-/// Of what was visited from `begin` on.
+/// Computes the ranges and the slack of the fresh nodes from `begin` on.
 void CutStepper::look_at_fresh(size_t begin) {
     fresh_.slack.resize(fresh_.nodes.size());
     fresh_.ranges.reserve(fresh_.nodes.size());
@@ -183,7 +190,7 @@ void CutStepper::look_at_fresh(size_t begin) {
     }
 }
 
-/// Lenses need all groups around a node, in order.
+/// Builds the path again, because lenses need all groups around a node, in order.
 FactorField::FactorPath CutStepper::path_below(const Cut& cut, uint32_t node) {
     FactorField::FactorPath path = field_->root();
     if (!field_->bends())
@@ -210,7 +217,7 @@ void CutStepper::find_edits(const Cut& cut, const Job& job) {
     fresh_.slack.resize(0);
     fresh_.ranges.clear();
     CutChooser chooser(*table_, nullptr, walk_->view, *field_, job);
-    uint32_t next = 0;  // behind what was closed
+    uint32_t next = 0;  // the first node behind the group that was closed
     for (const uint32_t index : expired_) {
         if (index < next)
             continue;
@@ -261,7 +268,7 @@ void CutStepper::count(const CutNode& node, const SeenNode& seen, bool more, Cut
 }
 
 void CutStepper::commit(Cut& cut) {
-    splicer_.reserve(edits_, fresh_, cut, kept_);  // what may fail comes first
+    splicer_.reserve(edits_, fresh_, cut, kept_);  // all that may fail comes first
     const auto kinds = tally_.kinds();
     for (const NodeEdit& edit : edits_) {
         for (uint32_t i = edit.at; i < edit.at + edit.removed; ++i)

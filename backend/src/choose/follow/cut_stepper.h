@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Step: a cut that goes along with the camera, and is the same as one made anew.
+// Cut stepper: keeps a cut up to date while the camera moves; it equals a cut that is chosen anew.
 #pragma once
 
 #include "choose/cut_totals.h"
@@ -10,9 +10,9 @@
 
 namespace lodestone::choose {
 
-/// Keeps of each node from where to where it is drawn as it is (Range), and how far the eye may go
-/// before it could leave that (EyeSlack). A step decides again only what it changes, or what is within
-/// rounding of it.
+/// Keeps two things for each node: the range of distances in which it is drawn as it is
+/// (DrawnRange), and how far the eye may go before it could leave that range (EyeSlack). A step
+/// decides again only the nodes that it may change, or that are within rounding of a change.
 class CutStepper {
 public:
     explicit CutStepper(std::shared_ptr<const ChoiceTable> table) : table_(std::move(table)) {}
@@ -21,15 +21,15 @@ public:
 
     const std::shared_ptr<const ChoiceTable>& table() const { return table_; }
 
-    /// Makes `cut`, which must be as the last call left it, what choose_cut(table, view) gives. Sooner
-    /// where only a perspective camera has moved or turned, and detail lenses that hide nothing
-    /// have changed, by Resolution, with no other factors than importances and such lenses; else it
-    /// is chosen anew, as where much changes. When it throws, the cut is as before. cost: a step
-    /// reads 12 bytes a node, and 64 of those whose slack is eaten; it moves the nodes behind
-    /// groups that opened or closed
+    /// Changes `cut`, which must be as the last call left it, into choose_cut(table, view). This is
+    /// faster than choosing anew where only a perspective camera has moved or turned and detail
+    /// lenses that hide nothing have changed, by Resolution, with no other factors than importances
+    /// and such lenses. In all other cases, and where much changes, the cut is chosen anew. When it
+    /// throws, the cut is as before. cost: a step reads 12 bytes for each node, and 64 for each
+    /// node whose slack is used up; it moves the nodes behind groups that opened or closed
     void step(const View& view, Cut& cut, const Job& job = {});
 
-    /// Nodes that the last call decided again; all, when it chose anew.
+    /// The number of nodes that the last call decided again; all nodes, when it chose anew.
     size_t decided_nodes() const { return looked_at_; }
 
 private:
@@ -45,18 +45,18 @@ private:
     void commit(Cut& cut);
 
     std::shared_ptr<const ChoiceTable> table_;
-    bool known_ = false;  // everything below belongs to the cut
+    bool known_ = false;  // all members below belong to the cut
     std::optional<EyeWalk> walk_;
     size_t looked_at_ = 0;
-    uint32_t in_vain_ = 0;  // grows with steps for which all was kept in vain, one after the other
-    uint32_t plain_ = 0;    // how often to choose without keeping anything
-    std::unique_ptr<FactorField> field_;  // of the walk's view, but for the camera
+    uint32_t in_vain_ = 0;  // grows with each step in a row whose kept facts were useless
+    uint32_t plain_ = 0;    // so often the cut is chosen without keeping facts
+    std::unique_ptr<FactorField> field_;  // for the view of the walk, whatever its camera
     KeptNodes kept_;
     CutTotals tally_;
 
-    // Of one step; kept for their memory.
+    // The data of one step; kept so that their memory is used again.
     std::vector<uint32_t> expired_;
-    std::vector<uint32_t> reached_;  // by lenses that have changed
+    std::vector<uint32_t> reached_;  // the nodes that changed lenses reach
     std::vector<NodeEdit> edits_;
     FreshNodes fresh_;
     NodeSplicer splicer_;

@@ -9,25 +9,39 @@
 namespace lodestone::choose {
 namespace {
 
-// Margins. Where a decision turns is known to some 1e-15 of a distance, a distance to as much of
-// the coordinates it is made of, and a turning camera's pixels to some 1e-15.
-constexpr double kTurned = 1e-9;  // by so much pixels may differ and count as the same
+// The margins. The distance at which a decision changes is known to some 1e-15 of itself, a
+// distance to some 1e-15 of the coordinates it is computed from, and the pixels of a turning camera
+// to some 1e-15.
+// Pixels that differ by less count as equal.
+// Law: rounding of double precision, 1e-16, with a large margin.
+constexpr double kTurned = 1e-9;
+// The margin of distances, in parts of them.
+// Law: ten times kTurned, so that it covers pixels that count as equal.
 constexpr double kRounding = 1e-8;
+// The margin in parts of coordinates.
+// Law: rounding of double precision, with a large margin.
 constexpr double kOfPlaces = 1e-11;
+// The margin in parts of the travel.
+// Law: rounding of a sum of many steps, with a large margin.
 constexpr double kOfTravel = 1e-12;
-constexpr double kFarthest = 1e9;    // metres of travel
-constexpr size_t kBlock = 32;        // nodes that are skipped together
-constexpr double kSingle = 0x1p-22;  // rounding of single precision, and more
+// The longest travel, in metres, after which a cut is chosen anew.
+// Taste: a longer one makes the margins eat more of the slack.
+constexpr double kFarthest = 1e9;
+// How many nodes are skipped together.
+// Taste: a larger block is skipped faster but less often.
+constexpr size_t kBlock = 32;
+// Law: rounding of single precision is 0x1p-24; this is four times that.
+constexpr double kSingle = 0x1p-22;
 constexpr float kExpired = -std::numeric_limits<float>::infinity();
 constexpr double kLargestSingle = std::numeric_limits<float>::max();
 
-/// In single precision, and no more than it is.
+/// The value in single precision, rounded down.
 float below(double value) {
     const double less = value * (value > 0 ? 1 - kSingle : 1 + kSingle);
     return less < -kLargestSingle ? kExpired : static_cast<float>(std::min(less, kLargestSingle));
 }
 
-/// And no less; no number where that is too much.
+/// The value in single precision, rounded up; not a number where it is too large.
 float above(double value) {
     return value < kLargestSingle ? -below(-value) : std::numeric_limits<float>::quiet_NaN();
 }

@@ -13,7 +13,7 @@ bool same(const DetailLens& a, const DetailLens& b) {
            falloff == b.falloff && filter == b.filter && objects == b.objects;
 }
 
-/// A group that is within reach, and what is known along the path to what it places.
+/// A group within reach, and the facts along the path to the objects it places.
 struct ReachedGroup {
     uint32_t node = 0;
     LensField::LensPath changed;
@@ -41,7 +41,8 @@ void refresh_lens_factors(const ChoiceTable& table, const View& view,
                           const Cut& cut, std::vector<SeenNode>& seen,
                           std::vector<uint32_t>& reached) {
     reached.clear();
-    std::vector<DetailLens> anything = changed;  // whatever is within reach, listed or not
+    // Everything within reach, whether a lens lists it or not.
+    std::vector<DetailLens> anything = changed;
     for (DetailLens& lens : anything) {
         lens.filter = LensFilter::All;
         lens.objects.clear();

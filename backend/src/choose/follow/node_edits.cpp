@@ -8,7 +8,7 @@
 namespace lodestone::choose {
 namespace {
 
-/// Each node gives way to one: nothing moves.
+/// Whether each node is replaced by one node, so that nothing moves.
 bool in_place(const std::vector<NodeEdit>& edits) {
     return std::all_of(edits.begin(), edits.end(), [](const NodeEdit& edit) {
         return edit.removed == 1 && edit.end - edit.begin == 1;
@@ -56,7 +56,7 @@ void NodeSplicer::replace(const std::vector<NodeEdit>& edits, const FreshNodes& 
         insert(edit, edit.at, fresh.nodes[edit.begin].parent, fresh, cut, kept);
 }
 
-/// Moves what stays, in its place, and puts the fresh nodes between.
+/// Moves the nodes that stay, within the cut, and puts the fresh nodes between them.
 void NodeSplicer::move_all(const std::vector<NodeEdit>& edits, const FreshNodes& fresh, Cut& cut,
                            KeptNodes& kept) {
     runs_.assign(1, {});
@@ -103,8 +103,8 @@ void NodeSplicer::move_all(const std::vector<NodeEdit>& edits, const FreshNodes&
             parent = now;
         }
     };
-    // What moves down overwrites only what has moved down before it, or is gone; then, from the
-    // end, what moves up overwrites only what has moved.
+    // A run that moves down overwrites only runs that have moved down before it or are gone. Then,
+    // from the end, a run that moves up overwrites only runs that have moved.
     const auto down = [](const NodeRun& run) { return static_cast<int32_t>(run.shift) < 0; };
     for (size_t i = 0; i < runs_.size(); ++i) {
         if (down(runs_[i]))
@@ -118,7 +118,8 @@ void NodeSplicer::move_all(const std::vector<NodeEdit>& edits, const FreshNodes&
     kept.slack.resize(wanted);
     spare_chosen_.clear();
     auto chosen = cut.chosen.begin();
-    // The first of those chosen next, of so many nodes, that is not before a node.
+    // The position, among the chosen that are left of `nodes` nodes, of the first that is not
+    // before `node`.
     const auto chosen_from = [&](uint32_t node, uint32_t nodes) {
         const auto rest = static_cast<uint32_t>(cut.chosen.end() - chosen);
         return std::lower_bound(chosen, chosen + std::min(nodes, rest), node);
@@ -139,7 +140,8 @@ void NodeSplicer::move_all(const std::vector<NodeEdit>& edits, const FreshNodes&
     cut.chosen.swap(spare_chosen_);
 }
 
-/// Puts the fresh nodes of an edit at a place that is free. `parent`: of the first of them.
+/// Puts the fresh nodes of an edit at a place that is free. `parent`: the parent of the first of
+/// them.
 void NodeSplicer::insert(const NodeEdit& edit, uint32_t place, uint32_t parent,
                          const FreshNodes& fresh, Cut& cut, KeptNodes& kept) {
     for (uint32_t from = edit.begin; from < edit.end; ++from) {

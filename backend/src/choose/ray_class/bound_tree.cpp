@@ -7,6 +7,8 @@
 namespace lodestone::choose {
 namespace {
 
+// The most bounds of a leaf.
+// Taste: larger leaves make a smaller tree and more tests of bounds.
 constexpr uint32_t kFew = 4;
 
 double apart(const Box3& a, const Box3& b) {

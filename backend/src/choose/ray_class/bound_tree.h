@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bound tree: how near anything is to something.
+// Bound tree: the distance from a thing to the nearest other thing.
 #pragma once
 
 #include "base/maths.h"
@@ -10,28 +10,30 @@
 
 namespace lodestone::choose {
 
-/// At least so far apart are two things, by their boxes and by their spheres; 0 where these touch.
+/// A lower bound of the distance of two things, from their boxes and their spheres; 0 where these
+/// touch.
 double distance(const Bound& a, const Bound& b);
 
 class BoundTree {
 public:
-    /// Empty ones are left out. cost: n log n.
+    /// Empty bounds are left out. cost: n log n.
     explicit BoundTree(std::vector<Bound> bounds);
 
-    /// The least distance to any but the one of that number, or `most` if that is less.
+    /// The least distance to any bound except the one numbered `but`, or `most` if that is less.
     /// Thread-safe. cost: about log n where few are near.
     double nearest(const Bound& from, uint32_t but, double most) const {
         return nearest(from, but, most, [](const Bound&) { return true; });
     }
-    /// The same of those that counts(bound) holds for.
+    /// The same among those for which counts(bound) holds.
     double nearest(const Bound& from, uint32_t but, double most,
                    const std::function<bool(const Bound&)>& counts) const;
 
 private:
     struct BoundTreeNode {
         Box3 box;
-        uint32_t first = 0;  // of order_; inner: index of its first child, the other follows it
-        uint32_t count = 0;  // 0: inner
+        /// In order_; for an inner node: the index of its first child, the other follows it.
+        uint32_t first = 0;
+        uint32_t count = 0;  // 0: an inner node
     };
     void build(uint32_t part, uint32_t first, uint32_t count);
 

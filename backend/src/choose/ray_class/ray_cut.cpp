@@ -12,12 +12,14 @@
 namespace lodestone::choose {
 namespace {
 
-// Nearer than this shadows are looked at as contacts
+// The distance in pixels below which a shadow is treated as a contact.
+// Taste: a larger distance keeps more originals beside their neighbors.
 constexpr double kContactPixels = 4;
-// Hollows less deep, in parts of Pixel Error, hide nothing
+// The depth, in parts of Pixel Error, below which a hollow hides nothing.
+// Taste: a larger depth takes more meshes for convex, and their own shadows are missing.
 constexpr double kFlatPixels = 0.1;
 
-/// Nothing is seen through it anywhere.
+/// Whether nothing is seen through it anywhere.
 bool opaque(const Model& model, const Representation& representation) {
     return std::all_of(
         representation.materials.begin(), representation.materials.end(), [&](uint32_t index) {
@@ -32,7 +34,8 @@ bool opaque(const Model& model, const Representation& representation) {
         });
 }
 
-/// Of the nodes, in the world: what is drawn; of opened ones everything below them.
+/// The bounds of the nodes, in the world: of the level that is drawn; of an opened node, everything
+/// below.
 std::vector<Bound> bounds_of(const Model& model, const Cut& cut) {
     std::vector<Bound> bounds(cut.nodes.size());
     for (size_t i = cut.nodes.size(); i-- > 0;) {
@@ -48,7 +51,7 @@ std::vector<Bound> bounds_of(const Model& model, const Cut& cut) {
     return bounds;
 }
 
-/// By how much each node is refined, whatever coarsens it.
+/// The factor by which each node is refined, whatever coarsens it.
 class NodeRefinement {
 public:
     NodeRefinement(const Model& model, const View& view, const Cut& cut)
@@ -57,7 +60,7 @@ public:
             paths_.resize(cut.nodes.size());
     }
 
-    /// Nodes in their order, each once.
+    /// The nodes must be asked for in their order, each once.
     DetailFactors at(uint32_t index, const Bound& bound) {
         const CutNode& node = cut_.nodes[index];
         const Object& object = model_.objects[node.object];
@@ -162,7 +165,7 @@ private:
         return kind != Kind::Assembly && (view_.kinds & mask_of(kind)) != 0 && lod <= node.coarsest;
     }
 
-    /// A coarser level of what the picture shows by its shadows and images only.
+    /// Finds a coarser level for a thing that the picture shows by its shadows and images only.
     bool unseen(uint32_t index, DetailFactors factors, RayCut& out) {
         if (!off_screen_ || !pyramid_.outside(bounds_[index]))
             return false;
@@ -195,7 +198,7 @@ private:
         return false;
     }
 
-    /// A box or ellipsoid inside or around what the picture shows.
+    /// Finds a box or ellipsoid inside or around a thing that the picture shows.
     RayState seen(uint32_t index, RayMask rays, const DetailFactors& factors, RayCut& out) {
         const CutNode& node = cut_.nodes[index];
         const Representation& drawn = level(node, node.lod);
@@ -246,7 +249,7 @@ private:
             if (!shape.convexity.convex || !fitted ||
                 shape.convexity.hollow * enlarge * total > kFlatPixels * view_.pixel_error * pixel)
                 return RayState::Shape;
-            // What a mirror shows must look like it, too
+            // The image in a mirror must look like the thing, too
             const double error =
                 std::max(fitted->gap, mirrored ? level(node, lod).summary.error : 0);
             if (error * enlarge < best.error)
@@ -262,7 +265,7 @@ private:
         return RayState::Own;
     }
 
-    /// To the next thing that is drawn, whatever sees it.
+    /// The distance to the next thing that is drawn, whichever rays see it.
     double nearest(uint32_t index, const std::function<bool(const Bound&)>& counts) {
         if (!tree_) {
             std::vector<Bound> drawn(cut_.nodes.size());
@@ -273,7 +276,8 @@ private:
         return tree_->nearest(bounds_[index], index, 2 * bounds_[0].radius, counts);
     }
 
-    /// What its rays meet: the camera's, but for what it has of its own.
+    /// Sums up what the rays of the class meet: the camera's cut, except for the choices of their
+    /// own.
     void count(RayCut& out) const {
         std::unordered_set<Hash> drawn;
         const auto add = [&](const Representation& met) {
@@ -299,14 +303,16 @@ private:
     const Cut& cut_;
     const ShapeOf& shape_of_;
     const Job& job_;
-    std::vector<Bound> bounds_;  // of nodes
+    std::vector<Bound> bounds_;  // those of the nodes
     RayNeed need_;
     ViewPyramid pyramid_;
-    bool lit_;                                  // something throws shadows
+    bool lit_;                                  // some light throws shadows
     std::optional<OffScreenField> off_screen_;  // where only shadows count
     std::optional<BoundTree> tree_;
-    std::vector<uint64_t> triangles_;  // placed, of nodes and all below them
-    std::vector<uint8_t> replaced_;    // nodes: by one of their own or of a group above
+    // The triangles of all occurrences below a node, itself included.
+    std::vector<uint64_t> triangles_;
+    // By node: replaced by a choice of its own or of a group above.
+    std::vector<uint8_t> replaced_;
 };
 
 }  // namespace
@@ -355,7 +361,7 @@ ResidentSize resident_size(const Model& model, const Cut& cut, const std::vector
     std::vector<uint8_t> alone(cut.nodes.size(), 0);
     for (const RayCut& own : rays) {
         for (const RayChoice& choice : own.own) {
-            if (alone[choice.node] == 0)  // those are in several classes
+            if (alone[choice.node] == 0)  // such choices are in several classes
                 add(cut.nodes[choice.node], choice.lod);
             alone[choice.node] |= choice.alone ? 1 : 0;
         }

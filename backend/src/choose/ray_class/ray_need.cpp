@@ -11,14 +11,15 @@
 namespace lodestone::choose {
 namespace {
 
-/// How wide a lamp's surface is at least, seen from somewhere, metres.
+/// The least width of a lamp's surface as seen from somewhere, in metres.
 double least_width(const Light& light, const glm::dvec3& from) {
     if (light.kind != LightKind::Area)
         return 2 * std::max(0.0, light.radius);
     const glm::dvec3 ray = glm::normalize(light.position - from);
     const glm::dvec3 u = light.edge_u - glm::dot(light.edge_u, ray) * ray;
     const glm::dvec3 v = light.edge_v - glm::dot(light.edge_v, ray) * ray;
-    // Of a parallelogram its area over its longer side; the ellipse in it is no narrower than this
+    // The width of a parallelogram is its area over its longer side; its ellipse is no narrower
+    // than this
     const double both = std::sqrt(glm::dot(u, u) + glm::dot(v, v));
     return both > 0 ? glm::length(glm::cross(u, v)) / both : 0;
 }
@@ -38,7 +39,7 @@ bool bumpy(const Material& material) {
     return false;
 }
 
-/// Shows images of what is before it only.
+/// Whether it shows only images of things that are in front of it.
 bool reflects_only(const Model& model, const Representation& representation) {
     return std::all_of(
         representation.materials.begin(), representation.materials.end(), [&](uint32_t index) {
@@ -101,7 +102,7 @@ void RayNeed::find_shapes(const ShapeOf& shape_of) {
 RayNeed::ShadowEdge RayNeed::shadow(const Bound& bound,
                                     const std::function<double(const SweptBall&)>& clear_of) const {
     ShadowEdge least{kInfinity, kInfinity};
-    if (model_.world.environment)  // lights from anywhere
+    if (model_.world.environment)  // light comes from everywhere
         return {};
     const glm::dvec3& eye = view_.camera.position;
     for (const Light& light : model_.lights) {
@@ -121,11 +122,11 @@ RayNeed::ShadowEdge RayNeed::shadow(const Bound& bound,
         const double behind = std::max(clear, reach.last + bound.radius);
         const double pixel = pixel_size(view_, reach.z);
         const double sharp = pixel / (1 + behind / nearest);
-        // Width of the soft edge for each metre behind the thing
+        // The width of the soft edge for each metre behind the thing
         const double softens = sun ? 2 * std::tan(0.5 * std::clamp(light.angle, 0.0, 3.0))
                                    : least_width(light, bound.center) / farthest;
-        // Of an edge `width` wide moved by k <= width the square of what changes is less than
-        // k^2 / width
+        // An edge of this width, moved by k <= width: the square of the change is less than k^2 /
+        // width
         const auto soft = [&](double way) {
             return std::sqrt(pixel * softens * way / view_.pixel_error) / (1 + way / nearest);
         };
