@@ -9,8 +9,7 @@ namespace lodestone::choose {
 namespace {
 
 // How many children ahead memory is asked for.
-// Taste: more displace what is still needed,
-// fewer come too late.
+// Taste: more displace what is still needed, fewer come too late.
 constexpr uint32_t kAhead = 4;
 
 }  // namespace

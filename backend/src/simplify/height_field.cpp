@@ -7,7 +7,9 @@
 namespace lodestone::simplify {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // of the spacing
+// The distance from the grid that a vertex may have, in parts of the spacing.
+// Taste: a larger one takes bent meshes for grids.
+constexpr double kTolerance = 1e-3;
 
 /// Evenly spaced values, the same for all vertices of a line.
 struct GridAxis {
@@ -15,7 +17,7 @@ struct GridAxis {
     double step = 0;
     size_t count = 0;
 
-    /// The line a value is on; `count` when it is on none.
+    /// The line that a value is on; `count` when it is on none.
     size_t line(double value) const {
         const double at = (value - first) / step;
         const double whole = std::round(at);
@@ -26,7 +28,7 @@ struct GridAxis {
     }
 };
 
-/// The lines along one axis when the first ones are evenly spaced; whether all are is for line().
+/// The lines along one axis if the first ones are evenly spaced; line() tells whether all are.
 std::optional<GridAxis> lines_of(const Mesh& mesh, int axis) {
     float low = mesh.positions[0][axis];
     float high = low;
@@ -37,7 +39,8 @@ std::optional<GridAxis> lines_of(const Mesh& mesh, int axis) {
         high = std::max(high, p[axis]);
     }
     const double size = double{high} - double{low};
-    // The second line is the nearest that is not the first; floats round less than this.
+    // The second line is the nearest that is not the first; rounding of floats is smaller than
+    // this.
     const double round = 1e-6 * std::max(std::abs(double{low}), std::abs(double{high}));
     double next = size;
     for (const glm::vec3& p : mesh.positions) {
@@ -53,9 +56,10 @@ std::optional<GridAxis> lines_of(const Mesh& mesh, int axis) {
     return GridAxis{double{low}, size / steps, static_cast<size_t>(steps) + 1};
 }
 
-/// Whether every cell is two triangles that look the same way; sets grid.turned.
+/// Whether every cell is two triangles that face the same way; sets grid.turned.
 bool cells_are_cut(const Mesh& mesh, HeightGrid& grid, const std::vector<uint32_t>& place) {
-    std::vector<uint8_t> corners((grid.columns - 1) * (grid.rows - 1), 0);  // left out, a bit each
+    // The corners that were left out, a bit each.
+    std::vector<uint8_t> corners((grid.columns - 1) * (grid.rows - 1), 0);
     size_t turned = 0;
     for (const Triangle& t : mesh.triangles) {
         size_t columns[3];
@@ -74,7 +78,7 @@ bool cells_are_cut(const Mesh& mesh, HeightGrid& grid, const std::vector<uint32_
         }
         const unsigned left_out = 15u & ~used;
         if (left_out == 0 || (left_out & (left_out - 1)) != 0)
-            return false;  // a corner twice
+            return false;  // a corner occurs twice
         if (column + 1 >= grid.columns || row + 1 >= grid.rows)
             return false;
         uint8_t& cell = corners[row * (grid.columns - 1) + column];
@@ -93,7 +97,7 @@ bool cells_are_cut(const Mesh& mesh, HeightGrid& grid, const std::vector<uint32_
     grid.turned = turned > 0;
     if (turned != 0 && turned != mesh.triangles.size())
         return false;
-    // Two triangles of a cell leave out opposite corners.
+    // The two triangles of a cell leave out opposite corners.
     return std::all_of(corners.begin(), corners.end(),
                        [](uint8_t cell) { return cell == 0b1001 || cell == 0b0110; });
 }
@@ -124,17 +128,17 @@ std::optional<HeightGrid> grid_in(const Mesh& mesh, int across, int along) {
     return grid;
 }
 
-/// Values at `count` evenly spaced samples from those at `from` of them: the piecewise linear curve
-/// with the least squared distance that begins and ends where the finer one does. `stride` apart.
+/// Resamples `from` evenly spaced values, `stride` apart, to `count`: the piecewise linear curve
+/// with the least squared distance that begins and ends where the finer one does.
 class LineResampler {
 public:
     LineResampler(size_t from, size_t count) : from_(from), count_(count) {
-        // What each fine value contributes to the integrals of f with the coarse tents: those of
-        // the fine tents with the coarse ones, by Simpson's rule on each piece, which is exact.
+        // The share of each fine value in the integrals of f with the coarse tents: those of the
+        // fine tents with the coarse ones, by Simpson's rule on each piece, which is exact.
         const double ratio =
             static_cast<double>(count - 1) / static_cast<double>(std::max<size_t>(from - 1, 1));
         for (size_t i = 0; i + 1 < from; ++i) {
-            // A coarse sample may lie inside of a fine piece: cut there.
+            // A coarse sample may lie within a fine piece, which is cut there.
             const double begin = static_cast<double>(i) * ratio;
             const double end = static_cast<double>(i + 1) * ratio;
             double at = begin;
@@ -155,7 +159,7 @@ public:
         out[count_ - 1] = values[from_ - 1];
         if (count_ < 3)
             return;
-        // Tents overlap by 2/3 with themselves and 1/6 with their neighbors: Thomas's algorithm.
+        // The overlap of a tent is 2/3 with itself and 1/6 with each neighbor: Thomas's algorithm.
         double* const upper = right.data() + count_;
         right[1] -= out[0] / 6;
         right[count_ - 2] -= out[count_ - 1] / 6;
@@ -180,7 +184,7 @@ private:
         double weight;
     };
 
-    /// The part from `at` to `stop` (in coarse steps) of the fine piece from value i to i + 1.
+    /// Adds the part from `at` to `stop` (in coarse steps) of the fine piece from value i to i + 1.
     void add_piece(size_t i, double begin, double end, double at, double stop) {
         const double middle = 0.5 * (at + stop);
         const auto left = static_cast<size_t>(
@@ -209,7 +213,7 @@ private:
     std::vector<ResampleTerm> terms_;
 };
 
-/// One number a vertex, resampled along rows, then along columns.
+/// One number for each vertex, resampled along rows, then along columns.
 std::vector<double> resampled(const HeightGrid& grid, size_t columns, size_t rows,
                               const std::vector<double>& values) {
     const LineResampler across(grid.columns, columns);
@@ -231,7 +235,7 @@ std::vector<double> resampled(const HeightGrid& grid, size_t columns, size_t row
     return out;
 }
 
-/// Smooth normals of the new surface, by area.
+/// Adds smooth normals of the new surface, weighted by area.
 void add_normals(Mesh& mesh) {
     std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -249,8 +253,8 @@ void add_normals(Mesh& mesh) {
 
 std::optional<HeightGrid> find_grid(const Mesh& mesh) {
     check(mesh);
-    // w h vertices and 2 (w - 1) (h - 1) triangles have few meshes but grids: a look at the numbers
-    // spares the others one at the vertices.
+    // A grid has w h vertices and 2 (w - 1) (h - 1) triangles, and few other meshes do: these two
+    // numbers mostly spare a visit of the vertices.
     const auto vertices = static_cast<double>(mesh.positions.size());
     const double sum = vertices + 1 - 0.5 * static_cast<double>(mesh.triangles.size());
     const double difference = std::sqrt(std::max(0.0, sum * sum - 4 * vertices));
@@ -278,7 +282,7 @@ Mesh subsample(const Mesh& mesh, const HeightGrid& grid, size_t triangles, const
     const auto part = [](double number, size_t most) {
         return static_cast<size_t>(std::clamp(number, 1.0, static_cast<double>(most)));
     };
-    // The shorter side is rounded down, the longer one takes what is left.
+    // The shorter side is rounded down, the longer one takes the rest.
     const bool flat = wide >= high;
     const size_t less = part(scale * static_cast<double>(flat ? high : wide), flat ? high : wide);
     const size_t more = part(cells / static_cast<double>(less), flat ? wide : high);
@@ -323,7 +327,7 @@ Mesh subsample(const Mesh& mesh, const HeightGrid& grid, size_t triangles, const
         for (size_t column = 0; column + 1 < columns; ++column) {
             const auto at = static_cast<uint32_t>(row * columns + column);
             const auto above = static_cast<uint32_t>(at + columns);
-            // The diagonal that differs less in height bends the surface less.
+            // The diagonal with the smaller difference in height bends the surface less.
             const int height = 3 - grid.across - grid.along;
             const auto z = [&](uint32_t v) { return out.positions[v][height]; };
             const bool rising = std::abs(z(at) - z(above + 1)) <= std::abs(z(at + 1) - z(above));

@@ -12,13 +12,17 @@
 namespace lodestone::simplify {
 namespace {
 
-// A vertex may move along its surface, but not for nothing: this share of its planes' weight holds
-// it in all directions. Less follows creases better, more keeps flat faces' cells regular.
+// The share of its planes' weight that holds a vertex in all directions: it may move along its
+// surface, but not for nothing.
+// Taste: less follows creases better, more keeps the cells of flat faces regular.
 constexpr float kHold = 1e-4f;
-// Open borders and those between material slots are held this much of the planes' weight.
+// The share of the planes' weight that holds open borders and those between material slots.
+// Taste: more keeps borders in place, less lets them shrink.
 constexpr float kBorder = 0.3f;
-// A cell without area has at least some weight (in a frame of unit extent).
+// The least weight of a cell, if it has no area (in a frame of unit extent).
+// Law: single precision; smaller weights would underflow when they are multiplied.
 constexpr float kLeastWeight = 1e-20f;
+// Law: the sum of no planes.
 constexpr Four kNothing{0, 0, 0, 0};
 
 /// Neighboring slots count differently in `open`, so that their border does not close.
@@ -26,11 +30,12 @@ float side_of(uint16_t slot) {
     return 1 + 0.37f * static_cast<float>(slot % 7u);
 }
 
-/// A vertex, and what the triangles around it tell about it: half a line of the processor's cache.
+/// A vertex, with sums over the triangles around it: half a line of the processor's cache.
 struct alignas(32) CellVertex {
     glm::vec3 at;   // in the frame
-    uint32_t cell;  // the one it lies in
-    Four open;      // from the first neighbor to the last: nothing where the fan closes; the weight
+    uint32_t cell;  // the cell that the vertex lies in
+    // The way from the first neighbor to the last: zero where the fan closes; the weight.
+    Four open;
 
     Four point() const {
         using Bits = uint32_t __attribute__((vector_size(16)));
@@ -38,13 +43,14 @@ struct alignas(32) CellVertex {
         std::memcpy(&bits, this, sizeof(bits));
         return (Four)(bits & Bits{~0u, ~0u, ~0u, 0});
     }
-    /// Of its planes: twice the area around it.
+    /// The weight of its planes: twice the area around it.
     float weight() const { return open[3]; }
     bool is_open() const { return dot_three(open, open) > 1e-4f * weight(); }
 };
 
-/// A cell's quadric has its origin where its first vertex is.
+/// The vertices of the cells. The origin of a cell's quadric is at the cell's first vertex.
 ScratchVector<CellVertex> vertices_of(GridCells& cells, const Mesh& mesh, const CellFrame& frame) {
+    // Law: the last number of an origin is 0, so no number but this can mark an unset one.
     constexpr float kUnset = -1;
     cells.quadrics.assign(cells.split.size(),
                           CellQuadric{kNothing, kNothing, kNothing, {kUnset, 0, 0, 0}});
@@ -60,13 +66,17 @@ ScratchVector<CellVertex> vertices_of(GridCells& cells, const Mesh& mesh, const 
     return vertices;
 }
 
-/// The planes of all triangles to the cells of their corners, what lies around each vertex, and the
-/// cells' triangles between three of them.
+/// Adds the planes of all triangles to the cells of their corners, sums up the surroundings of each
+/// vertex, and lists the triangles between three cells.
 void add_triangles(GridCells& cells, const Mesh& mesh, ScratchVector<CellVertex>& vertices,
                    const Job& job) {
-    constexpr size_t kAhead = 12;  // triangles whose vertices are asked for
+    // The triangles ahead whose vertices memory is asked for.
+    // Taste: more displace what is still needed, fewer come too late.
+    constexpr size_t kAhead = 12;
+    // Triangles between two looks at whether the job was cancelled.
+    // Taste: more of them look less often.
     constexpr size_t kBlock = 4096;
-    // Plain pointers: what is written must not make it look for the vectors again.
+    // Plain pointers: writing through them does not make the compiler read the vectors again.
     CellVertex* const around = vertices.data();
     CellQuadric* const quadrics = cells.quadrics.data();
     const uint16_t* const slots = mesh.slots.empty() ? nullptr : mesh.slots.data();
@@ -76,7 +86,7 @@ void add_triangles(GridCells& cells, const Mesh& mesh, ScratchVector<CellVertex>
         job.check();
         const size_t end = std::min(triangles.size(), begin + kBlock);
         if (cells.triangles.size() < kept + kBlock) {
-            // As many as a surface has, or more: what is left over would be a page of memory.
+            // Room for the triangles of a surface, or more: unused room would cost pages of memory.
             const size_t room = std::max(4 * cells.split.size(), 2 * kept) + kBlock;
             cells.triangles.resize(std::min(triangles.size() + kBlock, room));
             cells.sources.resize(cells.triangles.size());
@@ -94,7 +104,7 @@ void add_triangles(GridCells& cells, const Mesh& mesh, ScratchVector<CellVertex>
             const uint32_t x = first.cell;
             const uint32_t y = second.cell;
             const uint32_t z = third.cell;
-            // Without a branch: nobody can predict it.
+            // There is no branch, because nobody can predict it.
             into[kept].x = x;
             into[kept].y = y;
             into[kept].z = z;
@@ -141,7 +151,7 @@ void add_triangles(GridCells& cells, const Mesh& mesh, ScratchVector<CellVertex>
     cells.sources.resize(kept);
 }
 
-/// Of vertices at one position (split ones) the first is given what the others have.
+/// Gives the first of the vertices at one position (split ones) the sums of the others.
 void join_open(ScratchVector<CellVertex>& vertices, const ScratchVector<uint32_t>& open) {
     size_t size = 64;
     while (size < 2 * open.size())
@@ -168,7 +178,7 @@ void join_open(ScratchVector<CellVertex>& vertices, const ScratchVector<uint32_t
     }
 }
 
-/// All vertices are held a little, and borders at the lines along them.
+/// Holds all vertices a little, and those on borders at the lines along them.
 void add_vertices(GridCells& cells, ScratchVector<CellVertex>& vertices) {
     ScratchVector<uint32_t> open;
     open.reserve(vertices.size());
@@ -192,7 +202,7 @@ void add_vertices(GridCells& cells, ScratchVector<CellVertex>& vertices) {
         const CellVertex& vertex = vertices[v];
         if (!vertex.is_open())
             continue;
-        // The line along the border: everything but what lies in its direction.
+        // The line along the border holds in all directions but its own.
         const float all = kBorder * vertex.weight();
         const Four o = vertex.open;
         const Four along = o * (all / dot_three(o, o));
@@ -211,7 +221,8 @@ PointExtent extent_of(std::span<const glm::vec3> points) {
         return {};
     Four low = four(points[0]);
     Four high = low;
-    Four sum = kNothing;  // without a branch: only what is not finite gives anything but 0
+    // Without a branch: only a number that is not finite gives anything but 0.
+    Four sum = kNothing;
     for (const glm::vec3& p : points) {
         const Four point = four(p);
         low = least_of(point, low);

@@ -10,16 +10,29 @@
 namespace lodestone::simplify {
 namespace {
 
-// Merging across grid lines is dearer than the tree but better. What it may take, in nanoseconds a
-// triangle of the input, and what it does take for a cell it begins with and for each it merges.
+// The budget and the costs of merging across grid lines, which gives less error but takes longer
+// than the tree: nanoseconds for each triangle of the input, for each cell it begins with, and for
+// each it merges.
+// Fitted: by tests/bench/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
 constexpr double kMergeBudget = 4;
+// Fitted: to measured times of this step (nanoseconds); the script was not kept.
 constexpr double kBeginCost = 135;
+// Fitted: to measured times of this step (nanoseconds); the script was not kept.
 constexpr double kMergeCost = 600;
-constexpr double kMostMerged = 3;  // of the cells that are left
-// How near below the target is near enough.
+// The most cells to begin with, for each cell that is left.
+// Taste: more give less error and take longer.
+constexpr double kMostMerged = 3;
+// The share of the target from which on the tree's tries end.
+// Fitted: by tests/bench/bench_simplify.py, 36 pairs; a larger share takes more tries.
 constexpr double kNear = 0.95;
-constexpr double kEnough = 0.94;  // with copies left out
+// The share that is enough when copies were left out.
+// Taste: nearer takes more rounds of grouping.
+constexpr double kEnough = 0.94;
+// The most tries of the tree for one goal.
+// Taste: more come nearer to the target, more slowly.
 constexpr int kTries = 12;
+// The most goals for one target.
+// Taste: more come nearer to the target where many copies are left out.
 constexpr int kGoals = 4;
 
 bool differ(const Triangle& t) {
@@ -33,7 +46,7 @@ size_t count_of(std::span<const Triangle> triangles, std::span<const uint32_t> n
     return count;
 }
 
-/// Which of a growing list of triangles are there already, however they are turned.
+/// The set of a growing list of triangles, however they are turned.
 class TriangleSet {
 public:
     explicit TriangleSet(size_t most) {
@@ -46,7 +59,8 @@ public:
         const uint32_t low = std::min({t.x, t.y, t.z});
         const uint32_t high = std::max({t.x, t.y, t.z});
         const uint32_t middle = t.x ^ t.y ^ t.z ^ low ^ high;
-        // Near to each other for neighbors, and yet apart for those around one vertex.
+        // Triangles of neighbors are near to each other in the table, and those around one vertex
+        // apart.
         const uint32_t spot = (middle * 0x85ebca6bu ^ high * 0xc2b2ae35u) >> (32u - kSpots);
         uint32_t& head = heads_[(2 * low + spot) & (size_ - 1)];
         for (uint32_t i = head; i != kNoCell; i = entries_[i].next) {
@@ -60,7 +74,9 @@ public:
     }
 
 private:
-    static constexpr unsigned kSpots = 12;  // bits
+    // The bits of a triangle's spot.
+    // Taste: more bits spread the triangles of a vertex wider over the cache.
+    static constexpr unsigned kSpots = 12;
     struct TriangleEntry {
         uint32_t low, middle, high;
         uint32_t next;
@@ -76,7 +92,8 @@ CellGroups grouped(const GridCells& cells, ScratchVector<uint32_t> group) {
     out.triangles.resize(cells.triangles.size() + 1);
     out.sources.resize(cells.triangles.size() + 1);
     size_t count = 0;
-    for (size_t i = 0; i < cells.triangles.size(); ++i) {  // without a branch, as half of them go
+    // Without a branch, as half of them go.
+    for (size_t i = 0; i < cells.triangles.size(); ++i) {
         const Triangle& t = cells.triangles[i];
         const Triangle of(out.group[t.x], out.group[t.y], out.group[t.z]);
         out.triangles[count] = of;
@@ -99,11 +116,11 @@ CellGroups grouped(const GridCells& cells, ScratchVector<uint32_t> group) {
 }
 
 /// The grouping by the tree nearest below `wanted` triangles that it finds in a few tries; when
-/// none is, one above. `left` is how many cells to try first (0: unknown), and becomes how many it
+/// there is none, one above. `left`: how many cells to try first (0: unknown), and then how many it
 /// has.
 ScratchVector<uint32_t> joined(const GridCells& cells, CellTree& tree, double wanted, double near,
                                size_t& count, size_t& left) {
-    size_t few = 1;  // cells that give too few triangles, and how many
+    size_t few = 1;  // cells that give too few triangles, and the number of these
     size_t few_triangles = 0;
     size_t many = cells.count();
     size_t many_triangles = cells.triangles.size();
@@ -130,7 +147,7 @@ ScratchVector<uint32_t> joined(const GridCells& cells, CellTree& tree, double wa
         return best;
     }
     for (int i = 0; i < kTries && many - few > 1; ++i) {
-        // The triangles are nearly as the cells; halving makes sure of an end.
+        // The number of triangles is nearly proportional to the cells; halving ensures an end.
         double part = (0.5 + 0.5 * near) * wanted - static_cast<double>(few_triangles);
         part /= static_cast<double>(std::max<size_t>(many_triangles - few_triangles, 1));
         if (i >= 6)
@@ -149,7 +166,7 @@ ScratchVector<uint32_t> joined(const GridCells& cells, CellTree& tree, double wa
         few = tried;
         few_triangles = found;
     }
-    if (best.empty())  // fewer cells give none at all
+    if (best.empty())  // fewer cells give no triangles at all
         take(many);
     return best;
 }
@@ -157,7 +174,8 @@ ScratchVector<uint32_t> joined(const GridCells& cells, CellTree& tree, double wa
 /// Merges groups until at most `wanted` triangles are left.
 CellGroups merged(const GridCells& cells, const CellGroups& start, size_t nodes, size_t wanted,
                   const Job& job) {
-    // Numbers without gaps for what triangles use; the last one is for all other cells.
+    // Numbers without gaps for the cells that triangles use; the last number is for all other
+    // cells.
     ScratchVector<uint32_t> number(nodes, kNoCell);
     uint32_t count = 0;
     ScratchVector<Triangle> triangles = start.triangles;
@@ -178,8 +196,8 @@ CellGroups merged(const GridCells& cells, const CellGroups& start, size_t nodes,
     }
     CellMerge merge(quadrics, triangles);
     for (size_t left = triangles.size(); left > wanted;) {
-        // A merged cell takes two triangles along, more where thin parts become one sheet: most of
-        // the way each time comes near without going too far.
+        // A merged cell removes two triangles, more where thin parts become one sheet: doing most
+        // of the way each time comes near without going too far.
         const size_t above = left - wanted;
         const double cells_each =
             std::min(0.5, static_cast<double>(merge.count()) / static_cast<double>(left));
@@ -197,7 +215,7 @@ CellGroups merged(const GridCells& cells, const CellGroups& start, size_t nodes,
                 triangles[kept++] = of;
         }
         if (kept == 0)
-            return start;  // it would vanish
+            return start;  // nothing would be left
         triangles.resize(kept);
         left = kept;
         if (merge.count() == before)
@@ -216,7 +234,7 @@ CellGroups merged(const GridCells& cells, const CellGroups& start, size_t nodes,
 }  // namespace
 
 GroupingPlan::GroupingPlan(size_t triangles, size_t target) {
-    const double wanted = 0.5 * static_cast<double>(target);  // cells of a closed surface
+    const double wanted = 0.5 * static_cast<double>(target);  // the cells of a closed surface
     const double removed =
         std::min((kMergeBudget * static_cast<double>(triangles) - kBeginCost * wanted) /
                      (kBeginCost + kMergeCost),
@@ -253,7 +271,7 @@ CellGroups group_cells(const GridCells& cells, const GroupingPlan& plan, size_t 
         if (kept == 0 || (within && static_cast<double>(kept) >= kEnough * wanted) ||
             (within && count >= cells.triangles.size()) || (!within && too_few == 0))
             break;
-        // What was there twice has made room for others.
+        // Triangles that existed twice have made room for others.
         (within ? too_few : too_many) = goal;
         const double before = goal;
         goal = too_many > 0 ? 0.5 * (too_few + too_many)

@@ -8,10 +8,11 @@ namespace {
 
 /// Every edge of the triangles once, in the order of their first appearance.
 ScratchVector<std::pair<uint32_t, uint32_t>> edges_of(std::span<const Triangle> triangles) {
-    size_t size = 64;
+    size_t size = 64;                    // two triangles for each edge: half full
     while (size < triangles.size() * 3)  // two triangles an edge: half full
         size *= 2;
-    constexpr uint64_t kFree = 0;  // no edge joins 0 to 0
+    // Law: no edge joins 0 to 0, so this key is free.
+    constexpr uint64_t kFree = 0;
     ScratchVector<uint64_t> table(size, kFree);
     ScratchVector<std::pair<uint32_t, uint32_t>> edges;
     edges.reserve(triangles.size() * 2);
@@ -81,7 +82,8 @@ void CellMerge::merge_to(size_t count, const Job& job) {
             pairs_.pop_back();
             continue;
         }
-        if (merges_[pair.a] + merges_[pair.b] != pair.merges) {  // it has grown since: dearer
+        // One of the two has grown since, so the pair costs more.
+        if (merges_[pair.a] + merges_[pair.b] != pair.merges) {
             judge(pair);
             pairs_.back() = pair;
             std::push_heap(pairs_.begin(), pairs_.end());

@@ -11,13 +11,13 @@
 
 namespace lodestone::simplify {
 
-/// Cells as the corners of triangles; any two corners of one are neighbors.
+/// The cells as the corners of triangles; any two corners of a triangle are neighbors.
 class CellMerge {
 public:
-    /// Keeps references to neither.
+    /// Copies what it needs of both.
     CellMerge(std::span<const CellQuadric> quadrics, std::span<const Triangle> triangles);
 
-    /// Merges until `count` are left or no neighbors are.
+    /// Merges until `count` cells are left or no two are neighbors.
     void merge_to(size_t count, const Job& job);
 
     size_t count() const { return count_; }
@@ -29,8 +29,9 @@ private:
     struct CellPair {
         float cost;
         uint32_t a, b;
-        uint32_t merges;                           // of both when it was judged
-        bool operator<(const CellPair& o) const {  // cheapest on top of a heap; ties by number
+        uint32_t merges;  // the merges of both when the pair was judged
+        /// Puts the cheapest on top of a heap; equal costs go by number.
+        bool operator<(const CellPair& o) const {
             if (cost != o.cost)
                 return cost > o.cost;
             return a != o.a ? a > o.a : b > o.b;

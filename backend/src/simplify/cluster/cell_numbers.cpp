@@ -10,22 +10,28 @@
 namespace lodestone::simplify {
 namespace {
 
+// The number of vertices from which on codes of 64 bits are used.
+// Taste: a smaller number gives more meshes a finer grid, at twice the memory for sorting.
 constexpr size_t kManyPoints = size_t{1} << 20u;
-constexpr int kDigit = 10;  // bits sorted by at a time
+// The bits that one pass sorts by.
+// Taste: more bits take fewer passes and larger tables, which leave the cache.
+constexpr int kDigit = 10;
 
 template <typename Code>
-constexpr int kAxisBits = sizeof(Code) == 4 ? 10 : 20;  // bits an axis
+// The bits for each axis.
+// Law: three axes fit into the code, and are a multiple of kDigit.
+constexpr int kAxisBits = sizeof(Code) == 4 ? 10 : 20;
 
 using FourBits = uint32_t __attribute__((vector_size(16)));
 
-FourBits spread(FourBits v) {  // two zeros behind each of ten bits
+FourBits spread(FourBits v) {  // puts two zeros behind each of ten bits
     v = (v | v << 16u) & 0x030000ffu;
     v = (v | v << 8u) & 0x0300f00fu;
     v = (v | v << 4u) & 0x030c30c3u;
     return (v | v << 2u) & 0x09249249u;
 }
 
-/// Along the curve, with so many bits an axis.
+/// The code of a point along the curve, with this many bits for each axis.
 template <typename Code>
 Code code_of(const Four& point, int bits) {
     using Whole = int __attribute__((vector_size(16)));
@@ -47,10 +53,12 @@ struct CellKey {
     uint32_t vertex;
 };
 
-/// The vertices along the curve; those of one code in their own order.
+/// The vertices along the curve; those with one code keep their order.
 template <typename Code>
 ScratchVector<CellKey<Code>> sorted(std::span<const glm::vec3> positions, const CellFrame& frame) {
+    // Law: the digits of a code with three axes.
     constexpr size_t kDigits = 3 * kAxisBits<Code> / kDigit;
+    // Law: the values of a digit.
     constexpr size_t kValues = size_t{1} << static_cast<unsigned>(kDigit);
     ScratchVector<CellKey<Code>> keys(positions.size());
     std::array<std::array<uint32_t, kValues>, kDigits> starts{};
@@ -72,8 +80,8 @@ ScratchVector<CellKey<Code>> sorted(std::span<const glm::vec3> positions, const 
     return keys;
 }
 
-/// How many of the lowest bits of the codes can go while `least` cells are left. `each` calls back
-/// with all codes in their order.
+/// How many of the lowest bits of the codes can be dropped while `least` cells are left. `each`
+/// calls back with all codes in their order.
 template <typename Each>
 int spare_bits(const Each& each, int bits, size_t least) {
     std::array<size_t, 65> splits{};
@@ -89,7 +97,7 @@ int spare_bits(const Each& each, int bits, size_t least) {
     return cells >= least ? 0 : -1;
 }
 
-/// Cells in the order of the curve, by sorting all vertices along it.
+/// Numbers the cells in the order of the curve, by sorting all vertices along it.
 template <typename Code>
 void number_sorted(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                    size_t least) {
@@ -111,7 +119,7 @@ void number_sorted(GridCells& cells, std::span<const glm::vec3> positions, const
     cells.split.push_back(64);
 }
 
-/// Which codes there are, and how many below each.
+/// The set of the codes that occur, which counts those below each.
 class CodeSet {
 public:
     explicit CodeSet(size_t size) : words_(size / 32 + 1, 0) {}
@@ -127,7 +135,7 @@ public:
     uint32_t below(uint32_t code) const {
         return below_[code >> 5u] + ones(words_[code >> 5u] & ((1u << (code & 31u)) - 1));
     }
-    /// Calls with all but the first, and the one before each.
+    /// Calls back with all codes but the first, each with the code before it.
     template <typename Visit>
     void each_pair(const Visit& visit) const {
         uint32_t before = ~uint32_t{0};
@@ -142,7 +150,8 @@ public:
     }
 
 private:
-    static uint32_t ones(uint32_t word) {  // not all processors have it as an instruction
+    // Counts bits; not all processors have an instruction for it.
+    static uint32_t ones(uint32_t word) {
         word -= word >> 1u & 0x55555555u;
         word = (word & 0x33333333u) + (word >> 2u & 0x33333333u);
         return ((word + (word >> 4u)) & 0x0f0f0f0fu) * 0x01010101u >> 24u;
@@ -151,10 +160,11 @@ private:
     ScratchVector<uint32_t> below_;
 };
 
-/// The same without sorting, for few cells. False: they are too many, or too near to each other.
+/// The same without sorting, for few cells. False: the cells are too many, or too near to each
+/// other.
 bool number_few(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                 size_t least) {
-    // Surfaces go through at least the square of the steps a side.
+    // Surfaces pass through at least the square of the steps a side.
     const int bits = static_cast<int>(std::bit_width(least) + 2) / 2;
     if (bits > kAxisBits<uint32_t> || size_t{1} << (3 * bits) > 64 * positions.size())
         return false;

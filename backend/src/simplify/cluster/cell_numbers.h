@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cell numbers: which cell of a fine grid each vertex lies in, along a space-filling curve.
+// Cell numbers: the cell of a fine grid that each vertex lies in, along a space-filling curve.
 #pragma once
 
 #include "simplify/cluster/cell_grid.h"
@@ -8,13 +8,14 @@
 
 namespace lodestone::simplify {
 
-/// From metres into the frame.
+/// The map from metres into the frame.
 class CellFrame {
 public:
-    /// `scale` is one through the unit.
+    /// `scale`: 1 / unit of the frame.
     CellFrame(const glm::vec3& low, double scale)
         : half_low_(four(low) * 0.5f), twice_(static_cast<float>(2 * scale)) {}
-    /// By halves, as their differences are floats in any case; the last number is 0.
+    /// Computes with halves, because differences of halves are floats in any case; the last number
+    /// is 0.
     Four operator()(const glm::vec3& point) const {
         return (four(point) * 0.5f - half_low_) * twice_;
     }
@@ -24,7 +25,7 @@ private:
     float twice_;
 };
 
-/// Sets `cell`, `split` and `step`; see divide_into_cells(). Positions in metres.
+/// Sets `cell`, `split` and `step`; see divide_into_cells(). `positions` are in metres.
 void number_cells(GridCells& cells, std::span<const glm::vec3> positions, const CellFrame& frame,
                   size_t least);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cell quadric: squared distances to all planes and lines of a cell's vertices, in single
+// Cell quadric: the squared distances to all planes and lines of a cell's vertices, in single
 // precision.
 #pragma once
 
@@ -24,7 +24,7 @@ inline Four least_of(const Four& a, const Four& b) {
 inline Four most_of(const Four& a, const Four& b) {
     return a > b ? a : b;
 }
-/// Of the first three.
+/// The dot product of the first three numbers.
 inline float dot_three(const Four& a, const Four& b) {
     const Four product = a * b;
     return product[0] + product[1] + product[2];
@@ -35,22 +35,22 @@ inline Four cross(const Four& a, const Four& b) {
     return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
 }
 
-/// Q(p) = y^T A y - 2 y^T b + c with y = p - origin. The origin lies within the cell, so nothing
-/// cancels far from the coordinate origin, and every number stays as small as the cell. A line of
-/// the processor's cache.
+/// The quadric Q(p) = y^T A y - 2 y^T b + c with y = p - origin. The origin lies within the cell,
+/// so nothing cancels far from the coordinate origin, and every number stays as small as the cell.
+/// It fills one line of the processor's cache.
 struct CellQuadric {
-    Four planes_a{0, 0, 0, 0};  // of A: xx xy xz yy
+    Four planes_a{0, 0, 0, 0};  // the elements xx xy xz yy of A
     Four planes_b{0, 0, 0, 0};  // yz zz 0 0
-    Four pull{0, 0, 0, 0};      // b, and c behind
-    Four at{0, 0, 0, 0};        // the origin, and 0
+    Four pull{0, 0, 0, 0};      // b, followed by c
+    Four at{0, 0, 0, 0};        // the origin, followed by 0
 
     float c() const { return pull[3]; }
     /// The sum of all weights.
     float trace() const { return planes_a[0] + planes_a[3] + planes_b[1]; }
 
-    /// Adds the squared distances to a plane through a point `away` from the origin. `more_a` and
-    /// `more_b` are the products of the normal with itself, as above; its length is the root of the
-    /// weight.
+    /// Adds the squared distances to a plane through a point `away` from the origin. The length of
+    /// `normal` is the root of the weight; `more_a` and `more_b` are its products with itself, as
+    /// above.
     void add_plane(const Four& normal, const Four& more_a, const Four& more_b, const Four& away) {
         const float distance = dot_three(normal, away);
         planes_a += more_a;
@@ -64,7 +64,7 @@ struct CellQuadric {
         planes_b += more_b;
         pull += moved + Four{0, 0, 0, 1} * dot_three(moved, away);
     }
-    /// Adds another cell's.
+    /// Adds the quadric of another cell.
     void add(const CellQuadric& other) {
         const Four away = other.at - at;
         const Four moved = product(other.planes_a, other.planes_b, away);
@@ -73,26 +73,26 @@ struct CellQuadric {
         pull += other.pull + moved +
                 Four{0, 0, 0, 1} * dot_three(other.pull + other.pull + moved, away);
     }
-    /// The same for the first of a sum too, whose origin it takes.
+    /// Adds another quadric; the first one of a sum also sets the origin.
     void gather(const CellQuadric& other) {
         if (trace() > 0)
             add(other);
         else
             *this = other;
     }
-    /// Where the sum is least. A must be positive definite.
+    /// The point where the sum is least. A must be positive definite.
     glm::vec3 lowest() const { return first_three(at) + solved(); }
-    /// The least sum.
+    /// The value of the least sum.
     float least() const { return std::max(0.0f, c() - glm::dot(first_three(pull), solved())); }
 
 private:
-    /// A times a vector, whose last number is 0 as is that of the result.
+    /// The product of A and a vector whose last number is 0; so is that of the result.
     static Four product(const Four& a, const Four& b, const Four& v) {
         const Four sum = a * v[0] + __builtin_shufflevector(a, b, 1, 3, 4, 7) * v[1] +
                          __builtin_shufflevector(a, b, 2, 4, 5, 7) * v[2];
         return sum * Four{1, 1, 1, 0};
     }
-    /// A y = b, by Cholesky's decomposition without roots.
+    /// Solves A y = b, by Cholesky's decomposition without roots.
     glm::vec3 solved() const {
         const float d0 = 1 / planes_a[0];
         const float l10 = planes_a[1] * d0;

@@ -9,9 +9,9 @@ namespace {
 /// The left half of a node whose right half is still to come.
 struct LeftHalf {
     uint32_t node;
-    uint8_t split;  // between it and what follows
-    float least;    // of its quadric
-    float cost;     // the largest below it
+    uint8_t split;  // between it and the next cell
+    float least;    // the least value of its quadric
+    float cost;     // the largest cost below it
     CellQuadric quadric;
 };
 
@@ -26,7 +26,7 @@ CellTree::CellTree(const GridCells& cells) : cells_(cells.count()) {
     open.reserve(64);
     for (size_t i = 0; i < cells_; ++i) {
         LeftHalf node{static_cast<uint32_t>(i), cells.split[i], 0, 0, cells.quadrics[i]};
-        if (node.quadric.c() > 0)  // else all its vertices are one
+        if (node.quadric.c() > 0)  // else all its vertices are at one point
             node.least = node.quadric.least();
         while (!open.empty() && open.back().split < node.split) {
             const LeftHalf& left = open.back();
@@ -52,7 +52,7 @@ std::span<const uint32_t> CellTree::joined(size_t count) {
     float most = -1;
     if (joins > 0) {
         const auto at = [&](size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-        // Where it was asked before the numbers are apart already.
+        // Around the numbers of earlier calls, smaller and larger costs are separated already.
         const auto above = std::lower_bound(asked_.begin(), asked_.end(), joins - 1);
         const size_t end = above == asked_.end() ? order_.size() : *above + 1;
         const size_t begin = above == asked_.begin() ? 0 : *std::prev(above) + 1;

@@ -12,10 +12,13 @@
 namespace lodestone::simplify {
 namespace {
 
-// Cells of the fine grid for each one that the tree leaves: enough to choose from.
+// The cells of the fine grid for each one that the tree leaves: enough to choose from.
+// Fitted: by tests/bench/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
 constexpr double kCellsPerLeft = 1.3;
-// Bytes it takes in all, for each vertex and each cell.
+// The bytes of scratch memory that are reserved, for each vertex and each cell.
+// Law: the sum of the arrays by vertex.
 constexpr size_t kVertexBytes = 40;
+// Law: the sum of the arrays by cell.
 constexpr size_t kCellBytes = 320;
 
 /// The triangles with finite corners.
@@ -29,7 +32,7 @@ Mesh finite_part(const Mesh& mesh) {
     return subset(mesh, keep);
 }
 
-/// The `count` largest triangles; of equal ones the first.
+/// The `count` largest triangles; of equally large ones the first.
 Mesh largest(const Mesh& mesh, size_t count) {
     std::vector<double> areas(mesh.triangles.size());
     for (size_t i = 0; i < areas.size(); ++i)
@@ -48,8 +51,8 @@ Mesh largest(const Mesh& mesh, size_t count) {
     return subset(mesh, keep);
 }
 
-/// Parts of the surface that went into one group, connected within it: what shares normals and
-/// texture coordinates.
+/// The parts of the surface in each group that are connected within it: their vertices share
+/// normals and texture coordinates.
 ScratchVector<uint32_t> patches_of(const Mesh& mesh, const GridCells& cells,
                                    const CellGroups& grouping) {
     ScratchVector<uint32_t> patch(mesh.positions.size());
@@ -77,7 +80,7 @@ ScratchVector<uint32_t> patches_of(const Mesh& mesh, const GridCells& cells,
     return patch;
 }
 
-/// Cells of one group.
+/// The cells of one group.
 class CellBlock {
 public:
     explicit CellBlock(const CellQuadric& quadric)
@@ -87,9 +90,9 @@ public:
         low_ = least_of(low_, other.low_);
         high_ = most_of(high_, other.high_);
     }
-    /// The place of its vertex, in metres.
+    /// The position of its vertex, in metres.
     glm::vec3 point(const GridCells& cells) const {
-        // Planes that hardly differ meet anywhere: not far from what they are planes of.
+        // Planes that hardly differ meet anywhere: the vertex must stay near the surface.
         const glm::vec3 low = first_three(low_);
         const glm::vec3 high = first_three(high_);
         const glm::vec3 size = high - low;
@@ -99,22 +102,24 @@ public:
 
 private:
     CellQuadric quadric_;
-    Four low_, high_;  // of the cells' origins, in the frame
+    Four low_, high_;  // the box of the cells' origins, in the frame
 };
 
 /// One vertex for each group that a triangle uses.
 struct ClusterVertices {
-    ScratchVector<uint32_t> of;       // a group's place; kNoCell where nothing uses it
-    ScratchVector<glm::vec3> points;  // metres
+    ScratchVector<uint32_t> of;       // the place of a group; kNoCell where no triangle uses it
+    ScratchVector<glm::vec3> points;  // in metres
 };
 
 ClusterVertices places_of(const GridCells& cells, const CellGroups& grouping, size_t nodes) {
+    // The mark of a group that is used and has no place yet.
+    // Law: any number but kNoCell that is above all places.
     constexpr uint32_t kUsed = kNoCell - 1;
     ClusterVertices places;
     places.of.assign(nodes, kNoCell);
     for (const Triangle& t : grouping.triangles)
         places.of[t.x] = places.of[t.y] = places.of[t.z] = kUsed;
-    ScratchVector<CellBlock> shared;  // of groups whose cells are not all beside each other
+    ScratchVector<CellBlock> shared;  // those of groups whose cells do not all follow each other
     places.points.reserve(std::min(cells.count(), 3 * grouping.triangles.size()));
     for (size_t i = 0; i < cells.count();) {
         const uint32_t group = grouping.group[i];
@@ -145,7 +150,7 @@ bool without_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
     return glm::cross(b - a, c - a) == glm::dvec3(0);
 }
 
-/// Every place is a vertex.
+/// The mesh in which every place is a vertex.
 Mesh plain(const Mesh& mesh, const CellGroups& grouping, const ClusterVertices& places) {
     Mesh out;
     out.positions.assign(places.points.begin(), places.points.end());
@@ -166,7 +171,7 @@ Mesh plain(const Mesh& mesh, const CellGroups& grouping, const ClusterVertices& 
     return out;
 }
 
-/// Vertices of the result, made from the surface around them.
+/// The vertices of the result, made from the surface around them.
 class ClusterAssembler {
 public:
     ClusterAssembler(const Mesh& mesh, const GridCells& cells, const CellGroups& grouping,
@@ -180,7 +185,7 @@ public:
             const Triangle& source = mesh.triangles[grouping.sources[i]];
             if (without_area(places.points[places.of[groups.x]], places.points[places.of[groups.y]],
                              places.points[places.of[groups.z]]))
-                continue;  // draws nothing
+                continue;  // it draws nothing
             Triangle t;
             for (int k = 0; k < 3; ++k) {
                 const uint32_t place = places.of[groups[k]];
@@ -203,8 +208,8 @@ public:
     Mesh result() { return std::move(out_); }
 
 private:
-    /// Normals and colors are the patch's mean, texture coordinates those of its vertex nearest to
-    /// the new one: a mean of them would lie outside of a bent island.
+    /// Normals and colors are the mean of the patch. Texture coordinates are those of its vertex
+    /// nearest to the new one, because their mean would lie outside of a bent island.
     void take_attributes(const ScratchVector<uint32_t>& patch,
                          const ScratchVector<uint32_t>& vertex_of) {
         const size_t count = out_.positions.size();
@@ -242,7 +247,8 @@ private:
         }
     }
 
-    /// Where a normal points away from its triangle, or nowhere, the triangle's own is used.
+    /// Where a normal points away from its triangle, or has no direction, the triangle's own is
+    /// used.
     void mend_normals() {
         for (size_t i = 0; i < out_.triangles.size(); ++i) {
             const glm::dvec3 area = area_vector(out_, i);
@@ -291,7 +297,7 @@ Mesh cluster_vertices(const Mesh& mesh, size_t target, const Job& job) {
     if (cells.count() > 0)
         grouping = group_cells(cells, plan, target, job);
     job.progress(0.8);
-    if (grouping.triangles.empty())  // no extent, or all of it in specks
+    if (grouping.triangles.empty())  // it has no extent, or consists of specks
         return largest(mesh, target);
     const ClusterVertices places = places_of(cells, grouping, 2 * cells.count());
     const bool attributes = !mesh.normals.empty() || !mesh.uvs.empty() || !mesh.colors.empty();

@@ -14,7 +14,7 @@ void Adjacency::build(const CollapseMesh& mesh) {
     for (size_t v = 0; v < mesh.points.size(); ++v)
         first[v + 1] += first[v];
     triangles.resize(first.back());
-    // Shifted by one: filling moves the start of v, kept at v + 1, to where v ends.
+    // The starts are shifted by one: filling moves the start of v, kept at v + 1, to where v ends.
     for (size_t v = mesh.points.size(); v > 0; --v)
         first[v] = first[v - 1];
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -10,8 +10,8 @@
 namespace lodestone::simplify {
 
 struct Adjacency {
-    std::vector<uint32_t> first;      // one a vertex, plus the end
-    std::vector<uint32_t> triangles;  // ascending within a vertex, until somebody orders them
+    std::vector<uint32_t> first;      // one number for each vertex, plus the end
+    std::vector<uint32_t> triangles;  // ascending within a vertex, until a caller orders them
 
     std::span<const uint32_t> around(uint32_t vertex) const {
         return {triangles.data() + first[vertex], triangles.data() + first[vertex + 1]};
@@ -21,20 +21,23 @@ struct Adjacency {
     }
     size_t valence(uint32_t vertex) const { return first[vertex + 1] - first[vertex]; }
 
-    /// What is around a vertex some way on: worth asking memory for by who goes through them all.
+    /// The triangles around a vertex some way on, for a loop over all vertices that asks for memory
+    /// early.
     std::span<const uint32_t> ahead(uint32_t vertex) const {
+        // Taste: more displace what is still needed, fewer come too late.
         constexpr size_t kAhead = 48;
+        // Taste: more ask in vain, as most vertices have six triangles.
         constexpr size_t kMost = 8;
         const size_t from = std::min<size_t>(first[vertex] + kAhead, triangles.size());
         const size_t to = std::min<size_t>(first[vertex + 1] + kAhead, triangles.size());
         return {triangles.data() + from, std::min(to - from, kMost)};
     }
 
-    /// Reuses the arrays of the previous call.
+    /// Fills the arrays; the memory of the previous call is used again.
     void build(const CollapseMesh& mesh);
 };
 
-/// A set of small integers that is emptied in O(1); each member carries a number.
+/// A set of small integers that is emptied in O(1); each member has a number.
 class StampedSet {
 public:
     void resize(size_t count) {
@@ -42,7 +45,7 @@ public:
         numbers_.resize(count);
         now_ = 1;
     }
-    /// Adds members that are not in the set.
+    /// Adds room for members, which are not in the set.
     void grow(size_t count) {
         stamps_.resize(count, 0);
         numbers_.resize(count);

@@ -26,6 +26,7 @@ public:
 
     uint32_t at(uint32_t vertex, const glm::vec3& position, const glm::vec3* normal,
                 const glm::vec2* uv, const glm::vec4* color) {
+        // Taste: more find equal attributes in any order, in time that grows with the square.
         constexpr int kMostCompared = 64;
         int compared = 0;
         for (uint32_t i = heads_[vertex]; i != kNone && compared < kMostCompared;
@@ -57,7 +58,8 @@ private:
     std::vector<uint32_t>* made_;
 };
 
-/// About the middle of their box, so that what went far away loses no digits.
+/// The positions relative to the middle of their box, so that a mesh far from the origin loses no
+/// digits.
 std::vector<glm::dvec3> scaled(const std::vector<glm::vec3>& positions, double scale,
                                const std::vector<uint32_t>& order) {
     Box3 box;
@@ -75,9 +77,9 @@ bool all_differ(const Triangle& t) {
     return t.x != t.y && t.y != t.z && t.z != t.x;
 }
 
-/// The input's triangles of finite vertices in different places, by the first of their vertices on
-/// the curve: what lies together is read together from here on. `place` is where on the curve a
-/// vertex is, kNone for none.
+/// Takes the input's triangles of finite vertices in different places, sorted by the first of their
+/// vertices on the curve, so that data that lie together are read together. `place`: the place of a
+/// vertex on the curve, kNone for none.
 void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<uint32_t>& place) {
     const auto corners_of = [&](const Triangle& t) {
         return Triangle(place[t.x], place[t.y], place[t.z]);
@@ -116,8 +118,8 @@ void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<ui
     mesh.live = count;
 }
 
-/// Vertices have the input's numbers as ids, copies those after them. Of the input's vertices at
-/// one position all are the first one (by `first`).
+/// Numbers the vertices: the input's vertices keep their numbers as ids, copies get the next ones.
+/// All input vertices at one position become the first one (by `first`).
 void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<uint32_t> first) {
     const auto inputs = static_cast<std::ptrdiff_t>(first.size());
     const auto welded = static_cast<std::ptrdiff_t>(order.size());
@@ -179,6 +181,8 @@ CollapseMesh open_collapse_mesh(const Mesh& source, const Job& job, OtherPositio
     job.check();
     find_parts(mesh);
     mesh.facets.resize(mesh.triangles.size());
+    // Triangles that one thread computes at a time.
+    // Taste: larger chunks share the work less evenly.
     constexpr size_t kChunk = 16384;
     parallel_for((mesh.triangles.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
         const size_t end = std::min(mesh.triangles.size(), (chunk + 1) * kChunk);
@@ -203,7 +207,7 @@ CollapseMesh open_collapse_mesh(const Mesh& source, const Job& job, OtherPositio
 }
 
 void compact(CollapseMesh& mesh, Adjacency* adjacency) {
-    std::vector<uint32_t> moved(mesh.points.size(), 0);  // first how many triangles use it
+    std::vector<uint32_t> moved(mesh.points.size(), 0);  // at first, how many triangles use it
     size_t kept = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.dead(i))
@@ -236,7 +240,7 @@ void compact(CollapseMesh& mesh, Adjacency* adjacency) {
     for (size_t v = 0; v < moved.size(); ++v) {
         if (moved[v] == 0)
             continue;
-        // Shifted by one, as in Adjacency::build().
+        // The starts are shifted by one, as in Adjacency::build().
         if (adjacency != nullptr)
             adjacency->first[count + 1] = uses;
         uses += moved[v];
@@ -302,7 +306,8 @@ Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* made,
             const size_t at = 3 * i + static_cast<size_t>(corner);
             if (!corner_normals.empty() && corner_normals[at] != glm::vec3(0.0f))
                 normal = &corner_normals[at];
-            // A vertex may end just outside the input's box, which may be as large as floats go.
+            // A vertex may end just outside the input's box, which may be as large as floats can
+            // be.
             const glm::dvec3 place =
                 glm::clamp(mesh.center + mesh.points[vertex] * mesh.scale, -kMost, kMost);
             t[corner] = vertices.at(vertex, glm::vec3(place), normal,

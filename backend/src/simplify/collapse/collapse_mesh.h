@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mesh as the collapse engine sees it: welded vertices, attributes on corners ("wedges").
+// Collapse mesh: the mesh of the collapse engine, with welded vertices and with attributes on
+// corners ("wedges").
 #pragma once
 
 #include "base/job.h"
@@ -11,35 +12,40 @@
 
 namespace lodestone::simplify {
 
+/// The vertex, triangle or edge that does not exist.
 inline constexpr uint32_t kNone = ~uint32_t{0};
 
-/// The same vertices where another frame of an animation has them, in a frame of their own.
+/// The positions of the same vertices in another frame of an animation, with an origin of their
+/// own.
 struct OtherPose {
-    std::vector<glm::dvec3> points;  // recentred and scaled as much as the mesh
+    std::vector<glm::dvec3> points;  // recentred, and scaled by the same factor as the mesh
     std::vector<glm::vec3> facets;
 };
 
-/// Vertices at one position are one vertex, except where sheets only touch in a point or coincide
-/// (those are split, so that every sheet can be simplified by itself).
+/// A mesh in which vertices at one position are one vertex, except where sheets only touch in a
+/// point or coincide (these are split, so that every sheet can be simplified by itself).
 struct CollapseMesh {
     std::vector<glm::dvec3> points;   // recentred and scaled into the cube of +-1
-    std::vector<uint32_t> parts;      // connected part of each vertex
-    std::vector<Triangle> triangles;  // x == kNone: dead
-    std::vector<glm::vec3> facets;    // area vector (half the cross product) of each triangle
-    std::vector<Triangle> wedges;     // wedge of each corner; empty when nothing is carried
-    std::vector<uint16_t> slots;      // empty or one a triangle
-    std::vector<glm::vec3> normals;   // empty or one a wedge
-    std::vector<glm::vec2> uvs;       // empty or one a wedge
-    std::vector<glm::vec4> colors;    // empty or one a wedge
-    std::vector<OtherPose> others;    // what a collapse must suit besides; mostly none
-    std::vector<uint32_t> ids;        // of each vertex: its first number, into the next two
-    std::vector<uint32_t> sources;    // the input vertex (the welded one) it was; kNone: inserted
-    std::vector<uint32_t> merged;  // the vertex it was collapsed into, by first number, or itself
-    std::vector<std::pair<uint32_t, uint32_t>> outline;  // edges on borders at first, likewise
+    std::vector<uint32_t> parts;      // the connected part of each vertex
+    std::vector<Triangle> triangles;  // x == kNone: a dead triangle
+    std::vector<glm::vec3> facets;    // the area vector (half the cross product) of each triangle
+    /// The wedge of each corner; empty when no attribute is carried.
+    std::vector<Triangle> wedges;
+    std::vector<uint16_t> slots;     // empty, or one for each triangle
+    std::vector<glm::vec3> normals;  // empty, or one for each wedge
+    std::vector<glm::vec2> uvs;      // empty, or one for each wedge
+    std::vector<glm::vec4> colors;   // empty, or one for each wedge
+    std::vector<OtherPose> others;   // poses that a collapse must suit as well; mostly none
+    std::vector<uint32_t> ids;       // the first number of each vertex, an index of the next two
+    std::vector<uint32_t> sources;   // the (welded) input vertex that it was; kNone: inserted
+    /// The vertex it was collapsed into, by first number, or itself.
+    std::vector<uint32_t> merged;
+    /// The edges on borders at first, by first number.
+    std::vector<std::pair<uint32_t, uint32_t>> outline;
     uint32_t part_count = 0;
-    size_t live = 0;  // triangles not dead
+    size_t live = 0;  // the number of triangles that are not dead
     glm::dvec3 center{0.0};
-    double scale = 1;           // power of two: metres per unit
+    double scale = 1;           // a power of two: metres per unit
     bool flat_normals = false;  // every face has its own normal: made anew at the end
     bool has_normals = false;
 
@@ -48,7 +54,8 @@ struct CollapseMesh {
     static glm::dvec3 facet_of(const std::vector<glm::dvec3>& points, const Triangle& t) {
         return 0.5 * glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]);
     }
-    /// Appends a vertex that is where another one is; returns its index. Before there are ids.
+    /// Appends a vertex at the position of another one; returns its index. Only before there are
+    /// ids.
     uint32_t copy_vertex(uint32_t vertex) {
         points.push_back(glm::dvec3(points[vertex]));
         for (OtherPose& other : others)
@@ -58,26 +65,26 @@ struct CollapseMesh {
     }
 };
 
-/// Positions of the input's vertices in other frames, each as many as it has and finite.
+/// The positions of the input's vertices in other frames; each has as many, and all are finite.
 using OtherPositions = std::span<const std::vector<glm::vec3>>;
 
 struct Adjacency;
 
-/// Leaves out triangles with non-finite vertices and those with two corners in one place. Compact;
-/// fills `adjacency`, when given.
+/// Opens a mesh. Leaves out triangles with non-finite vertices and those with two corners at one
+/// position. The result is compact; fills `adjacency`, when given.
 CollapseMesh open_collapse_mesh(const Mesh& mesh, const Job& job, OtherPositions others = {},
                                 Adjacency* adjacency = nullptr);
 
-/// Drops dead triangles and the vertices nothing uses, keeping order. Fills `adjacency`, when
-/// given, which takes less time than building it afterwards.
+/// Removes dead triangles and unused vertices, keeping the order. Fills `adjacency`, when given,
+/// which takes less time than building it afterwards.
 void compact(CollapseMesh& mesh, Adjacency* adjacency = nullptr);
 
-/// Gives back the memory that dead triangles and unused vertices took before they were dropped.
+/// Gives back the memory of dead triangles and unused vertices that were removed.
 void shrink(CollapseMesh& mesh);
 
-/// Back to metres; vertices are split only where attributes differ. `vertices`, when given, gets
-/// the vertex of `mesh` that each of the result's was. `corner_normals`: empty, or three a
-/// triangle, each shown in place of its wedge's unless it is zero.
+/// The mesh in metres again; vertices are split only where attributes differ. `vertices`, when
+/// given, gets the vertex of `mesh` for each vertex of the result. `corner_normals`: empty, or
+/// three for each triangle, each shown instead of the wedge's normal unless it is zero.
 Mesh extract(const CollapseMesh& mesh, std::vector<uint32_t>* vertices = nullptr,
              std::span<const glm::vec3> corner_normals = {});
 

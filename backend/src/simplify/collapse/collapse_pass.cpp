@@ -14,41 +14,59 @@
 namespace lodestone::simplify {
 namespace {
 
-/// A pass that takes less than this share of what is wanted is worth trying harder.
+/// The share of the wanted triangles below which a pass counts as slow and the next one tries
+/// harder.
+/// Taste: a larger share tries harder sooner, with more error.
 constexpr double kSlow = 0.02;
+// The most slow passes to a target.
+// Taste: more reach more targets on strange meshes, in more time.
 constexpr int kMostSlowPasses = 64;
-/// Triangles a pass may look at for each one there is; ordinary meshes need 18 at most.
+/// The triangles that a pass may visit for each one of the mesh.
+/// Taste: ordinary meshes need 18 at most; less would end passes of hubs too early.
 constexpr size_t kWork = 40;
 
-/// Small passes choose with fresher costs, large ones take less time. (More than .35 ruins plates
-/// with holes, even as long as the target is far: all flat edges go in one pass, then round ones.)
+/// The limits of passes: small ones choose with fresher costs, large ones take less time. A share
+/// above 0.35 ruins plates with holes, even far from the target: all flat edges go in one pass,
+/// then round ones.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr PassLimits kFast{0.35, 2.0, 1.0 / 3, 6};
+// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr PassLimits kBest{0.12, 1.0, 0.5, 1};
-/// Far from the target, that is with so many times more triangles, a pass may cost more: triangles
-/// twice as large cost eight times as much, so all of it is little beside what is to come.
+/// From this many times the target's triangles on, a pass may take dearer edges: triangles twice as
+/// large cost eight times as much, so such costs are small beside those to come.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr double kFar = 4;
 double slack_far(double times, double most) {
     return std::clamp(std::pow(times / kFar, 1.5), 1.0, most);
 }
-/// A last pass for less than this share of the triangles is given so many times more candidates:
-/// the few it wants could all be impossible, and another pass asks every edge again.
+/// A last pass that wants less than this share of the triangles gets kRestReach times more
+/// candidates: the few it needs could all be impossible, and another pass prices every edge again.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr double kRest = 0.05;
+// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr double kRestReach = 4;
-/// Chunks go through their candidates at the same time, in so many rounds of steps of costs: that
-/// the dearest do not go in one chunk before cheaper ones in another. In one round, which spares
-/// memory going through all chunks again, where a pass is going to run out of candidates anyway:
-/// of each less than so many triangles go.
+/// The rounds of a pass. Chunks go through their candidates at the same time, in rounds of rising
+/// costs, so that the dearest edges of one chunk do not go before cheaper ones of another.
+/// Taste: more rounds keep the order of costs better and visit all chunks more often.
 constexpr size_t kRounds = 4;
+// One round is enough where less than this share of the candidates' triangles is wanted, because
+// the pass will run out of candidates.
+// Taste: a smaller share takes one round more often, and less time.
 constexpr double kGone = 0.8;
-/// A pass that takes less than this share of what it is to take was given too few candidates.
+/// A pass that removes less than this share of what it wants was given too few candidates.
+/// Taste: a larger share gives more candidates sooner, which are priced in vain.
 constexpr double kPoor = 0.35;
-/// Candidates that a chunk holds for each of its vertices, the cheapest: with all that are within
-/// the limit, where the surface is plain its chunks go before dearer ones do. Enough for any share
-/// as long as most of them can be collapsed; where they cannot, more.
+/// The candidates that a chunk holds for each of its vertices, the cheapest. If it held all within
+/// the limit, chunks with a plain surface would go before dearer ones do. kHeld is enough for any
+/// share as long as most candidates can be collapsed; kMostHeld is for where they cannot.
+/// Fitted: by tests/bench/bench_simplify.py, error and CPU of nine shared models (before: 2).
 constexpr double kHeld = 1.15;
+// Taste: more hold more memory and let plain chunks go first.
 constexpr double kMostHeld = 2;
-/// So many edges ahead memory is asked for what they need.
+/// How many edges ahead memory is asked for: for their lists, then for their triangles.
+/// Taste: more displace what is still needed, fewer come too late.
 constexpr size_t kLists = 12;
+// Taste: more displace what is still needed, fewer come too late.
 constexpr size_t kTriangles = 4;
 
 bool is_slow(size_t gone, size_t wanted) {
@@ -59,9 +77,9 @@ uint32_t step_of(const CollapseCandidate& candidate) {
     return candidate.key >> kKeyShift;
 }
 
-/// The steps of costs at which rounds end: as many candidates in each, as nearly as steps allow.
-/// Parts up to the limit count too: a round begins with the removal of those that are cheaper than
-/// all it has.
+/// The keys at which rounds end, so that each has the same number of candidates, as nearly as keys
+/// allow. Parts up to the limit count, too: a round begins by removing those that are cheaper than
+/// all its edges.
 std::vector<uint32_t> rounds_of(const std::vector<EdgeChunk>& chunks,
                                 const std::vector<CollapsePart>& removable, uint32_t limit,
                                 size_t want) {
@@ -116,8 +134,8 @@ public:
 
     void run(const Job& job) {
         const std::vector<EdgeChunk>& chunks = r_.edges_.chunks();
-        std::vector<size_t> next(chunks.size(), 0);  // candidate of each chunk
-        std::vector<size_t> last(chunks.size(), 0);  // that the round goes up to
+        std::vector<size_t> next(chunks.size(), 0);  // the next candidate of each chunk
+        std::vector<size_t> last(chunks.size(), 0);  // the end of the round in each chunk
         std::vector<std::vector<uint32_t>> left(chunks.size());
         std::vector<size_t> gone(chunks.size(), 0);
         uint32_t begin = 0;
@@ -160,7 +178,7 @@ public:
             next = last;
         }
         if (effort_ == CollapseEffort::Careful && gone_ == 0) {
-            // No edge within the limit can be collapsed: parts go before dearer ones do.
+            // No edge within the limit can be collapsed: parts go before dearer edges do.
             limit_ = kImpossible - 1;
             const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
             if (all.size() > 1)
@@ -200,8 +218,8 @@ private:
         return went;
     }
 
-    /// A chunk's candidates from `next` to `last` that can be judged by themselves, `most`
-    /// triangles at most; `left` gets the others.
+    /// Collapses the candidates of a chunk from `next` to `last` that can be judged by themselves,
+    /// until `most` triangles are removed; `left` gets the others.
     size_t within(const EdgeChunk& chunk, size_t next, size_t last, size_t most, size_t work,
                   std::vector<uint32_t>& left) {
         if (next == last)
@@ -235,7 +253,7 @@ private:
         return gone;
     }
 
-    /// What the chunks left, one after the other.
+    /// Collapses the candidates that the chunks left, one after the other.
     void across(const std::vector<EdgeChunk>& chunks,
                 const std::vector<std::vector<uint32_t>>& left, const Job& job) {
         for (size_t i = 0; i < chunks.size(); ++i) {
@@ -262,16 +280,16 @@ private:
 
     CollapseReducer& r_;
     CollapseEffort effort_;
-    uint32_t limit_;  // of parts: keys that none exceeds
+    uint32_t limit_;  // the key that no removed part exceeds
     size_t want_;
-    size_t work_;  // triangles it may look at
+    size_t work_;  // the triangles it may visit
     const std::vector<CollapsePart>& removable_;
     std::vector<uint8_t> doomed_;
     std::vector<size_t> taken_;
     EdgeCollapser whole_;
     size_t next_part_ = 0;
-    size_t gone_ = 0;       // triangles, with those of parts
-    size_t collapsed_ = 0;  // without
+    size_t gone_ = 0;       // removed triangles, those of parts included
+    size_t collapsed_ = 0;  // without those of parts
 };
 
 size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& job) {
@@ -317,7 +335,7 @@ size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& jo
         limit = std::min(
             limit, std::bit_cast<uint32_t>(static_cast<float>(slack) * std::bit_cast<float>(key)));
     }
-    // Edges with more than two triangles are the input's, to stay, or all of its closing.
+    // Edges with more than two triangles then either are the input's and stay, or may all be cut.
     if (effort >= CollapseEffort::Topology && !asked_) {
         asked_ = true;
         loops_ = !has_tunnels(mesh_, adjacency_);
@@ -327,7 +345,8 @@ size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& jo
     CollapseBatch(*this, effort, start, want, limit).run(job);
     if (effort >= CollapseEffort::Topology)
         cut_ = cut_tunnels(mesh_, loops_);
-    // Where most candidates cannot be collapsed, more of them: else each pass asks the same again.
+    // Where most candidates cannot be collapsed, more are taken: otherwise each pass prices the
+    // same ones again.
     const auto yield = static_cast<double>(start - mesh_.live) / static_cast<double>(want);
     reach_ = yield < kPoor ? 2 * reach_ : std::max(1.0, reach_ / 2);
     return before - mesh_.live;

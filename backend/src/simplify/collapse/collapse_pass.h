@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes: batches of independent collapses, cheapest first, until a target is met.
+// Collapse pass: batches of independent collapses, cheapest first, until a target is met.
 #pragma once
 
 #include "simplify/collapse/edge_collapse.h"
@@ -11,12 +11,12 @@
 
 namespace lodestone::simplify {
 
-/// How far one pass goes.
+/// The limits of one pass.
 struct PassLimits {
-    double share;       // of the live triangles it may take
+    double share;       // it may take at most this share of the live triangles
     double slack;       // a careful pass stops at this many times the cost
-    double quantile;    // that this many edges for each triangle wanted do not exceed
-    double most_slack;  // times that, far from the target
+    double quantile;    // that cost: of this many edges for each triangle wanted
+    double most_slack;  // far from the target, the slack may be this many times larger
 };
 
 class CollapseReducer {
@@ -25,14 +25,14 @@ public:
     CollapseReducer(CollapseMesh& mesh, const SimplifyOptions& options);
 
     /// Collapses until at most `target` triangles live. False when nothing more can be done.
-    /// `after_pass` is called after every pass. `adjacency` holds the mesh's lists, at first and,
-    /// as the mesh is compact again, at the end.
+    /// `after_pass` is called after every pass. `adjacency` holds the lists of the mesh at first
+    /// and, as the mesh is compact again, at the end.
     bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
                 Adjacency& adjacency);
 
 private:
     class CollapseBatch;
-    /// One batch; returns how many triangles went.
+    /// Makes one batch of collapses; returns how many triangles it removed.
     size_t pass(size_t target, CollapseEffort effort, const Job& job);
 
     CollapseMesh& mesh_;
@@ -42,12 +42,12 @@ private:
     EdgeQueue edges_;
     CollapseParts parts_;
     bool begun_ = false;
-    bool measured_ = false;  // parts, as they were before the first pass to a target
-    bool cut_ = false;       // parts may have become several
-    bool asked_ = false;     // whether loops of pinched edges may be cut
+    bool measured_ = false;  // the parts, as they were before the first pass to a target
+    bool cut_ = false;       // a part may have become several parts
+    bool asked_ = false;     // it is known whether loops of pinched edges may be cut
     bool loops_ = false;
-    double reach_ = 1;           // so many times more candidates
-    std::vector<uint8_t> used_;  // as an end in this pass, by vertex
+    double reach_ = 1;           // the number of candidates is multiplied by this
+    std::vector<uint8_t> used_;  // by vertex: it was an end in this pass
 };
 
 }  // namespace lodestone::simplify

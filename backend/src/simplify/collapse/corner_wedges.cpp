@@ -11,11 +11,14 @@
 namespace lodestone::simplify {
 namespace {
 
-/// A vertex of so many wedges has noise for normals: its corners just keep what they have.
+/// The most wedges around an edge; if there are more, the normals are noise and the corners keep
+/// what they have.
+/// Taste: more take time that grows with the square.
 constexpr size_t kMostWedges = 64;
 
-/// Nobody sees the difference, whatever light falls on them.
+/// Whether nobody sees the difference of two colors, whatever light falls on them.
 bool alike(const glm::vec4& a, const glm::vec4& b) {
+    // Law: a quarter of a step of an 8-bit picture.
     constexpr float kStep = 1.0f / 1024;
     return std::abs(a.x - b.x) <= kStep && std::abs(a.y - b.y) <= kStep &&
            std::abs(a.z - b.z) <= kStep && std::abs(a.w - b.w) <= kStep;
@@ -40,8 +43,8 @@ bool shows_faces(const CollapseMesh& mesh, const Mesh& source) {
     }
     if (judged == 0 || static_cast<double>(faces) < 0.98 * static_cast<double>(judged))
         return false;
-    // A finely tessellated smooth surface passes too, but there neighbors share normals: compare
-    // the triangles around each vertex with the first of them.
+    // A finely tessellated smooth surface comes this far, too, but its neighbors share normals:
+    // compare the triangles around each vertex with the first of them.
     std::vector<uint32_t> first(mesh.points.size(), kNone);
     size_t split = 0;
     size_t shared = 0;
@@ -68,7 +71,10 @@ void make_wedges(CollapseMesh& mesh, const Mesh& source) {
         mesh.wedges = {};
         return;
     }
-    constexpr int kMostCompared = 32;  // beyond, a wedge of its own: bounded time on any input
+    // The most wedges of a vertex that a corner is compared with; a corner beyond gets a wedge of
+    // its own.
+    // Taste: more join more wedges; the limit bounds the time on any input.
+    constexpr int kMostCompared = 32;
     std::vector<uint32_t> head(mesh.points.size(), kNone);
     std::vector<uint32_t> next;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -142,7 +148,7 @@ bool WedgeMerge::plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint
             }
             if (end == b || at_a == kNone || at_b == kNone)
                 continue;
-            // On the edge: both corners become one.
+            // The triangle is on the edge: both corners become one.
             const uint32_t to = members_[at_a].group;
             const uint32_t from = members_[at_b].group;
             if (to == from)

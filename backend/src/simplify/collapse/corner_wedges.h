@@ -1,37 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wedges: normals, texture coordinates and colors of corners, carried through collapses.
+// Corner wedges: the normals, texture coordinates and colors of corners, carried through collapses.
 #pragma once
 
 #include "simplify/collapse/adjacency.h"
 
 namespace lodestone::simplify {
 
-/// Makes the wedges of `mesh`, whose wedges hold the source's vertices: corners of one vertex whose
+/// Makes the wedges of `mesh`, which hold the source's vertices before: corners of one vertex whose
 /// attributes agree (normals within 1 degree) share a wedge.
 void make_wedges(CollapseMesh& mesh, const Mesh& source);
 
-/// True when (almost) every triangle shows its own face normal and neighbors differ: flat shading
+/// True when (almost) every triangle shows its own face normal and neighbors differ: flat shading,
 /// written as split normals. Such normals are made anew, not carried.
 bool shows_faces(const CollapseMesh& mesh, const Mesh& source);
 
-/// What one collapse does to the wedges around the edge's two ends.
+/// The changes that one collapse makes to the wedges around the two ends of an edge.
 class WedgeMerge {
 public:
-    /// Plans the collapse of a and b to `point`; call before anything is changed. Wedges joined by
-    /// a triangle on the edge become one; the new value is read off the old surface at the place
-    /// nearest to `point`. False: two wedges of one end would be joined, which smears a seam
+    /// Plans the collapse of a and b to `point`; must be called before anything is changed. Wedges
+    /// that a triangle on the edge joins become one; its value is taken from the old surface at the
+    /// place nearest to `point`. False: two wedges of one end would be joined, which smears a seam
     /// (`join_seams` keeps them apart and allows it).
     bool plan(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_t a, uint32_t b,
               const glm::dvec3& point, bool join_seams);
-    /// Writes the planned values and gives the corners at `kept` their wedges. `triangle` must be
-    /// one of those around a or b, `corner` the one at a or b.
+    /// Writes the planned values.
     void apply(CollapseMesh& mesh);
     uint32_t wedge_of(uint32_t old_wedge) const;
 
 private:
     struct WedgeMember {
         uint32_t wedge;
-        uint32_t group;  // index of the member that stands for it
+        uint32_t group;  // the index of the member that stands for it
         bool at_a;
     };
     struct WedgeValue {

@@ -9,12 +9,16 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Both ends together; larger hubs are left for the last effort.
+/// The most triangles around both ends together; larger hubs are left for the last effort.
+/// Taste: more take time that grows with the square.
 constexpr size_t kMostAround = 1000;
-/// Twice the area over the longest edge squared: thinner triangles are not made from fatter ones.
+/// Twice the area over the square of the longest edge: thinner triangles are not made from fatter
+/// ones.
+/// Taste: a larger number refuses more collapses and leaves fewer slivers.
 constexpr double kThin = 2e-3;
 
-/// A number of each of four triangles.
+/// The triangles whose numbers are computed at once.
+/// Law: four floats are a vector of 16 bytes, which every x86-64 processor has.
 constexpr size_t kEndsAtOnce = 4;
 using Lanes = float __attribute__((vector_size(4 * kEndsAtOnce)));
 
@@ -26,7 +30,7 @@ Lanes dot(const EndVectors& a, const EndVectors& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Differences are all that single precision is asked for.
+/// The differences, the only numbers that single precision is enough for.
 EndVectors between(const glm::dvec3* const (&ends)[kEndsAtOnce], const glm::dvec3& from) {
     using Two = double __attribute__((vector_size(16)));
     using TwoFloats = float __attribute__((vector_size(8)));
@@ -39,7 +43,7 @@ EndVectors between(const glm::dvec3* const (&ends)[kEndsAtOnce], const glm::dvec
     return {component(&glm::dvec3::x), component(&glm::dvec3::y), component(&glm::dvec3::z)};
 }
 
-/// Of four triangles that share a corner, the edges from there.
+/// The edges of four triangles from the corner that they share.
 struct CornerSpokes {
     EndVectors next, last;
     CornerSpokes(const glm::dvec3* const (&ends_next)[kEndsAtOnce],
@@ -52,7 +56,7 @@ struct CornerSpokes {
                 0.5f * (next.z * last.x - last.z * next.x),
                 0.5f * (next.x * last.y - last.x * next.y)};
     }
-    /// Of each triangle's longest edge.
+    /// The square of each triangle's longest edge.
     Lanes longest_square() const {
         const EndVectors across{last.x - next.x, last.y - next.y, last.z - next.z};
         const auto larger = [](const Lanes& a, const Lanes& b) { return a < b ? b : a; };
@@ -86,7 +90,7 @@ bool EdgeCollapser::find_corners(uint32_t vertex, uint32_t other, RingCorners& c
     for (const uint32_t t : around) {
         const Triangle& c = mesh_.triangles[t];
         const CornerEnds ends = ends_of(c, vertex);
-        // Written to both, counted in one: no branches here either.
+        // It is written to both and counted in one: here, too, there are no branches.
         const bool live = c.x != kNone;
         const bool shares = (ends.next == other) | (ends.last == other);
         to->triangle = on->triangle = t;
@@ -124,7 +128,7 @@ bool EdgeCollapser::link_allows(uint32_t a, uint32_t b, bool search) {
         count(corner.next == b ? corner.last : corner.next);
     if (!search && common != shared_.count)
         return false;
-    // A hub's coinciding triangles are left: finding them takes quadratic time.
+    // The coinciding triangles of a hub stay: finding them takes quadratic time.
     const bool hub = adjacency_.valence(a) + adjacency_.valence(b) > kMostAround;
     const bool left = around_a_.count + around_b_.count > 0;
     return left && (hub || !find_coinciding()) && common == shared_.count;
@@ -144,7 +148,7 @@ bool EdgeCollapser::turns_allow(const std::vector<glm::dvec3>& points, RingCorne
         }
         const CornerSpokes spokes(ends_next, ends_last, point);
         const EndVectors facets = spokes.facet();
-        // Not read: it lies where nothing else is needed from.
+        // It is computed again, because it lies where no other data are read.
         const CornerSpokes old_spokes(ends_next, ends_last, from);
         const EndVectors old_facets = old_spokes.facet();
         const Lanes squares = dot(facets, facets);
@@ -162,7 +166,7 @@ bool EdgeCollapser::turns_allow(const std::vector<glm::dvec3>& points, RingCorne
             if (dot > 0 && dot * dot >= square_cosine_ * square * old_square && 4 * square >= thin)
                 continue;
             const double old_longest = old_spokes.longest_square()[i];
-            // Where there was no area there is no side to keep.
+            // A triangle without area had no side to keep.
             if (old_square <= 1e-20 * old_longest * old_longest)
                 continue;
             if (square <= 1e-20 * longest * longest)
@@ -186,7 +190,7 @@ bool EdgeCollapser::all_turns_allow(uint32_t a, uint32_t b, const glm::dvec3& po
         if (!both(mesh_.others[i].points, others_[i]))
             return false;
     }
-    return both(mesh_.points, point);  // last: its area vectors are kept
+    return both(mesh_.points, point);  // last, because its area vectors are kept
 }
 
 bool EdgeCollapser::find_coinciding() {
@@ -199,7 +203,8 @@ bool EdgeCollapser::find_coinciding() {
             if (!other.on(corner.next) || !other.on(corner.last) ||
                 std::find(doomed_.begin(), doomed_.end(), other.triangle) != doomed_.end())
                 continue;
-            // Of one side both stay: their edges have four triangles then, as pinches do.
+            // Triangles of one side both stay: their edges then have four triangles, as pinches
+            // have.
             if (other.next != corner.last && effort_ == CollapseEffort::Topology)
                 continue;
             doomed_.push_back(corner.triangle);
@@ -220,7 +225,7 @@ size_t EdgeCollapser::collapse(const CollapseCandidate& edge) {
         return 0;
     if (!find_corners(a, b, around_a_, shared_) || !find_corners(b, a, around_b_, shared_b_))
         return kOutside;
-    // An earlier collapse of this pass took the edge's triangles: it is none any more.
+    // An earlier collapse of this pass took the edge's triangles: it is no edge any more.
     if (shared_.count == 0)
         return 0;
     doomed_.clear();
@@ -253,7 +258,7 @@ size_t EdgeCollapser::collapse(const CollapseCandidate& edge) {
         for (const RingCorner& corner : *corners) {
             const uint32_t t = corner.triangle;
             Triangle& ends = mesh_.triangles[t];
-            if (ends.x == kNone)  // doomed
+            if (ends.x == kNone)  // it is doomed
                 continue;
             (&ends.x)[corner.at] = a;
             if (carried) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled for AVX2, and called only where there is that.
+// Edge costs for AVX2: compiled for it, and called only where the processor has it.
 #ifdef LODESTONE_AVX2
 #define LODESTONE_LANES 8
 #include "simplify/collapse/edge_costs_lanes.h"

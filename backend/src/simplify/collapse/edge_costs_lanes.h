@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edge costs in vectors of LODESTONE_LANES numbers; for edge_costs*.cpp alone. Everything in here
-// is each one's own: what is compiled for other processors must not be shared.
+// Edge cost lanes: edge costs in vectors of LODESTONE_LANES numbers; for edge_costs*.cpp alone.
+// Each of these has functions of its own: code that is compiled for other processors must not be
+// shared.
 #pragma once
 
 #include "geometry/quadric.h"
@@ -41,14 +42,14 @@ struct QuadraticForm {
         return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                 xz * v.x + yz * v.y + zz * v.z};
     }
-    /// v^T M v, which rounding does not make negative.
+    /// The value v^T M v, which rounding does not make negative.
     Lanes of(const LaneVector& v) const {
         const Lanes value = dot(v, *this * v);
         return value > kZero ? value : kZero;
     }
 };
 
-/// L D L^T.
+/// The factors L and D of the decomposition L D L^T.
 struct LdlFactors {
     Lanes l10, l20, l21, d0, d1, d2;
     explicit LdlFactors(const QuadraticForm& m) {
@@ -70,8 +71,9 @@ struct LdlFactors {
     }
 };
 
-/// Numbers of a vertex, of two, and of an edge.
+/// The numbers of a vertex, and of an edge with its two vertices.
 inline constexpr size_t kOfVertex = sizeof(VertexAround) / sizeof(float);
+/// Law: two vertices, three numbers of `shared`, one of `held`.
 inline constexpr size_t kColumns = 2 * kOfVertex + 4;
 static_assert(kOfVertex % 4 == 0 && sizeof(VertexAround) == kOfVertex * sizeof(float));
 static_assert(offsetof(EdgeInput, held) == offsetof(EdgeInput, shared) + 3 * sizeof(float));
@@ -79,7 +81,7 @@ static_assert(EdgeBlock::kSize % kLanes == 0);
 
 using Four = float __attribute__((vector_size(16)));
 
-/// Four numbers of an edge from number k on.
+/// The four numbers of an edge from number k on.
 inline Four four_of(const EdgeInput& edge, size_t k) {
     const float* from = k < kOfVertex       ? &edge.a->point.x + k
                         : k < 2 * kOfVertex ? &edge.b->point.x + (k - kOfVertex)
@@ -89,7 +91,8 @@ inline Four four_of(const EdgeInput& edge, size_t k) {
     return four;
 }
 
-/// Rows of edges to columns, four numbers at a time: of vectors of eight each half is four edges.
+/// Turns rows of edges into columns, four numbers at a time: in vectors of eight, each half holds
+/// four edges.
 inline void transpose(const EdgeInput* rows, Lanes (&columns)[kColumns]) {
     for (size_t k = 0; k < kColumns; k += 4) {
         Lanes row[4];
@@ -123,7 +126,7 @@ inline void transpose(const EdgeInput* rows, Lanes (&columns)[kColumns]) {
     }
 }
 
-/// Here a, there b.
+/// Takes a where the mask is true, else b.
 template <typename Mask>
 inline LaneVector choose(const Mask& mask, const LaneVector& a, const LaneVector& b) {
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};

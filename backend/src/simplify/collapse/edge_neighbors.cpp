@@ -18,8 +18,8 @@ std::span<const VertexNeighbors::NeighborEdge> VertexNeighbors::find(const Colla
     return found_;
 }
 
-/// In the order in which find_any() finds them. False, and nothing done, where an edge on its
-/// border has another triangle.
+/// Finds the edges in the order in which find_any() does. False, and nothing done, where an edge on
+/// its border has another triangle.
 bool VertexNeighbors::find_in_open_fan(std::span<const uint32_t> ring) {
     const auto count = static_cast<uint32_t>(ring.size());
     uint32_t after[kMost]{};
@@ -47,13 +47,15 @@ bool VertexNeighbors::find_in_open_fan(std::span<const uint32_t> ring) {
 
 void VertexNeighbors::find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring,
                                uint32_t vertex) {
+    // The most triangles whose neighbors are searched one by one.
+    // Taste: sorting is faster for larger hubs only.
     constexpr size_t kFew = 64;
     const size_t end = 2 * ring.size();
     const auto other_end = [&](size_t i) {
         const Triangle& corners = mesh.triangles[ring[i / 2]];
         return corners[(corner_of(corners, vertex) + 1 + static_cast<int>(i & 1u)) % 3];
     };
-    // (neighbor, index of its use): hubs are sorted, all others searched.
+    // Pairs (neighbor, index of its use): those of hubs are sorted, all others searched.
     uses_.clear();
     if (end > kFew) {
         for (size_t i = 0; i < end; ++i)

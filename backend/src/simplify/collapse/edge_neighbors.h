@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbors: what edges a vertex has, and which triangles are on them.
+// Edge neighbors: the edges of a vertex, and the triangles on them.
 #pragma once
 
 #include "simplify/collapse/collapse_mesh.h"
@@ -12,33 +12,34 @@
 
 namespace lodestone::simplify {
 
-/// The corner of a triangle that is `vertex`.
+/// The corner of a triangle at which `vertex` lies.
 inline int corner_of(const Triangle& t, uint32_t vertex) {
     return t.x == vertex ? 0 : (t.y == vertex ? 1 : 2);
 }
 
-/// What comes after the corner of a triangle that is `vertex`: the corner next, and the last one.
-/// No branches: which corner it is nobody can predict.
+/// The corners of a triangle that follow the one at `vertex`: the next and the last. There are no
+/// branches, because nobody can predict which corner it is.
 struct CornerEnds {
     uint32_t at, next, last;
 };
 inline CornerEnds ends_of(const Triangle& t, uint32_t vertex) {
     const uint32_t* corners = &t.x;
     const uint32_t at = static_cast<uint32_t>(t.y == vertex) + 2 * uint32_t{t.z == vertex};
-    // Of the corners 0, 1, 2 the next are 1, 2, 0 and the last 2, 0, 1: two bits each.
+    // The next corners of 0, 1, 2 are 1, 2, 0 and the last ones 2, 0, 1: two bits each.
     return {at, corners[0x09u >> 2 * at & 3u], corners[0x12u >> 2 * at & 3u]};
 }
 
-/// The neighbors of one vertex after the other, and the triangles they share with it.
+/// Finds the neighbors of one vertex after the other, and the triangles they share with it.
 class VertexNeighbors {
 public:
     struct NeighborEdge {
         uint32_t vertex, uses, t0, t1;  // the first two triangles on it
-        bool leaving0, leaving1;        // the triangle runs vertex -> neighbor
+        bool leaving0, leaving1;        // the triangle runs from the vertex to the neighbor
     };
 
-    /// Of its triangles around a vertex, all turned alike. Closed: one fan or several, each around
-    /// the whole vertex. Open: one that begins and ends on a border. Those are the usual cases.
+    /// The fan of triangles around a vertex, if all are turned alike. Closed: one fan or several,
+    /// each around the whole vertex. Open: one that begins and ends on a border. These are the
+    /// usual cases.
     enum class FanKind : uint8_t { None, Closed, Open };
     FanKind find_fan(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex) {
         const auto count = static_cast<uint32_t>(ring.size());
@@ -77,15 +78,15 @@ public:
         return FanKind::Open;
     }
 
-    /// After find_fan() has found one: puts the ring in order, so that corner next of each triangle
-    /// is the last one of that before it; a closed one begins anywhere. False, and nothing done,
-    /// for several fans.
+    /// After find_fan() has found a fan: orders the ring so that the corner `next` of each triangle
+    /// is the corner `last` of the one before it; a closed fan begins anywhere. False, and nothing
+    /// done, for several fans.
     bool order(std::span<uint32_t> ring) const {
         const auto count = static_cast<uint32_t>(ring.size());
         uint32_t ordered[kMost];
         uint32_t at = end_;
         for (uint32_t i = count; i-- > 0; at = before_[at]) {
-            // Back at the start of a closed one, or at that of an open one, too early.
+            // The start of a closed fan is reached, or that of an open one, too early.
             if (at == begin_ && (open_ ? i > 0 : i + 1 < count))
                 return false;
             ordered[i] = ring[at];
@@ -94,7 +95,8 @@ public:
         return true;
     }
 
-    /// After find_fan() has found one: it is no several fans. `count`: triangles of the ring.
+    /// After find_fan() has found a fan: whether it is only one. `count`: the triangles of the
+    /// ring.
     bool is_one(size_t count) const {
         uint32_t at = end_;
         for (size_t i = 1; i < count; ++i) {
@@ -107,21 +109,24 @@ public:
         return true;
     }
 
-    /// Of an open fan: the neighbors across its two borders, by the triangles on them.
+    /// The neighbors across the two borders of an open fan, by the triangles on them.
     uint32_t first_corner() const { return to_[begin_]; }
     uint32_t last_corner() const { return from_[end_]; }
 
-    /// Of any vertex; `fan`: as find_fan() has just found.
+    /// The neighbors of any vertex; `fan`: the result of find_fan() for it.
     std::span<const NeighborEdge> find(const CollapseMesh& mesh, std::span<const uint32_t> ring,
                                        uint32_t vertex, FanKind fan);
 
 private:
+    /// The most triangles of a fan.
+    /// Taste: a larger number finds more fans and makes every vertex slower.
     static constexpr uint32_t kMost = 16;
 
     bool find_in_open_fan(std::span<const uint32_t> ring);
     void find_any(const CollapseMesh& mesh, std::span<const uint32_t> ring, uint32_t vertex);
 
-    // Where in the fan a neighbor is, by its lowest bits.
+    // The place of a neighbor in the fan, by the lowest bits of its number.
+    // Taste: more slots mix up fewer neighbors and take more of the cache.
     static constexpr uint32_t kSlots = 1024;
     uint8_t slots_[kSlots] = {};
     uint32_t to_[kMost] = {};

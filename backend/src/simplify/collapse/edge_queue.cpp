@@ -15,19 +15,24 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Of open borders, relative to those of paint: the surface ends there, and that is all one sees.
-/// (Held as much as paint they keep triangles that the surface beside them needs more: measured, on
-/// leaves, a car body and terrain.)
+/// The weight of open borders, relative to that of paint: the surface ends there, and only that is
+/// seen. With the same weight they keep triangles that the surface beside them needs more (leaves,
+/// a car body, terrain).
+/// Fitted: by tests/bench/bench_simplify.py, silhouette and mean error of nine shared models.
 constexpr double kOpen = 0.15;
 
-/// Edges that are held count as at least this share of the square of a typical one: the tip of an
-/// outline is as far away however short it is. Up to so many times what they are.
+/// Edges that are held count as at least this share of the square of a typical edge, but at most
+/// kMostRaised times what they are: the tip of an outline is as far away however short its edges
+/// are.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr double kLeastSquare = 0.3;
+// Taste: a larger number holds specks, too.
 constexpr double kMostRaised = 1e4;
-/// Triangles between those that tell how long edges are.
+/// How many triangles apart are those whose area tells how long edges are.
+/// Taste: fewer triangles tell it less exactly, in less time.
 constexpr size_t kMeasured = 16;
 
-/// Of the length of edges, were all triangles equilateral.
+/// The mean square of the length of edges, as if all triangles were equilateral.
 double typical_square(const CollapseMesh& mesh) {
     double sum = 0;
     size_t count = 0;
@@ -36,8 +41,8 @@ double typical_square(const CollapseMesh& mesh) {
     return count > 0 ? 4 / std::sqrt(3.0) * sum / static_cast<double>(count) : 0;
 }
 
-/// A plane through the edge, upright on the triangle: moving across it costs, along it does not.
-/// `least` is added to the edge's square.
+/// Adds a plane through the edge, upright on the triangle: moving across it costs, along it does
+/// not. `least` is added to the edge's square.
 void hold_edge(geometry::Quadric& quadric, const glm::dvec3& edge, const glm::dvec3& facet,
                double weight, double least) {
     const double square = glm::dot(edge, edge);
@@ -51,19 +56,19 @@ void hold_edge(geometry::Quadric& quadric, const glm::dvec3& edge, const glm::dv
         quadric.add(normal, weight / (area * area));
         return;
     }
-    // No area, no plane: hold it in both directions across.
+    // A triangle without area gives no plane: hold the edge in both directions across it.
     quadric.xx += weight * square;
     quadric.yy += weight * square;
     quadric.zz += weight * square;
     quadric.add(edge, -weight);
 }
 
-/// By how much the colors on both sides of an edge miss being one linear ramp, where the nearer of
-/// the two opposite corners is: 0 inside a smooth ramp, up to 1 where paint ends. As a picture
-/// encodes colors, roughly.
+/// How far the colors on both sides of an edge are from one linear ramp, at the nearer of the two
+/// opposite corners: 0 inside a smooth ramp, up to 1 where paint ends. The colors are compared
+/// roughly as a picture encodes them.
 double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& w0,
                   const Triangle& t1, const Triangle& w1, uint32_t a, uint32_t b) {
-    bool one = true;  // color: no kink
+    bool one = true;  // in color: no kink
     for (int corner = 0; corner < 3; ++corner)
         one = one && mesh.colors[w0[corner]] == mesh.colors[w0.x] &&
               mesh.colors[w1[corner]] == mesh.colors[w0.x];
@@ -114,12 +119,12 @@ void add(VertexAround& around, const geometry::Quadric& q) {
 
 using Lanes = float __attribute__((vector_size(16)));
 
-/// Of a vertex at `point`, as the planes of its triangles have it.
+/// The surroundings of a vertex at `point`, from the planes of its triangles.
 VertexAround around_of(const glm::dvec3& point, const std::vector<glm::vec3>& facets,
                        std::span<const uint32_t> ring) {
     Lanes sum{};
-    Lanes squares{};   // xx, yy, zz
-    Lanes products{};  // xy, yz, zx
+    Lanes squares{};   // the sums xx, yy, zz
+    Lanes products{};  // the sums xy, yz, zx
     for (const uint32_t t : ring) {
         const glm::vec3& facet = facets[t];
         const float square = facet.x * facet.x + facet.y * facet.y + facet.z * facet.z;
@@ -136,12 +141,18 @@ VertexAround around_of(const glm::dvec3& point, const std::vector<glm::vec3>& fa
             products[1],      squares[2]};
 }
 
+// The vertices of a chunk.
+// Taste: larger chunks leave fewer edges between them and share the work less evenly.
 constexpr uint32_t kChunk = 8192;
-/// Vertices whose edges are asked what they cost before all are.
+/// The vertices whose edges are priced before all are, to find the cost that a pass goes up to.
+/// Taste: more find it more exactly, in more time.
 constexpr uint32_t kSampled = 512;
-constexpr uint32_t kRun = 8;  // of them in a row
+// How many of these follow each other.
+// Taste: longer runs read memory better and sample the mesh worse.
+constexpr uint32_t kRun = 8;
 
-/// The bits by which candidates are ordered, and how many values these have.
+/// The number of values of the bits by which candidates are ordered.
+/// Law: one more than the largest key, shifted.
 constexpr size_t kSteps = (kImpossible >> kKeyShift) + 1;
 
 }  // namespace
@@ -205,6 +216,7 @@ void EdgeQueue::visit(const CollapseMesh& mesh, Adjacency& adjacency,
                 weight = options.seam_weight;
         }
         if (two && !mesh.colors.empty() && weight < options.boundary_weight) {
+            // Taste: a smaller kink holds more shades and spends triangles on them.
             constexpr double kLeastKink = 0.1;
             const double kink =
                 color_kink(mesh, mesh.triangles[n.t0], mesh.wedges[n.t0], mesh.triangles[n.t1],
@@ -267,7 +279,7 @@ void EdgeQueue::clear() {
     kinds_ = {};
 }
 
-/// What edges cost, a block of them at a time.
+/// Computes the costs of edges, a block of them at a time.
 class EdgeQueue::EdgePricing {
 public:
     EdgePricing(const EdgeQueue& edges, const CollapseMesh& mesh, const Adjacency& adjacency,
@@ -293,8 +305,8 @@ public:
             }
             return;
         }
-        // Fans have fewer triangles than there is room for edges: all of them find some. What they
-        // are priced by is only asked for: it has come when a block of edges is full.
+        // Fans have fewer triangles than there is room for edges, so all their edges find room. The
+        // data for their costs are only asked for: they have come when a block of edges is full.
         uint32_t before = curve ? kNone : ring.back();
         uint32_t last = 0;
         for (const uint32_t t : ring) {
@@ -329,11 +341,12 @@ public:
     }
 
 private:
+    // Taste: more displace what is still needed; with fewer, memory comes too late.
     static constexpr size_t kWaiting = 2 * EdgeBlock::kSize;
     struct PendingEdge {
         uint32_t a, b, t0, t1;
     };
-    /// t1: kNone where it is not shared by exactly two triangles.
+    /// `t1`: kNone where the edge is not shared by exactly two triangles.
     template <typename Take>
     void price(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1, const Take& take) {
         if (!edges_.allowed(a, b, t1 == kNone, effort_))
@@ -436,7 +449,8 @@ bool EdgeQueue::allowed(uint32_t a, uint32_t b, bool border, CollapseEffort effo
         return true;
     if (kinds_[a] == VertexKind::Fixed && kinds_[b] == VertexKind::Fixed)
         return false;
-    // An inner edge between two border points: collapsing it would pinch the surface.
+    // An inner edge between two border points is not allowed: collapsing it would pinch the
+    // surface.
     return border || kinds_[a] <= VertexKind::Free || kinds_[b] <= VertexKind::Free;
 }
 

@@ -22,7 +22,7 @@ void CollapseParts::measure(const CollapseMesh& mesh, double weight) {
             continue;
         const Triangle& t = mesh.triangles[i];
         PartMoments& sum = sums[mesh.parts[t.x]];
-        // Moments about a vertex of the part: small parts far out lose no digits.
+        // Moments are about a vertex of the part: small parts far out lose no digits.
         if (sum.triangles++ == 0)
             sum.origin = mesh.points[t.x];
         const double area = glm::length(glm::dvec3(mesh.facets[i]));
@@ -35,7 +35,7 @@ void CollapseParts::measure(const CollapseMesh& mesh, double weight) {
             squares += glm::dot(arm, arm);
         }
         sum.first += area * middle;
-        // Triangle: 1/12 at each vertex, 3/4 at the centroid.
+        // The second moment of a triangle: 1/12 of its area at each vertex, 3/4 at the centroid.
         sum.second += area * (squares / 12 + 0.75 * glm::dot(middle, middle));
     }
     for (uint32_t part = 0; part < sums.size(); ++part) {

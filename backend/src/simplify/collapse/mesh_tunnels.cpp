@@ -15,54 +15,57 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Fans within fans, and rows of edges: each round takes the innermost, or the ends.
+/// The rounds for fans within fans, and for rows of edges: each takes the innermost, or the ends.
+/// Taste: more cut deeper nests, which are rare.
 constexpr int kMostNested = 8;
+// Taste: more cut longer rows of edges in one call.
 constexpr int kMostSweeps = 16;
-/// So much of the way to the middle of its fan a copy moves, that it is at a place of its own.
+/// How far a copy moves towards the middle of its fan, so that it has a position of its own.
+/// Taste: a larger share is farther from the surface; a smaller one may be lost in rounding.
 constexpr double kApart = 1.0 / 64;
 
 /// The fans around one vertex.
 class PinchCutter {
 public:
     explicit PinchCutter(CollapseMesh& mesh) : mesh_(mesh) {}
-    /// Gives all fans that close but one vertices of their own; with `loops` then those that close
-    /// where the four triangles of an edge are taken as two pairs. False: there were none.
+    /// Gives all fans that close, except one, vertices of their own; with `loops` then those that
+    /// close where the four triangles of an edge are taken as two pairs. False: there were none.
     bool cut(uint32_t vertex, std::span<const uint32_t> ring, bool loops);
 
 private:
     /// A side of a triangle at the vertex.
     struct FanSide {
         uint32_t neighbor;
-        uint32_t at;  // in the ring
+        uint32_t at;  // the triangle's index in the ring
         bool leaving;
     };
-    /// What is not shared by two triangles, where a fan ends.
+    /// The sides that are not shared by two triangles, where a fan ends.
     struct FanEnds {
         uint32_t count = 0;
         uint32_t neighbor = kNone;
         uint32_t leaving = 0;
-        bool split = false;  // ends at two edges that others end at, too
+        bool split = false;  // it ends at two edges where other fans end, too
         bool closes() const { return !split && (count == 0 || (count == 2 && leaving == 1)); }
     };
     void find_fans(uint32_t vertex, bool pairs);
-    /// Two triangles of each side: a pair each with the solid between them.
+    /// Makes two triangles of each side a pair with the solid between them.
     bool makes_pairs(size_t begin, size_t end) const;
     void join_pairs(uint32_t vertex, size_t begin);
     uint32_t copy(uint32_t vertex);
-    /// fan_ from a vertex to its copy.
+    /// Moves the triangles in fan_ from a vertex to its copy.
     void give(uint32_t vertex, uint32_t to);
     uint32_t copy_wedge(uint32_t wedge, uint32_t to);
-    /// Moves the copy that fan_ has, unless a triangle would turn over.
+    /// Moves the copy that has the triangles in fan_, unless a triangle would turn over.
     void set_apart(uint32_t fresh);
 
     CollapseMesh& mesh_;
-    std::vector<uint32_t> ring_;     // of the vertex, what is left of it
+    std::vector<uint32_t> ring_;     // the triangles around the vertex that are left
     std::vector<uint32_t> parents_;  // fans, as sets of the ring's triangles
     std::vector<FanSide> sides_;
     std::vector<FanEnds> ends_;                                 // by root
-    std::vector<std::pair<uint32_t, uint32_t>> by_fan_;         // root and triangle
-    std::vector<uint32_t> fan_;                                 // triangles of one
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> wedges_;  // by copy and the one it had
+    std::vector<std::pair<uint32_t, uint32_t>> by_fan_;         // pairs (root, triangle)
+    std::vector<uint32_t> fan_;                                 // the triangles of one fan
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> wedges_;  // by copy and the wedge it had
 };
 
 void PinchCutter::find_fans(uint32_t vertex, bool pairs) {
@@ -123,7 +126,7 @@ void PinchCutter::join_pairs(uint32_t vertex, size_t begin) {
         const FanSide& side = sides_[i];
         const Triangle& t = mesh_.triangles[ring_[side.at]];
         const uint32_t third = t.x ^ t.y ^ t.z ^ vertex ^ side.neighbor;
-        // Turned away from the edge; with y it is as long as with x times the edge's length.
+        // It points away from the edge; with y it is as long as with x times the edge's length.
         const glm::dvec3 y = glm::cross(along, mesh_.points[third] - from);
         if (i == begin)
             x = y;
@@ -132,7 +135,7 @@ void PinchCutter::join_pairs(uint32_t vertex, size_t begin) {
         angles[side.leaving][n] =
             std::atan2(glm::dot(glm::cross(x, y), along), glm::dot(x, y) * glm::length(along));
     }
-    // From a triangle that leaves to one that arrives, through the solid.
+    // The angle from a triangle that leaves to one that arrives, through the solid.
     const auto solid = [&](size_t leaving, size_t arriving) {
         const double angle = angles[1][leaving] - angles[0][arriving];
         return angle < 0 ? angle + 2 * std::numbers::pi : angle;
@@ -214,7 +217,7 @@ bool PinchCutter::cut(uint32_t vertex, std::span<const uint32_t> ring, bool loop
         for (uint32_t i = 0; i < ring_.size(); ++i)
             by_fan_.emplace_back(root_of(parents_, i), ring_[i]);
         std::sort(by_fan_.begin(), by_fan_.end());
-        // One keeps the vertex: the first that does not close, else the first.
+        // One fan keeps the vertex: the first that does not close, else the first.
         uint32_t keeps = 0;
         while (keeps < ring_.size() && (parents_[keeps] != keeps || ends_[keeps].closes()))
             ++keeps;

@@ -6,12 +6,13 @@
 
 namespace lodestone::simplify {
 
-/// A tunnel three edges around ends, when one of these is collapsed, as an edge with four
-/// triangles: two fans around each of its ends that share it. Each fan gets a vertex of its own,
-/// which cuts the tunnel there and caps both stumps by nothing. So do fans that share no edge.
-/// Edges with four triangles whose fans run on from one such edge to another (walls that cross,
-/// loops around a closed tunnel) stay, unless `loops`: then solids that touch there part. False:
-/// there was nothing to cut. Otherwise a part may have become several.
+/// Cuts tunnels. When an edge of a tunnel three edges around is collapsed, the tunnel ends as an
+/// edge with four triangles, and around each of its ends two fans share this edge. Each fan gets a
+/// vertex of its own, which cuts the tunnel there and needs no cap on either stump. Fans that share
+/// no edge get vertices of their own, too. Edges with four triangles whose fans continue from one
+/// such edge to another (walls that cross, loops around a closed tunnel) stay, unless `loops`: then
+/// solids that touch there are separated. False: there was nothing to cut. True: a part may have
+/// become several.
 bool cut_tunnels(CollapseMesh& mesh, bool loops);
 
 /// Whether any edge has more than two triangles.

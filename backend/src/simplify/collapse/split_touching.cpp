@@ -29,11 +29,14 @@ Triangle sorted(Triangle t) {
 
 void split_layers(CollapseMesh& mesh) {
     const size_t count = mesh.triangles.size();
+    // The most triangles of a vertex that are compared one by one.
+    // Taste: sorting is faster for larger hubs only.
     constexpr size_t kFew = 32;
     std::unordered_map<uint64_t, uint32_t> moved;
-    std::vector<std::pair<Triangle, uint32_t>> keys;    // of the triangles of one lowest vertex
-    std::vector<std::pair<uint32_t, uint32_t>> copies;  // of them: triangle and the first like it
-    std::unordered_map<uint32_t, uint32_t> layers;      // so far, by the first
+    std::vector<std::pair<Triangle, uint32_t>> keys;  // the triangles of one lowest vertex
+    // Those of them that coincide: a triangle and the first like it.
+    std::vector<std::pair<uint32_t, uint32_t>> copies;
+    std::unordered_map<uint32_t, uint32_t> layers;  // the layers so far, by the first triangle
     for (size_t begin = 0, end = 0; begin < count; begin = end) {
         keys.clear();
         for (; end < count; ++end) {
@@ -87,8 +90,10 @@ void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
     std::vector<uint32_t> parents;
     std::vector<uint32_t> copy_of_root;
     const auto vertices = static_cast<uint32_t>(mesh.points.size());
-    // One fan, all turned alike: nothing to split. Most vertices are that, and splitting others
-    // does not change it.
+    // A vertex with one fan, all turned alike, needs no split. Most vertices have one, and
+    // splitting others does not change it.
+    // Vertices that one thread computes at a time.
+    // Taste: larger chunks share the work less evenly.
     constexpr uint32_t kChunk = 8192;
     std::vector<uint8_t> whole(vertices, 0);
     parallel_for((vertices + kChunk - 1) / kChunk, [&](size_t chunk) {
@@ -111,7 +116,8 @@ void split_fans(CollapseMesh& mesh, Adjacency& adjacency) {
         seen.clear();
         for (uint32_t i = 0; i < ring.size(); ++i) {
             for (int corner = 0; corner < 3; ++corner) {
-                // Copies made of other vertices lie past `vertices`; fans keep them apart already.
+                // Copies made of other vertices have numbers from `vertices` on; fans keep them
+                // apart already.
                 const uint32_t u = mesh.triangles[ring[i]][corner];
                 if (u == v)
                     continue;
@@ -168,7 +174,7 @@ void find_parts(CollapseMesh& mesh) {
         join(parents, t.x, t.y);
         join(parents, t.y, t.z);
     }
-    // A root is the lowest vertex of its part, so its number is known before it is asked for.
+    // A root is the lowest vertex of its part, so its number is known before it is needed.
     mesh.part_count = 0;
     std::vector<uint32_t> numbers(parents.size());
     for (uint32_t v = 0; v < parents.size(); ++v) {

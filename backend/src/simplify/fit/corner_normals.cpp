@@ -17,19 +17,31 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Of the original's triangles, for each of the mesh; and their share at most.
+/// The original's triangles that are sampled, for each triangle of the mesh.
+/// Taste: more tell the shading of small triangles better, in more time.
 constexpr double kSourcesEach = 4;
+// The largest share of them.
+// Taste: a larger one takes more time with levels near the original.
 constexpr double kMostSources = 0.5;
+// The fewest of them.
+// Taste: fewer do not tell the shading of coarse levels.
 constexpr size_t kLeastSources = 1000;
-/// On a triangle: fewer do not tell its shading.
+/// The fewest samples on a triangle.
+/// Taste: fewer do not tell its shading.
 constexpr size_t kSamplesToShade = 4;
-/// Mean square difference of normals above which a triangle is shaded anew (6 degrees), and the
-/// part of it that may then be left: noise of a scan is in both.
+/// The mean square difference of normals above which a triangle is shaded anew, and the part of it
+/// that may then be left: noise of a scan is in both.
+/// Taste: 0.01 is 6 degrees, which an eye sees on a flat face.
 constexpr float kLeastOff = 0.01f;
+// Taste: a larger part shades more triangles anew for little.
 constexpr float kLeft = 0.25f;
-/// Cosines: corners at one vertex that share a normal (26 degrees), and wedges that always did.
+/// The cosines of corners at one vertex that share a normal, and of wedges that always did.
+/// Taste: 0.9 is 26 degrees; a larger cosine keeps more creases and more normals.
 constexpr float kAlike = 0.9f;
+// Law: wedges agree within 1 degree (see make_wedges), and its cosine is 0.99985.
 constexpr float kOneWedge = 0.99985f;
+// Triangles that one thread computes at a time.
+// Taste: larger chunks share the work less evenly.
 constexpr size_t kTrianglesAtOnce = 2048;
 
 bool shaded(const glm::vec3& normal) {
@@ -44,8 +56,8 @@ glm::vec3 normal_at(const Mesh& source, const FitSample& sample) {
     return length > 1e-6f && std::isfinite(length) ? sum / length : glm::vec3(0.0f);
 }
 
-/// The linear function over one triangle that is nearest to the normals of samples on it, drawn to
-/// their mean by as much as one of them weighs.
+/// The linear function over one triangle that is nearest to the normals of its samples. Their mean
+/// counts like one more sample.
 class TriangleShading {
 public:
     void add(const FitSample& sample, const glm::vec3& normal) {
@@ -58,7 +70,7 @@ public:
         ++count_;
     }
     size_t count() const { return count_; }
-    /// Of the three corners; false when samples cancel out.
+    /// Computes the normals of the three corners; false when samples cancel out.
     bool solve(glm::vec3* corners) const {
         const glm::vec3 mean = (sums_[0] + sums_[1] + sums_[2]) / area_;
         const float pull = area_ / static_cast<float>(count_);
@@ -82,7 +94,7 @@ private:
     size_t count_ = 0;
 };
 
-/// Mean square difference between the normals of samples and those blended from the corners'.
+/// The mean square difference between the normals of samples and those blended from the corners'.
 float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const PlacedSample> on,
              const Mesh& source) {
     float sum = 0;
@@ -100,7 +112,7 @@ float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<cons
     return area > 0 ? sum / area : 0;
 }
 
-/// Into `corners`; leaves them where the wedges' normals do.
+/// Writes new normals into `corners`, unless the normals of the wedges are good enough.
 bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
                 std::span<const PlacedSample> on, const Mesh& source, glm::vec3* corners) {
     if (on.size() < kSamplesToShade)
@@ -126,7 +138,7 @@ bool shade_anew(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& s
     return true;
 }
 
-/// Corners at `vertex` that come out alike, of wedges that were, get their mean.
+/// Gives corners at `vertex` that come out alike, of wedges that were alike, their mean.
 void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_t vertex,
                    std::vector<glm::vec3>& normals) {
     struct SharedNormal {
@@ -135,7 +147,7 @@ void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_
         glm::vec3 sum;
     };
     std::vector<SharedNormal> found;
-    std::vector<std::pair<uint32_t, uint32_t>> members;  // corner, index in found
+    std::vector<std::pair<uint32_t, uint32_t>> members;  // corner, index in `found`
     for (const uint32_t t : adjacency.around(vertex)) {
         for (uint32_t corner = 0; corner < 3; ++corner) {
             const uint32_t at = 3 * t + corner;

@@ -9,14 +9,26 @@
 namespace lodestone::simplify {
 namespace {
 
+// The most steps downhill from a vertex of the original to the mesh.
+// Taste: more find nearer places, more slowly.
 constexpr int kMostSearched = 4;
+// The most steps downhill over the original.
+// Taste: more find nearer places, more slowly.
 constexpr int kMostWalked = 8;
-/// Samples on a triangle from which walks begin.
+/// The samples on a triangle from which walks begin.
+/// Taste: more find nearer places, more slowly.
 constexpr size_t kMostStarts = 8;
-constexpr size_t kSearched = 4096;  // vertices looked at on one thread
-constexpr size_t kLooked = 1024;    // triangles
-constexpr size_t kAhead = 8;        // of them, memory is asked for what they need
-/// A square distance that other ways find to be less than this times as large was none.
+// Vertices that one thread searches from at a time.
+// Taste: larger chunks share the work less evenly.
+constexpr size_t kSearched = 4096;
+// Triangles that one thread looks at a time.
+// Taste: larger chunks share the work less evenly.
+constexpr size_t kLooked = 1024;
+// How many of them ahead memory is asked for.
+// Taste: more displace what is still needed, fewer come too late.
+constexpr size_t kAhead = 8;
+/// An outlier is confirmed if its squared distance stays at least this part of what it was.
+/// Taste: a smaller part believes more searches that went astray.
 constexpr float kConfirmed = 0.25f;
 
 int nearest_corner(const glm::vec3& w) {
@@ -122,8 +134,9 @@ geometry::TriangleSpot DistanceOutliers::walk(const glm::vec3& point, uint32_t f
     return best;
 }
 
-/// How far a place of the mesh is from the original, beginning where a sample of that is nearest.
-/// What is below `least` or the worst so far is left as soon as it is known to be.
+/// The distance of a place of the mesh from the original, beginning where a sample of the original
+/// is nearest. A place nearer than `least` or the worst so far is given up as soon as this is
+/// known.
 void DistanceOutliers::look(const glm::vec3& place, uint32_t triangle, const glm::vec3& weights,
                             std::span<const uint32_t> hubs, float least,
                             DistanceOutlier& worst) const {
@@ -258,7 +271,7 @@ std::vector<DistanceOutlier> DistanceOutliers::list_farthest(size_t most, const 
         stray.weights = geometry::nearest_spot(corners(t), stray.point).weights;
         stray.source = source_order_[source_first_[stray.vertex]];
     }
-    float least = 0;  // as many are that far off already
+    float least = 0;  // enough outliers are that far off already
     if (most > 0 && most < worst.size()) {
         std::vector<float> squares(worst.size());
         std::transform(worst.begin(), worst.end(), squares.begin(),

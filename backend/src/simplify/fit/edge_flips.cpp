@@ -9,22 +9,32 @@
 namespace lodestone::simplify {
 namespace {
 
-/// What a turned normal costs: the square of so many times the size of the two triangles.
+/// The cost of a turned normal: the square of its error times this share of the size of the two
+/// triangles.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr float kTurn = 0.02f;
-/// A flip must save this share of what the two triangles' samples cost.
+/// The share that a flip must save of the cost of the two triangles' samples.
+/// Taste: a larger share flips fewer edges back and forth.
 constexpr float kLeastGain = 0.1f;
-/// Fewer samples than that on both triangles do not tell.
+/// The fewest samples on both triangles.
+/// Taste: fewer do not tell which edge is nearer.
 constexpr size_t kFewest = 5;
-/// As in collapses: twice the area over the longest edge squared.
+/// Twice the area over the square of the longest edge, as in collapses: thinner triangles are not
+/// made.
+/// Taste: a larger number refuses more flips and leaves fewer slivers.
 constexpr float kThin = 4e-3f;
+// The most triangles around a vertex whose edges are flipped.
+// Taste: more take longer at hubs.
 constexpr size_t kMostFlipRing = 64;
+// Triangles that one thread looks at at a time.
+// Taste: larger chunks share the work less evenly.
 constexpr size_t kFlipChunk = 4096;
 
-/// Triangles (a, b, c) and (b, a, d), which flipped are (a, d, c) and (d, b, c).
+/// Two triangles (a, b, c) and (b, a, d), which after the flip are (a, d, c) and (d, b, c).
 struct FlipQuad {
     uint32_t t0, t1;
     uint32_t a, b, c, d;
-    int at0, at1;  // corner of a in t0, of b in t1
+    int at0, at1;  // the corner of a in t0, that of b in t1
     float gain;
 };
 
@@ -64,7 +74,7 @@ private:
     const std::vector<glm::vec3>& points_;
     FitSamples& samples_;
     SamplesByTriangle by_triangle_;
-    std::vector<glm::vec3> normals_;  // of the original, by sample
+    std::vector<glm::vec3> normals_;  // normals of the original, by sample
 };
 
 EdgeFlipper::EdgeFlipper(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples)
@@ -77,7 +87,7 @@ EdgeFlipper::EdgeFlipper(FitPlaces& places, const Adjacency& adjacency, FitSampl
     const Mesh& source = places.source();
     normals_.resize(samples.size());
     for (size_t i = 0; i < samples.size(); ++i) {
-        // Two of each triangle.
+        // Each triangle has two samples, one after the other.
         if (i > 0 && samples[i].source == samples[i - 1].source) {
             normals_[i] = normals_[i - 1];
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flips: edges turned within the two triangles on them where that is nearer to the original.
+// Edge flips: edges turned within their two triangles where that is nearer to the original.
 #pragma once
 
 #include "simplify/fit/fit_samples.h"
@@ -7,9 +7,10 @@
 namespace lodestone::simplify {
 
 /// Flips inner edges where the samples of the two triangles on them then miss less, in distance and
-/// normal, best gain first, no vertex twice; gives these samples their new places. Seams, slots'
-/// borders and folds stay, no edge is made that there is. Returns how many; `adjacency` is that of
-/// before. The same on any number of threads. source: Hoppe et al. 1993 (edge swap).
+/// normal. The best gain comes first, and no vertex takes part twice; the samples get their new
+/// places. Seams, slots' borders and folds stay, and no edge is made that exists. Returns the
+/// number of flips; `adjacency` is that of before. Any number of threads gives the same result.
+/// source: Hoppe et al. 1993 (edge swap).
 size_t flip_edges(FitPlaces& places, const Adjacency& adjacency, const Job& job,
                   FitSamples& samples);
 

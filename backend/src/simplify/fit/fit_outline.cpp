@@ -7,15 +7,18 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Of outlines, relative to the surface: an edge counts as so many squares on it.
+/// The weight of outlines, relative to the surface: an edge counts as this many squares on it.
+/// Fitted: by tests/bench/bench_simplify.py; other weights are in backend/EXPERIMENTS.md.
 constexpr float kBorder = 2;
+// The most steps along a border.
+// Taste: more find nearer edges, more slowly.
 constexpr int kMostOutlineSteps = 4;
 
-/// The edge from a triangle's corner to the next one lies on a border.
+/// The edge from a triangle's corner to the next corner, which lies on a border.
 struct OutlineBorder {
     uint32_t triangle;
     int corner;
-    uint32_t next;  // of the same vertex
+    uint32_t next;  // the next border of the same vertex
 };
 
 class OutlineSampler {
@@ -37,7 +40,7 @@ private:
     const Adjacency& adjacency_;
     const std::vector<glm::vec3>& points_;
     FitSamples& samples_;
-    std::vector<uint32_t> heads_;  // of each vertex the first of its borders
+    std::vector<uint32_t> heads_;  // the first border of each vertex
     std::vector<OutlineBorder> borders_;
 };
 

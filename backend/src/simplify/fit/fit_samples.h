@@ -10,18 +10,18 @@
 
 namespace lodestone::simplify {
 
-/// A sample misses the place it is nearest to by `miss` along `toward`.
+/// A point of the original. It misses its nearest place on the mesh by `miss` along `toward`.
 struct FitSample {
     uint32_t triangle;
-    uint32_t source;   // triangle of the original; kNone: of its outline
-    float weights[3];  // of the triangle's corners
+    uint32_t source;   // triangle of the original; kNone: the sample is on its outline
+    float weights[3];  // weights of the triangle's corners
     glm::vec3 toward;
     float miss;
     float area;
 };
 using FitSamples = std::vector<FitSample>;
 
-/// A simplified mesh with what it takes to find an original's surface on it.
+/// A simplified mesh, with the data needed to find an original's surface on it.
 class FitPlaces {
 public:
     /// `mesh` must be compact and have been opened from `source`.
@@ -31,22 +31,22 @@ public:
     glm::vec3 original(uint32_t vertex) const {
         return glm::vec3((glm::dvec3(source_.positions[vertex]) - mesh_.center) * per_scale_);
     }
-    /// Asks for what place() and original() will need.
+    /// Asks for the memory that place() and original() will need.
     void prefetch_place(uint32_t vertex) const {
         __builtin_prefetch(&mesh_.merged[vertex]);
         __builtin_prefetch(&source_.positions[vertex]);
     }
-    /// The vertex that one of the original became; kNone when it vanished with its part.
+    /// The vertex that a vertex of the original became; kNone when it vanished with its part.
     uint32_t place(uint32_t vertex) const { return place_of_[mesh_.merged[vertex]]; }
 
-    /// Numbers a vertex that the mesh and its points have got. One of the original, unless it
-    /// stands for others or is kNone, is at that place from now on.
+    /// Numbers a vertex that was added to the mesh and to points(). `original`: unless it is kNone
+    /// or stands for other vertices, it is at that place from now on.
     void add(uint32_t vertex, uint32_t original);
 
     CollapseMesh& mesh() { return mesh_; }
     const CollapseMesh& mesh() const { return mesh_; }
     const Mesh& source() const { return source_; }
-    /// The mesh's vertices; whoever moves one keeps both.
+    /// The mesh's vertices in single precision; a caller that moves one changes both.
     std::vector<glm::vec3>& points() { return points_; }
     const std::vector<glm::vec3>& points() const { return points_; }
 
@@ -54,12 +54,12 @@ private:
     CollapseMesh& mesh_;
     const Mesh& source_;
     double per_scale_;
-    std::vector<uint32_t> place_of_;  // by what vertices were merged into in the end
+    std::vector<uint32_t> place_of_;  // by the vertex that vertices were merged into in the end
     std::vector<glm::vec3> points_;
 };
 
-/// Where a sample of the original's surface is, which it is, and what of it who looks at many
-/// needs.
+/// The place and the index of a sample of the original's surface, with the values that a search
+/// over many needs.
 struct PlacedSample {
     glm::vec3 place;
     uint32_t index;
@@ -68,7 +68,7 @@ struct PlacedSample {
     float area;
 };
 
-/// Which samples of the original's surface lie on each triangle.
+/// The samples of the original's surface that lie on each triangle.
 class SamplesByTriangle {
 public:
     SamplesByTriangle(const FitPlaces& places, const FitSamples& samples);
@@ -81,24 +81,24 @@ private:
     std::vector<PlacedSample> order_;
 };
 
-/// Two samples each of about `want` of the original's triangles, spread evenly, instead of what is
-/// in `samples`; room for `more` after them. `nearest`, where given, keeps the triangles that they
-/// are nearest to from one call to the next of the same mesh: a sample that is still above or below
-/// its triangle is not looked for.
+/// Replaces `samples` by two samples each of about `want` of the original's triangles, spread
+/// evenly, with room for `more` after them. `nearest`, if given, keeps the triangles nearest to
+/// them from one call to the next of the same mesh: a sample that is still above or below its
+/// triangle is not searched for.
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
                     const Job& job, FitSamples& samples, std::vector<uint32_t>* nearest = nullptr);
 
-/// Appends samples of the edges that were open borders at first, and the borders nearest to them.
+/// Appends samples of the edges that were open borders at first, with the borders nearest to them.
 void sample_outline(FitPlaces& places, const Adjacency& adjacency, const Job& job,
                     FitSamples& samples);
 
-/// Appends a sample for each vertex of the mesh: the surface nearest to it, of that which `samples`
-/// were taken from around it. Vertices that stick out are drawn back.
+/// Appends a sample for each vertex of the mesh: the surface nearest to it, among the surface
+/// around it that `samples` were taken from. Vertices that stick out are drawn back.
 void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& samples);
 
-/// How far each vertex of the mesh has to move (into `moves`) for the least sum of squared misses,
-/// by `iterations` of a damped block Jacobi; `hold`: see FitOptions. None moves further than its
-/// samples miss.
+/// Computes how far each vertex of the mesh has to move (into `moves`) for the least sum of squared
+/// misses, by `iterations` of a damped block Jacobi; `hold`: see FitOptions. No vertex moves
+/// farther than its samples miss.
 void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iterations, float hold,
                std::vector<glm::vec3>& moves);
 

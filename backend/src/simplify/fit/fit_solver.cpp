@@ -7,17 +7,18 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Of a step of block Jacobi: with three unknown vertices a row it converges below 2/3.
+/// The damping of a step of block Jacobi.
+/// Law: with three unknown vertices in a row it converges below 2/3.
 constexpr float kDamping = 0.65f;
 
-/// Of a vector x, y, z; what the last lane means says who uses it.
+/// A vector x, y, z; its users say what the last lane means.
 using Lanes = float __attribute__((vector_size(16)));
 
 Lanes lanes_of(const glm::vec3& v, float last) {
     return Lanes{v.x, v.y, v.z, last};
 }
 
-/// Symmetric.
+/// A symmetric matrix.
 struct SymmetricMatrix {
     Lanes first{};  // xx, xy, xz, and the sum of the samples' areas
     Lanes rest{};   // yy, yz, zz, nothing
@@ -28,7 +29,8 @@ struct SymmetricMatrix {
     }
 };
 
-/// With what is added to hold the vertex (`hold` times the areas); zero where there is none.
+/// The inverse of the matrix, with `hold` times the areas added to hold the vertex; zero where
+/// there is none.
 SymmetricMatrix damped_inverse(const SymmetricMatrix& m, float hold) {
     const float trace = m.first[0] + m.rest[0] + m.rest[2];
     if (!(trace > 1e-30f))
@@ -53,8 +55,8 @@ void solve_fit(const CollapseMesh& mesh, const FitSamples& samples, int iteratio
                std::vector<glm::vec3>& moves) {
     const size_t count = mesh.points.size();
     std::vector<SymmetricMatrix> matrices(count);
-    std::vector<float> most(count, 0);  // that samples near a vertex miss
-    std::vector<Lanes> pulls(count);    // where nothing has moved yet, at first
+    std::vector<float> most(count, 0);  // the largest miss of the samples near a vertex
+    std::vector<Lanes> pulls(count);    // at first, where nothing has moved yet
     for (const FitSample& s : samples) {
         const Triangle& c = mesh.triangles[s.triangle];
         const Lanes toward = lanes_of(s.toward, 1);

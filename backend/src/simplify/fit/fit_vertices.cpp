@@ -7,19 +7,26 @@
 namespace lodestone::simplify {
 namespace {
 
-/// Of a vertex relative to the samples of the surface around it.
+/// The weight of a vertex, relative to the samples of the surface around it.
+/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
 constexpr float kWeight = 0.3f;
-/// So many samples' spacing away from all of them it sticks out.
+/// A vertex sticks out if it is this many times the samples' spacing away from all of them.
+/// Taste: a smaller number searches for more vertices.
 constexpr float kFar = 2;
-/// Missing the surface by so many times what its samples miss is nothing.
+/// A miss of less than this many times the misses of the samples around is ignored.
+/// Fitted: by tests/bench/bench_simplify.py, largest distance of nine shared models.
 constexpr float kTypical = 4;
+// The most triangles around a vertex that are searched.
+// Taste: more find nearer samples at hubs, more slowly.
 constexpr size_t kMostRing = 32;
 
-/// Vertices looked at before the original is asked for what is nearest to them: it lies anywhere.
+/// The vertices that are visited before the original is searched for what is nearest to them,
+/// because its memory lies anywhere.
+/// Taste: more displace what is still needed, fewer come too late.
 constexpr size_t kAtOnce = 64;
 
-/// Of a vertex: the triangle of the original that the nearest sample on the ring is of, how many
-/// these samples are, and sums of their areas and squared misses.
+/// The triangle of the original whose sample on the ring is nearest to a vertex, the number of
+/// these samples, and the sums of their areas and squared misses.
 struct NearestSample {
     uint32_t vertex = kNone;
     uint32_t source = kNone;
@@ -70,7 +77,7 @@ void sample_vertices(FitPlaces& places, const Adjacency& adjacency, FitSamples& 
             return;
         const float spacing = std::sqrt(nearest.area / static_cast<float>(nearest.count));
         const bool far = distance > kFar * spacing;
-        // Beside the triangle another one, of which there is no sample, may be nearer.
+        // Beside the triangle, another one that has no sample may be nearer.
         if (!far && !(weights.x > 0 && weights.y > 0 && weights.z > 0))
             return;
         const glm::vec3 toward = far ? off / distance : facet / twice;

@@ -8,25 +8,32 @@
 namespace lodestone::simplify {
 namespace {
 
+// The most triangles around a vertex that are searched.
+// Taste: more find nearer places at hubs, more slowly.
 constexpr size_t kMostSearchRing = 32;
+// The most steps from vertex to vertex.
+// Taste: more find nearer places, more slowly.
 constexpr int kMostWalkSteps = 4;
 
-/// Triangles of the original that are sampled on one thread.
+/// The triangles of the original that one thread samples at a time.
+/// Taste: larger chunks share the work less evenly.
 constexpr size_t kSearchChunk = 4096;
+// How many triangles ahead memory is asked for.
+// Taste: more displace what is still needed, fewer come too late.
 constexpr size_t kSamplesAhead = 8;
 
 class SurfaceSampler {
 public:
     SurfaceSampler(const FitPlaces& places, const Adjacency& adjacency)
         : places_(places), mesh_(places.mesh()), adjacency_(adjacency), points_(places.points()) {}
-    /// Into two samples; of those that are none the triangle is kNone. `nearest`: triangles that
-    /// they may lie above, or kNone.
+    /// Writes two samples; the triangle of a sample that does not exist is kNone. `nearest`:
+    /// triangles that they may lie above, or kNone.
     void sample(uint32_t source, int corner, const uint32_t* nearest, FitSample* samples) const;
 
 private:
     void take(uint32_t source, const glm::vec3& point, uint32_t from, const glm::vec3& normal,
               float area, uint32_t nearest, FitSample& sample) const;
-    /// The point lies above or below that triangle, turned as that is.
+    /// Whether the point lies above or below that triangle, with the normal on the same side.
     bool above(const glm::vec3& point, const glm::vec3& normal, uint32_t triangle,
                geometry::TriangleSpot& spot) const;
 
@@ -68,7 +75,7 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
     for (int step = 0; step < kMostWalkSteps && !found; ++step) {
         const std::span<const uint32_t> whole = adjacency_.around(at);
         const std::span<const uint32_t> ring = whole.first(std::min(whole.size(), kMostSearchRing));
-        // Mostly it lies above one of them.
+        // It mostly lies above one of them.
         for (const uint32_t t : ring) {
             found = above(point, normal, t, best);
             if (found)
@@ -84,7 +91,7 @@ void SurfaceSampler::take(uint32_t source, const glm::vec3& point, uint32_t from
         if (best.triangle == kNone)
             return;
         const Triangle& c = mesh_.triangles[best.triangle];
-        // Where the nearest point lies on the far side, what is beyond may be nearer.
+        // Where the nearest point lies on the far side, the triangle beyond may be nearer.
         const int corner = best.weights.x >= best.weights.y
                                ? (best.weights.x >= best.weights.z ? 0 : 2)
                                : (best.weights.y >= best.weights.z ? 1 : 2);
@@ -134,7 +141,7 @@ void SurfaceSampler::sample(uint32_t source, int corner, const uint32_t* nearest
 
 FitPlaces::FitPlaces(CollapseMesh& mesh, const Mesh& source)
     : mesh_(mesh), source_(source), per_scale_(1 / mesh.scale) {
-    // What was merged into what was merged: now into what is left of all of them.
+    // A vertex that was merged into a merged one now belongs to the vertex that is left.
     std::vector<uint32_t>& merged = mesh.merged;
     for (uint32_t id = 0; id < merged.size(); ++id) {
         uint32_t root = merged[id];
@@ -186,7 +193,7 @@ SamplesByTriangle::SamplesByTriangle(const FitPlaces& places, const FitSamples& 
 
 void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t want, size_t more,
                     const Job& job, FitSamples& samples, std::vector<uint32_t>* nearest) {
-    // Vertices and middles in turn, as many as wanted, spread evenly.
+    // The samples are vertices and middles in turn, as many as wanted, spread evenly.
     const size_t count = places.source().triangles.size();
     const double step = std::max(1.0, static_cast<double>(count) / static_cast<double>(want));
     const auto steps = static_cast<size_t>(std::ceil(static_cast<double>(count) / step));
@@ -204,7 +211,7 @@ void sample_surface(const FitPlaces& places, const Adjacency& adjacency, size_t 
         };
         const size_t end = std::min(steps, (chunk + 1) * kSearchChunk);
         for (size_t n = chunk * kSearchChunk; n < end; ++n) {
-            // Scans are in no order: what comes is asked for some triangles ahead.
+            // The triangles of scans are in no order: the next ones are asked for ahead.
             const size_t ahead = std::min(n + kSamplesAhead, end - 1);
             const Triangle& coming = places.source().triangles[nth(ahead)];
             for (const uint32_t vertex : {coming.x, coming.y, coming.z})

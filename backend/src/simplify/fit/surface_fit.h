@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit: moves the vertices of a simplified mesh to where they are nearest to the original surface.
+// Surface fit: moves the vertices of a simplified mesh to where they are nearest to the original
+// surface.
 #pragma once
 
 #include "simplify/collapse/adjacency.h"
@@ -7,29 +8,32 @@
 namespace lodestone::simplify {
 
 struct FitOptions {
-    double samples = 8;  // of the original's triangles, for each vertex of the simplified mesh
-    double share = 1;    // of the original's triangles, at most
-    /// How often each sample looks for what it is nearest to: the coarser the mesh, the more often
+    /// The triangles of the original that are sampled, for each vertex of the simplified mesh.
+    double samples = 8;
+    double share = 1;  // the most that are sampled, as a share of the original's triangles
+    /// How often each sample searches for its nearest place: the coarser the mesh, the more often
     /// it pays, and the less time it takes.
     int least_sweeps = 1;
     int most_sweeps = 1;
-    int iterations = 3;  // of the solver in each sweep
-    /// Flips edges before solving and draws back vertices that stick out. Takes many samples.
+    int iterations = 3;  // those of the solver in each sweep
+    /// Flips edges before solving and draws back vertices that stick out. Needs many samples.
     bool careful = false;
-    /// Holds each vertex where it is, relative to the area of the samples near it. The more samples
-    /// and sweeps, the less it takes.
+    /// Holds each vertex in its place, relative to the area of the samples near it. The more
+    /// samples and sweeps, the smaller it can be.
     float hold = 0.1f;
-    /// Samples that a closed part lies outside of count so much more.
+    /// Samples that a closed part of the mesh lies outside of count 1 plus this factor times.
     float outside = 0;
-    /// Vertices that may be put back where it is farthest from the original. Takes many samples.
+    /// The most vertices that are put back where the mesh is farthest from the original. Needs many
+    /// samples.
     size_t insert = 0;
 };
 
-/// Least squares: the distances from samples of the original (`source`, the mesh that `mesh` was
-/// opened from) to the surface they are nearest to, over all vertices together; those on open
-/// borders also to the outline's. Closed parts of at most 8 triangles (bricks, boards) stay as they
-/// are. `mesh` must be compact and `adjacency` its own. No triangle turns over. A mesh with other
-/// poses is left as it is. source: Hoppe et al. 1993 (mesh optimization), with distances to planes.
+/// Least squares of the distances from samples of the original (`source`, the mesh that `mesh` was
+/// opened from) to the surface they are nearest to, over all vertices together; samples on open
+/// borders count their distances to the outline, too. Closed parts of at most 8 triangles (bricks,
+/// boards) stay as they are. `mesh` must be compact and `adjacency` its own. No triangle turns
+/// over. A mesh with other poses is left as it is. source: Hoppe et al. 1993 (mesh optimization),
+/// with distances to planes.
 void fit_surface(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency,
                  const FitOptions& options, const Job& job);
 

@@ -8,18 +8,26 @@
 namespace lodestone::simplify {
 namespace {
 
+// The most triangles around a changed vertex.
+// Taste: more take longer at hubs.
 constexpr size_t kMostInsertRing = 32;
-/// Of a place's barycentric coordinates: above the first it is the corner, below the second the
-/// edge that it is on.
+/// The limits of a place's barycentric coordinates: above the first it is at the corner, below the
+/// second on the edge.
+/// Taste: a larger limit moves fewer vertices and inserts more.
 constexpr float kAtCorner = 0.75f;
+// Taste: a larger limit splits more edges, whose triangles are less slender.
 constexpr float kOnEdge = 0.15f;
-/// What is around a changed place must miss less than this times what it did.
+/// The surroundings of a changed place must miss less than this times what they did.
+/// Taste: a larger factor inserts more vertices for less.
 constexpr float kBetter = 0.8f;
-/// Where nothing changed, but for rounding.
+/// Misses that grow by less than this factor count as unchanged.
+/// Law: rounding of single precision, with a large margin.
 constexpr float kRounding = 1.01f;
-/// Twice the area over the longest edge squared: thinner triangles are not made.
+/// Twice the area over the square of the longest edge: thinner triangles are not made.
+/// Taste: a larger number refuses more places and leaves fewer slivers.
 constexpr float kThinnest = 4e-3f;
-/// Places tried, for each vertex that may be inserted.
+/// The places that are tried, for each vertex that may be inserted.
+/// Taste: more insert more of the vertices that may be, more slowly.
 constexpr size_t kTried = 8;
 
 class VertexInserter {
@@ -59,11 +67,11 @@ private:
     const Adjacency& adjacency_;
     std::vector<glm::vec3>& points_;
     DistanceOutliers strays_;
-    std::vector<uint8_t> touched_;  // by triangle: what was around it is out of date
+    std::vector<uint8_t> touched_;  // by triangle: its surroundings are out of date
 };
 
-/// A triangle is not thin, turned over or far from the original, as its edges at `point` are not;
-/// `was`: what it was before.
+/// Whether a triangle is not thin, not turned over and not far from the original, nor are its edges
+/// at `point`; `was`: the triangle it replaces.
 bool VertexInserter::fits(const DistanceOutlier& stray, const glm::vec3& point,
                           const geometry::TrianglePoints& after, uint32_t was) const {
     const float limit = kBetter * kBetter * stray.square;
@@ -94,8 +102,8 @@ bool VertexInserter::fits(const DistanceOutlier& stray, const glm::vec3& point,
     return true;
 }
 
-/// Whether triangles `after`, of which `point` is new, fit, and the original's vertices that
-/// `before` were nearest to miss less with them.
+/// Whether the triangles `after`, of which `point` is new, fit, and the original's vertices nearest
+/// to `before` then miss less.
 bool VertexInserter::better(const DistanceOutlier& stray, const glm::vec3& point,
                             std::span<const uint32_t> before,
                             std::span<const geometry::TrianglePoints> after,
@@ -214,7 +222,7 @@ bool VertexInserter::split_triangle(const DistanceOutlier& stray) {
 }
 
 bool VertexInserter::split_edge(const DistanceOutlier& stray, int corner) {
-    // The edge from a to b of the first triangle, from b to a of the second.
+    // The edge runs from a to b in the first triangle, from b to a in the second.
     std::array<uint32_t, 2> on{stray.triangle, kNone};
     std::array<int, 2> at{corner, 0};
     const uint32_t a = mesh_.triangles[on[0]][corner];
@@ -223,7 +231,7 @@ bool VertexInserter::split_edge(const DistanceOutlier& stray, int corner) {
         return false;
     size_t sides = 1;
     for (const uint32_t t : adjacency_.around(a)) {
-        // What was made or changed in between is not what is around.
+        // A triangle that was made or changed meanwhile has other neighbors.
         if (touched_[t] != 0)
             return false;
         if (t == on[0])
