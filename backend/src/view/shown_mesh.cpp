@@ -6,10 +6,17 @@
 namespace lodestone::view {
 namespace {
 
+// The subdivisions of an ellipsoid.
+// Taste: more are rounder and four times the triangles each.
 constexpr int kEllipsoidSubdivisions = 1;
+// Law: an icosahedron's 20 triangles, each divided into four once.
 constexpr uint64_t kEllipsoidTriangles = 80;
+// The subdivisions of a composite's ellipsoids.
+// Taste: more are rounder and four times the triangles each.
 constexpr int kCompositeSubdivisions = 0;
-constexpr uint64_t kCompositeTriangles = 640;  // 32 ellipsoids
+// The triangles of a composite, at most.
+// Law: 32 ellipsoids of 20 triangles.
+constexpr uint64_t kCompositeTriangles = 640;
 
 }  // namespace
 

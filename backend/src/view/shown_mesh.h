@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shown: a representation as the triangles that viewers draw.
+// Shown mesh: a representation as the triangles that viewers draw.
 #pragma once
 
 #include "model/mesh.h"
@@ -7,13 +7,15 @@
 
 namespace lodestone::view {
 
+/// The triangles of a box.
+/// Law: six sides of two triangles.
 inline constexpr uint64_t kBoxTriangles = 12;
 
-/// How many there are: of composites a guess from above, since a summary does not count their
-/// parts; 0 for assemblies.
+/// The number of triangles; for composites an upper estimate, since a summary does not count their
+/// solids; 0 for assemblies.
 uint64_t shown_triangles(const RepresentationSummary& summary);
 
-/// They themselves, but for assemblies. A mesh must be resident.
+/// The triangles themselves; not for assemblies. A mesh must be resident.
 Mesh shown_mesh(const Representation& representation);
 
 }  // namespace lodestone::view

@@ -14,20 +14,27 @@
 namespace lodestone::view {
 namespace {
 
-// All below a group with no more than this is one batch: a batch costs about as much to draw as
-// some thousands of triangles, and is made anew when anything in it changes.
+// The triangles and the choices up to which everything below a group is one batch: a batch costs
+// about as much to draw as some thousands of triangles, and is made anew when anything in it
+// changes.
+// Taste: a larger number draws fewer batches and makes more anew when the eye moves.
 constexpr uint64_t kFewTriangles = 32'768;
+// Taste: a larger number draws fewer batches and makes more anew when the eye moves.
 constexpr uint64_t kFewChoices = 256;
-// Children of a larger group go by their position, so that a change shifts no others.
+// The children of a larger group are divided into batches by their position, in runs of this many,
+// so that a change moves no others.
+// Taste: longer runs are fewer batches and change more often.
 constexpr uint32_t kSiblings = 64;
 
+// The number that stands for 1 in normals.
+// Law: the largest 16-bit integer with a sign, as OpenGL normalizes them.
 constexpr double kUnit = 32767;
 
 const Representation& shown(const Model& model, const choose::CutNode& node) {
     return model.objects.at(node.object).representations.at(node.lod);
 }
 
-/// What is below each node.
+/// The sums of everything below each node.
 struct ChoicesBelow {
     uint64_t triangles = 0;
     uint64_t choices = 0;
@@ -70,7 +77,7 @@ std::array<uint8_t, 4> displayed(const glm::dvec3& linear, double alpha) {
     return {encoded(linear.x), encoded(linear.y), encoded(linear.z), byte(alpha)};
 }
 
-/// What of a material a viewport shows.
+/// The properties of a material that a viewport shows.
 struct ViewportPaint {
     glm::dvec3 color{0.8};  // linear
     double alpha = 1;
@@ -79,7 +86,11 @@ struct ViewportPaint {
 };
 
 ViewportPaint paint_of(const Material& material, int depth = 0) {
+    // The share of light that passes through glass, as it is shown.
+    // Taste: a larger one makes glass harder to see.
     constexpr double kSeenThroughGlass = 0.75;
+    // The most materials that are mixed one inside the other.
+    // Taste: more follow deeper mixes, which are rare; the limit bounds the time.
     constexpr int kMostMixed = 8;
     ViewportPaint paint;
     paint.color = material.base_color;
@@ -148,8 +159,8 @@ private:
         uint16_t slot = 0;
     };
 
-    /// Turns normals as the transform turns surfaces, whatever its scale; of a flattening one as it
-    /// can.
+    /// The matrix that turns normals as the transform turns surfaces, whatever its scale; for a
+    /// transform that flattens, the best there is.
     static glm::dmat3 normal_matrix(const glm::dmat3& linear) {
         return {glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                 glm::cross(linear[0], linear[1])};
@@ -219,9 +230,10 @@ private:
         ViewerBatch batch;
         Hasher hasher;
     };
-    using Bucket = std::tuple<uint32_t, uint32_t>;  // node, siblings
+    using Bucket = std::tuple<uint32_t, uint32_t>;  // node, run of siblings
 
-    /// The highest group around a choice that holds little; else its own with its neighbors in it.
+    /// The highest group around a choice that holds little; else the choice's own group, with its
+    /// neighbors.
     Bucket bucket(uint32_t index) const {
         const uint32_t parent = cut_.nodes[index].parent;
         if (parent == choose::kNoParent)
