@@ -11,21 +11,36 @@
 namespace lodestone::light {
 namespace {
 
-constexpr int kWidth = 128;  // texels that are looked at; details beyond it light nothing
+// The width in texels to which pictures are reduced.
+// Taste: more texels keep smaller suns apart and take longer; 128 are 2.8 degrees each.
+constexpr int kWidth = 128;
+// Law: an equirectangular picture is half as high as wide.
 constexpr int kHeight = 64;
-constexpr int kSquare = 8;      // a side of the blocks whose darkest is the uniform sky
-constexpr int kNormals = 512;   // ways of facing that the strengths are fitted for
-constexpr double kMost = 1e9;   // radiance: more is a mistake of the picture's maker
-constexpr int kRounds = 30;     // of spreading the suns
-constexpr int kSweeps = 200;    // of the fit; it stands still long before
-constexpr double kKeep = 1e-3;  // how much the fit is drawn to the strengths it starts from
+// The sides of the blocks of texels whose darkest one is the uniform sky.
+// Taste: larger blocks find less of the light in the uniform sky.
+constexpr int kSquare = 8;
+// The directions of surfaces for which the strengths are fitted.
+// Taste: more fit them more evenly and take longer.
+constexpr int kNormals = 512;
+// The largest radiance that counts.
+// Taste: a larger one is a mistake of the picture's maker.
+constexpr double kMost = 1e9;
+// The rounds of spreading the suns.
+// Taste: more spread them more evenly; they hardly move in the last ones.
+constexpr int kRounds = 30;
+// The sweeps of the fit.
+// Taste: more change nothing; the fit stands still long before.
+constexpr int kSweeps = 200;
+// How much the fit is drawn to the strengths it starts from.
+// Taste: a larger number keeps them nearer; without it, suns side by side differ by chance.
+constexpr double kKeep = 1e-3;
 
 double luma(const glm::dvec3& color) {
     return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
 struct SkyTexel {
-    glm::dvec3 direction{0.0};  // it is seen in, in the world
+    glm::dvec3 direction{0.0};  // the direction in which it is seen, in the world
     glm::dvec3 radiance{0.0};
     double solid_angle = 0;
 
@@ -42,7 +57,7 @@ public:
         const glm::dmat3 to_world = turned ? glm::inverse(world.environment_turn) : glm::dmat3(1.0);
         texels_.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
         for (int y = 0; y < height_; ++y) {
-            const double low = kPi * y / height_;  // from the zenith
+            const double low = kPi * y / height_;  // the angle from the zenith
             const double high = kPi * (y + 1) / height_;
             for (int x = 0; x < width_; ++x) {
                 SkyTexel& texel = at(x, y);
@@ -63,12 +78,12 @@ public:
     }
     const std::vector<SkyTexel>& texels() const { return texels_; }
 
-    /// Power of a texel without the uniform sky; of one that is darker, negative.
+    /// The power of a texel without the uniform sky; negative for a darker texel.
     glm::dvec3 above(const SkyTexel& texel) const {
         return (texel.radiance - uniform_) * texel.solid_angle;
     }
 
-    /// The radiance that every block of texels has.
+    /// Finds the radiance that every block of texels has.
     glm::dvec3 take_uniform() {
         glm::dvec3 least(kMost);
         for (int top = 0; top < height_; top += kSquare) {
@@ -88,7 +103,7 @@ public:
     }
 
 private:
-    /// Of the picture's pixels below a texel.
+    /// The mean of the picture's pixels that a texel covers.
     glm::dvec3 mean_of(const image::Image& picture, int x, int y) const {
         const auto begin = [](int at, int count, int size) {
             return static_cast<int>(static_cast<int64_t>(at) * size / count);
@@ -126,14 +141,14 @@ struct SkyRegion {
     bool divisible() const { return right - left > 1 || bottom - top > 1; }
 };
 
-/// Width and height as seen from the middle, radians.
+/// The width and height as seen from the middle, in radians.
 glm::dvec2 extent(const EnvironmentSky& sky, const SkyRegion& region) {
     const double middle = kPi * (0.5 * (region.top + region.bottom) / sky.height() - 0.5);
     return {2 * kPi * (region.right - region.left) / sky.width() * std::cos(middle),
             kPi * (region.bottom - region.top) / sky.height()};
 }
 
-/// How wrong one sun for all of it is: what it sends, times its size squared.
+/// How wrong one sun for all of the region is: the power it sends, times its size squared.
 double badness(const EnvironmentSky& sky, const SkyRegion& region) {
     const glm::dvec2 size = extent(sky, region);
     return region.divisible() ? region.brightness * glm::dot(size, size) : -1;
@@ -148,7 +163,7 @@ double brightness(EnvironmentSky& sky, const SkyRegion& region) {
     return sum;
 }
 
-/// Cuts across the longer side, where half of the light is on each.
+/// Cuts across the longer side, with half of the light on each side.
 std::pair<SkyRegion, SkyRegion> cut(EnvironmentSky& sky, const SkyRegion& region) {
     const glm::dvec2 size = extent(sky, region);
     const bool columns =
@@ -193,9 +208,9 @@ EnvironmentLight light_of(EnvironmentSky& sky, const SkyRegion& region) {
     return light;
 }
 
-/// Lloyd's iteration: every texel goes to its nearest sun, every sun to the middle of its texels'
-/// light. What is left of the error of suns for regions, light times distance squared, falls with
-/// each round; the regions' straight cuts are no longer seen.
+/// Lloyd's iteration: every texel goes to its nearest sun, and every sun to the middle of its
+/// texels' light. The remaining error of suns for regions, light times distance squared, falls with
+/// each round; the straight cuts of the regions are no longer visible.
 void spread(EnvironmentSky& sky, std::vector<EnvironmentLight>& lights) {
     std::vector<size_t> nearest(sky.texels().size(), 0);
     std::vector<glm::dvec3> middles(lights.size());
@@ -226,7 +241,7 @@ void spread(EnvironmentSky& sky, std::vector<EnvironmentLight>& lights) {
         light.irradiance = glm::max(light.irradiance, glm::dvec3(0.0));
 }
 
-/// Evenly spread over the sphere (a golden spiral).
+/// Directions that are evenly spread over the sphere (a golden spiral).
 std::vector<glm::dvec3> normals() {
     std::vector<glm::dvec3> out;
     for (int i = 0; i < kNormals; ++i) {
@@ -238,8 +253,8 @@ std::vector<glm::dvec3> normals() {
     return out;
 }
 
-/// Non-negative least squares, one strength at a time: what each normal receives from the suns and
-/// the uniform sky (the last unknown) against what it receives from the picture.
+/// Non-negative least squares, one strength at a time: the light that each normal receives from the
+/// suns and the uniform sky (the last unknown), compared with the light from the picture.
 void fit(const EnvironmentSky& sky, EnvironmentLights& lights) {
     const size_t count = lights.lights.size() + 1;
     std::vector<double> gram(count * count, 0.0);

@@ -13,7 +13,7 @@
 namespace lodestone::light {
 namespace {
 
-/// 1 within the cone, falling smoothly to 0 at its edge.
+/// The share within a spot's cone: 1 inside, falling smoothly to 0 at its edge.
 double in_cone(const Light& spot, double cosine) {
     const double outer = std::cos(std::min(spot.spot_size / 2, kPi / 2));
     if (!(cosine > outer))
@@ -23,7 +23,7 @@ double in_cone(const Light& spot, double cosine) {
     return t * t * (3 - 2 * t);
 }
 
-/// Share of what an area would send if it had no spread.
+/// The share of the light that an area without spread would send.
 double in_spread(const Light& area, double cosine) {
     const double s = area.spread / 2;
     if (!(s > 0) || s > kPi / 2 - 0.01)
@@ -90,6 +90,7 @@ glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point,
 }
 
 double display_step(double radiance) {
+    // Law: one step of an 8-bit display.
     constexpr double kStep = 1.0 / 255;
     const double shown = std::min(radiance, 1.0);
     if (!(shown > 0.0031308))

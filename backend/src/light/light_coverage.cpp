@@ -11,12 +11,20 @@
 namespace lodestone::light {
 namespace {
 
+// The looks at a picture.
+// Taste: more find smaller parts that have no point, more slowly.
 constexpr double kMostLooks = 524288;
-constexpr double kFiner = 2;       // looks along a pixel, of small pictures: edges are thinner
-constexpr int kCloser = 4;         // more looks beside one that is alone
-constexpr double kSameWay = 0.25;  // cosine of what faces about the same way
+// The looks along a pixel of small pictures.
+// Taste: more find thinner edges, more slowly.
+constexpr double kFiner = 2;
+// The looks that are added beside one that is alone.
+// Fitted: by tests/bench/bench_lights.py, pixels that are off in the corridor.
+constexpr int kCloser = 4;
+// The cosine between surfaces that face about the same way.
+// Taste: a larger one makes more points alone.
+constexpr double kSameWay = 0.25;
 
-using Cells = std::vector<std::vector<uint32_t>>;  // points of each cell of a grid
+using Cells = std::vector<std::vector<uint32_t>>;  // the points of each cell of a grid
 
 class CoverageSearch {
 public:
@@ -59,8 +67,8 @@ private:
         uint32_t speaker = kNobody;
     };
 
-    /// Once in every part of a row; where that is alone, some more times, at most twice as many in
-    /// all.
+    /// Looks once in every part of a row; where a look is alone, some more times, at most twice as
+    /// many in all.
     void look(size_t row, std::vector<CoverageLook>& out) const {
         PcgRandom random(2, row);
         size_t more = columns_;
@@ -99,8 +107,8 @@ private:
         return std::min(row, grid_.rows - 1) * grid_.columns + std::min(column, grid_.columns - 1);
     }
 
-    /// A point of its cell, else of those around it, that is near it and sees it. `among(cell,
-    /// speaks)` tries those of one cell.
+    /// Finds a point of the look's cell, else of the cells around it, that is near it and sees it.
+    /// `among(cell, speaks)` tries the points of one cell.
     template <typename Among>
     uint32_t speaker_of(const CoverageLook& one, const Among& among) const {
         const double most = reach_beside(view_, grid_, one.point);
@@ -182,7 +190,7 @@ std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const V
 
 void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
                      std::vector<LitPoint>& points, LightShares& shares) {
-    // Pieces are in the order of what is drawn.
+    // Pieces are in the order of the drawn things.
     std::vector<size_t> first;
     for (size_t i = 0; i < regions.pieces.size(); ++i) {
         if (regions.pieces[i].drawn == first.size())

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light coverage: makes sure that every point a picture
-// shows has a lit point near it that sees it, so that no part of a thing is left without the lamps
-// of its room.
+// Light coverage: makes sure that every point a picture shows has a lit point near it that sees it,
+// so that no part of a thing is left without the lamps of its room.
 #pragma once
 
 #include "light/light_regions.h"
@@ -18,16 +17,16 @@ struct PointSighting {
 
 /// Looks through every pixel up to four times, half a million times in all. A point that is seen is
 /// alone if no lit point of the same thing, near it (reach_beside) and facing about the same way,
-/// sees it. There it looks some more times (at most twice as many looks in all), and points that
-/// are alone become lit points, at most as many as there were (then evenly chosen ones). Returns
-/// the sightings of things that `divisible` allows to be cut. The same on any number of threads.
-/// cost: two rays a look.
+/// sees it. Around it there are more looks (at most twice as many in all), and points that are
+/// alone become lit points, at most as many as there were (then evenly chosen ones). Returns the
+/// sightings of things that `divisible` allows to be cut. Any number of threads gives the same
+/// result. cost: two rays a look.
 std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const View& view,
                                                   std::span<const uint8_t> divisible, LitGrid& grid,
                                                   const Job& job);
 
-/// Where a thing is cut between a sighting and its point, lends the point to the piece that is
-/// seen: copies of it in that region, and of its shares.
+/// Lends points where a thing is cut between a sighting and its point: the piece that is seen gets
+/// copies of the point in its region, and of its shares.
 void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
                      std::vector<LitPoint>& points, LightShares& shares);
 

@@ -14,12 +14,17 @@
 namespace lodestone::light {
 namespace {
 
-constexpr double kMostOfMean = 3;  // of one point, for each of the mean
-constexpr uint32_t kTogether = 8;  // lamps of a light that are found together
-constexpr size_t kStrip =
-    128;  // points in a row that most lamps are hidden from by the same things
+// The largest difference at one point, for each of the mean.
+// Taste: a larger one lets single points be more wrong.
+constexpr double kMostOfMean = 3;
+// The most lamps of a light that are found together.
+// Taste: more spare missing lamps and light more points in vain.
+constexpr uint32_t kTogether = 8;
+// The points in a row that one thread asks for; the same things mostly hide a lamp from them.
+// Taste: longer rows try the last blocker more often and share the work less evenly.
+constexpr size_t kStrip = 128;
 
-/// Radiance a point sends to the eye of an unhidden light.
+/// The radiance that a point sends to the eye from an unhidden light.
 glm::dvec3 sent(const Light& light, const LitPoint& point) {
     const glm::dvec3 arrives = arriving_radiance(light, point.position, point.normal);
     if (!(arrives.x + arrives.y + arrives.z > 0))
@@ -76,7 +81,7 @@ public:
     }
 
 private:
-    /// Nodes below which a lamp reaches a point, or one beside it.
+    /// Finds the nodes below which a lamp reaches a point, or one beside it.
     void find_reaching() {
         const size_t lamps = shares_.empty() ? 0 : shares_[0].size();
         reaching_.assign(tree_.nodes.size(), 0);
@@ -99,8 +104,8 @@ private:
             if (!node.leaf() && (reaching_[node.left] != 0 || reaching_[node.right] != 0))
                 reaching_[i] = 1;
         }
-        // Lamps that see each other light much the same: where one of them is found, few points may
-        // just have missed the others.
+        // Lamps that see each other light nearly the same points: where one of them is found, the
+        // few points may just have missed the others.
         for (size_t i = tree_.nodes.size(); i-- > 0;) {
             const LightNode& node = tree_.nodes[i];
             if (!node.leaf() && reaching_[i] != 0 && node.count <= kTogether)
@@ -108,7 +113,8 @@ private:
         }
     }
 
-    /// What each lamp sends by each point, and the step of each point in all their light.
+    /// Sums up the light of each lamp by each point, and finds the step of each point in all their
+    /// light.
     void sum_lamps() {
         const size_t count = members_.size();
         column_.assign(tree_.nodes.size(), kNoLight);
@@ -138,7 +144,7 @@ private:
         }
     }
 
-    /// By how much a light differs from the lamps it stands for, at each point.
+    /// The difference between a light and the lamps it stands for, at each point.
     std::vector<glm::dvec3> of(uint32_t index) const {
         const LightNode& node = tree_.nodes[index];
         std::vector<glm::dvec3> out(members_.size(), glm::dvec3(0.0));
@@ -218,10 +224,10 @@ private:
     const LightShares& shares_;
     std::vector<uint8_t> reaching_;             // by node
     std::vector<uint8_t> chosen_;               // by node
-    std::vector<uint32_t> column_;              // by lamp: its place in sent_
+    std::vector<uint32_t> column_;              // by lamp: its column in sent_
     std::vector<std::vector<glm::vec3>> sent_;  // by column, by point
     std::vector<glm::dvec3> step_;
-    std::vector<glm::dvec3> difference_;  // what is drawn less what all lamps send
+    std::vector<glm::dvec3> difference_;  // the drawn light minus that of all lamps
     std::priority_queue<std::pair<double, uint32_t>> closed_;
 };
 

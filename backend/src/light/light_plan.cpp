@@ -13,16 +13,33 @@
 namespace lodestone::light {
 namespace {
 
-constexpr double kShare = 0.05;   // points to pixels
-constexpr double kRays = 2e7;     // at most: points times lamps
-constexpr double kRooms = 12000;  // points that tell a hundred rooms from each other
+// The points for each pixel.
+// Taste: more miss fewer small patches of light, more slowly.
+constexpr double kShare = 0.05;
+// The most rays, which are points times lamps.
+// Taste: more keep the points dense with many lamps, more slowly.
+constexpr double kRays = 2e7;
+// The fewest points that distinguish a hundred rooms.
+// Fitted: by tests/bench/bench_lights.py, a house of 100 rooms and 400 lamps.
+constexpr double kRooms = 12000;
+// The fewest points with very many lamps.
+// Taste: fewer leave most things without a point.
 constexpr double kFewestPoints = 256;
+// The most points.
+// Taste: more take more memory, one share for each lamp and point.
 constexpr double kMostPoints = 65536;
-constexpr int kMostHanded = 2;  // bounces that are looked at: light of later ones is faint
+// The bounces that are followed.
+// Taste: light of later ones is faint, and more bounces take more rays.
+constexpr int kMostHanded = 2;
+// The most lamps.
+// Taste: more take time that no picture is worth.
 constexpr size_t kMostLamps = 20000;
-constexpr uint64_t kMostTriangles = 2'000'000;  // distinct: 130 bytes each
-// Of all lamps: POV-Ray remembers for each lamp what last hid it, but not for those of groups,
-// whose shadows cost it up to 2.4 times as much.
+// The most distinct triangles.
+// Taste: each takes 130 bytes while lights are chosen.
+constexpr uint64_t kMostTriangles = 2'000'000;
+// The share of all lamps that may light a point at most: POV-Ray remembers for each lamp what last
+// hid it, but not for the lamps of groups, whose shadows take up to 2.4 times as long.
+// Fitted: by tests/bench/bench_lights.py, a house, a corridor and a market of 400 lamps each.
 constexpr double kWorth = 0.6;
 
 uint64_t distinct_triangles(std::span<const DrawnThing> drawn) {
@@ -102,7 +119,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const RepresentationSummary& summary = drawn[i].representation->summary;
         bounds.push_back(transformed(summary.bound, drawn[i].world));
-        // POV-Ray forgets flags of rays in what is clipped, and unions are not split then.
+        // POV-Ray forgets flags of rays in clipped objects, and unions are not split then.
         divisible.push_back(drawn[i].hidden == 0 && summary.kind != Kind::Composite &&
                             !scene.partly_clear(i));
     }
@@ -123,7 +140,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     lend_lit_points(sightings, regions, points, shares);
     const LightCut cut = cut_lights(tree, points, shares, regions.count, model.world.color, reaches,
                                     pixel_error, job);
-    // What was added looks at corners: the mean is of what is spread evenly.
+    // Added points look at corners: the mean is that of the evenly spread ones.
     return plan_of(tree, cut, std::span(points).first(even > 0 ? even : points.size()), regions);
 }
 

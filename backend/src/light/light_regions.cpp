@@ -10,12 +10,24 @@
 namespace lodestone::light {
 namespace {
 
-constexpr size_t kOwn = 48;            // points that make a thing a region of its own
-constexpr size_t kCell = 16;           // fewest points of a box
-constexpr size_t kPieces = 128;        // boxes of one thing
-constexpr size_t kFewLamps = 6;        // that light a box: it is not cut further
-constexpr double kWorthCutting = 0.8;  // of the lights at all points: what a cut must leave at most
-constexpr size_t kGaps = 12;           // widest gaps between points along an axis that are tried
+// The points that make a thing a region of its own.
+// Taste: fewer give more regions with shorter lists of lamps, and more light groups.
+constexpr size_t kOwn = 48;
+// The fewest points of a box.
+// Taste: fewer cut finer, by points that hit a region by chance.
+constexpr size_t kCell = 16;
+// The most boxes of one thing.
+// Taste: more cut finer; each is another clipped copy in POV-Ray.
+constexpr size_t kPieces = 128;
+// The most lamps that light a box that is not cut further.
+// Taste: fewer cut further for less.
+constexpr size_t kFewLamps = 6;
+// The most light that a cut may leave, in parts of the lights at all points.
+// Taste: a larger share cuts more often for less.
+constexpr double kWorthCutting = 0.8;
+// The widest gaps between points along an axis that are tried.
+// Taste: more find better cuts, more slowly.
+constexpr size_t kGaps = 12;
 
 class RegionMaker {
 public:
@@ -72,7 +84,7 @@ private:
 
     using Words = std::vector<uint64_t>;  // a bit for every lamp
 
-    /// The lamps that reach each point, `width_` words beside each other.
+    /// Notes the lamps that reach each point, `width_` words for each.
     void note_lamps() {
         const size_t lamps = shares_.empty() ? 0 : shares_[0].size();
         width_ = (lamps + 63) / 64;
@@ -97,7 +109,7 @@ private:
         return count;
     }
 
-    /// Lamps that reach any of the points.
+    /// The number of lamps that reach any of the points.
     size_t lamps_of(std::span<const uint32_t> points) const {
         Words lamps(width_, 0);
         for (const uint32_t point : points)
@@ -105,7 +117,8 @@ private:
         return count_of(lamps);
     }
 
-    /// Of the points before each place, and from it on, the lamps that reach any. `places` rise.
+    /// The numbers of lamps that reach any of the points before each place, and from it on.
+    /// `places` rise.
     void lamps_beside(std::span<const uint32_t> points, std::span<const size_t> places,
                       std::vector<size_t>& before, std::vector<size_t>& behind) const {
         before.resize(places.size());
@@ -170,12 +183,12 @@ private:
              std::vector<LitPiece>& out) {
         RegionPart whole;
         whole.box = bounds_[thing].box;
-        // Nothing of it may lie on the outside of the boxes.
+        // No part of the thing may lie outside of the boxes.
         const double margin = 0.01 * glm::length(whole.box.size());
         whole.box.low -= margin;
         whole.box.high += margin;
         whole.points = points;
-        // What is flat is not cut along itself.
+        // A flat thing is not cut along itself.
         const double least = 1e-4 * glm::length(whole.box.size());
         std::vector<RegionPart> open{whole};
         std::vector<RegionPart> done;
@@ -212,7 +225,7 @@ private:
         }
     }
 
-    /// Regions of neighboring things with enough points together.
+    /// Joins neighboring things to regions that have enough points together.
     void pool(std::vector<uint32_t> things) {
         if (things.empty())
             return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light regions: which parts of a scene are lit by the same lights.
+// Light regions: the parts of a scene that are lit by the same lights.
 #pragma once
 
 #include "light/light_cut.h"
@@ -9,15 +9,15 @@ namespace lodestone::light {
 
 struct LightRegions {
     size_t count = 0;
-    /// In the order of things drawn; `group` is the region, or none where no point lies.
+    /// In the order of the drawn things; `group` is the region, or none where no point lies.
     std::vector<LitPiece> pieces;
 };
 inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 
-/// `points[i].region` is the index of the thing a point lies on, and becomes its region. Things
-/// with many points are regions of their own, those with few join their neighbors. One that
-/// `divisible` allows is cut where that makes shorter lists of lamps for its points, into at most
-/// 128 boxes that fill its bound.
+/// Sets the regions of points. `points[i].region` is the index of the thing that the point lies on,
+/// and becomes its region. Things with many points are regions of their own, those with few join
+/// their neighbors. A thing that `divisible` allows is cut where that makes shorter lists of lamps
+/// for its points, into at most 128 boxes that fill its bound.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
                                 const LightShares& shares, std::vector<LitPoint>& points);
 

@@ -13,9 +13,15 @@
 namespace lodestone::light {
 namespace {
 
-constexpr double kAlike = 0.9659;  // cosine of 15 degrees
+// The least cosine between directions of lamps that shine alike.
+// Taste: 15 degrees; a wider angle joins more lamps, which then stand for each other less well.
+constexpr double kAlike = 0.9659;
+// How much cones that shine alike may differ, in parts of their size.
+// Taste: a larger number joins more lamps, which then stand for each other less well.
 constexpr double kSameCone = 0.05;
-constexpr size_t kWindow = 10;  // neighbors along the curve each way that may be joined
+// The neighbors along the curve, on each side, that may be joined.
+// Taste: more find nearer pairs, more slowly.
+constexpr size_t kWindow = 10;
 
 bool alike(const Light& a, const Light& b) {
     if (a.kind != b.kind || a.shadow != b.shadow)
@@ -30,7 +36,7 @@ bool alike(const Light& a, const Light& b) {
     return a.round == b.round && std::abs(a.spread - b.spread) <= kSameCone;
 }
 
-/// Bits of a coordinate spread to every third.
+/// Spreads the bits of a coordinate to every third bit.
 uint64_t spread_bits(uint64_t x) {
     x &= 0x1fffff;
     x = (x | x << 32u) & 0x1f00000000ffffu;
@@ -51,7 +57,7 @@ uint64_t morton_order(const Box3& box, const glm::dvec3& point) {
     return code;
 }
 
-/// Its edges as the second moment of where it shines from: along two axes, metres squared.
+/// The second moment of the area's shining surface: along two axes, in metres squared.
 glm::dvec2 moments(const Light& area, const glm::dvec3& u, const glm::dvec3& v,
                    const glm::dvec3& center) {
     const double uniform = area.round ? 16 : 12;
@@ -102,7 +108,7 @@ public:
     }
 
 private:
-    /// Joins every two that like each other best; false when there is nothing left to join.
+    /// Joins every two that like each other best; false when nothing is left to join.
     bool round(std::vector<uint32_t>& open) {
         job_.check();
         const size_t count = open.size();
@@ -115,7 +121,8 @@ private:
             for (size_t k = from; k < std::min(count, i + kWindow + 1); ++k) {
                 if (k == i || !alike(light(open[i]), light(open[k])) || parted(open[i], open[k]))
                     continue;
-                // Of equally good ones the one beside it, in pairs: else all would want the first.
+                // Among equally good ones the neighbor in pairs is taken: otherwise all would want
+                // the first.
                 const size_t order = k == (i ^ 1u) ? 0 : (k > i ? k - i : i - k) * 2 + (k > i);
                 const double cost = cost_of(open[i], open[k]);
                 if (cost < least || (cost == least && order < tie)) {
@@ -158,7 +165,7 @@ private:
         return !parted_.empty() && parted_.count(pair_of(a, b)) != 0;
     }
 
-    /// Up to `most` of the lamps below a node, evenly.
+    /// At most `most` of the lamps below a node, evenly spread.
     std::vector<uint32_t> some(uint32_t node, size_t most) const {
         std::vector<uint32_t> found;
         std::vector<uint32_t> stack{node};
@@ -181,7 +188,11 @@ private:
     }
 
     bool clear(const Light& stand_in, uint32_t a, uint32_t b) const {
+        // The lamps of each side that are tried with each other.
+        // Taste: more find more walls between them, more slowly.
         constexpr size_t kEach = 4;
+        // The lamps of each side that are tried with the centroid.
+        // Taste: more find more walls between them, more slowly.
         constexpr size_t kCentered = 8;
         for (const uint32_t node : {a, b}) {
             if (!clear_(stand_in.position, light(node).position))
@@ -201,7 +212,7 @@ private:
         return true;
     }
 
-    /// The new node, or none where something parts them; then never again.
+    /// The new node, or none where something separates them; then they are never joined.
     uint32_t join(uint32_t a, uint32_t b) {
         LightNode node;
         node.light = joined_light(light(a), light(b));
@@ -225,7 +236,7 @@ private:
             next += tree_.nodes[root].count;
         }
         tree_.order.resize(next);
-        for (size_t i = tree_.nodes.size(); i-- > 0;) {  // parents before children
+        for (size_t i = tree_.nodes.size(); i-- > 0;) {  // parents come before children
             const LightNode& node = tree_.nodes[i];
             if (node.leaf()) {
                 tree_.order[node.first] = static_cast<uint32_t>(i);

@@ -14,18 +14,19 @@ namespace lodestone::light {
 inline constexpr uint32_t kNoLight = ~uint32_t{0};
 
 struct LightNode {
-    Light light;  // a lamp as it is, or one that stands for all below
+    Light light;  // a lamp as it is, or a light that stands for all lamps below
     uint32_t left = kNoLight;
     uint32_t right = kNoLight;
-    uint32_t first = 0;  // its lamps: LightTree::order[first, first + count)
+    /// The first of its lamps, which are LightTree::order[first, first + count).
+    uint32_t first = 0;
     uint32_t count = 1;
-    Box3 box;  // of their places
+    Box3 box;  // the box of their positions
 
     bool leaf() const { return left == kNoLight; }
 };
 
-/// Node i is lamp i for the first of them; children come before parents. A root is what is joined
-/// no further: unlike the others, or parted from them.
+/// The tree of all lamps. Node i is lamp i for the first nodes; children come before parents. A
+/// root is a light that is joined no further: it is unlike the others, or separated from them.
 struct LightTree {
     std::vector<LightNode> nodes;
     std::vector<uint32_t> roots;  // rising
@@ -39,15 +40,15 @@ struct LightTree {
 /// Whether nothing lies between two points. Asked from one thread.
 using Clear = std::function<bool(const glm::dvec3&, const glm::dvec3&)>;
 
-/// One light of the energy of both (exactly: color times power add up): at their centroid by
-/// energy, areas as large as their second moments together say.
+/// One light with the energy of both (exactly: color times power add up): at their centroid by
+/// energy, and for areas as large as their second moments together.
 Light joined_light(const Light& a, const Light& b);
 
-/// Joins nearest ones first, by energy times the square of the extent, only lamps of one kind that
-/// shine alike (spots and areas: within 15 degrees), and only where nothing lies between them nor
-/// between them and their centroid (all pairs of few; of many, 16 pairs and 16 to the centroid).
-/// Suns, and what is not finite, shines not or takes light away, are roots of their own.
-/// Deterministic. cost: 10,000 lamps .1 s, besides what `clear` takes.
+/// Joins the nearest lights first (by energy times the square of the extent), only lamps of one
+/// kind that shine alike (spots and areas: within 15 degrees), and only where nothing lies between
+/// them nor between them and their centroid (all pairs of few lamps; of many, 16 pairs and 16 to
+/// the centroid). Suns, and lamps that are not finite, do not shine or take light away, are roots
+/// of their own. Deterministic. cost: 0.1 s for 10,000 lamps, besides the time of `clear`.
 LightTree make_light_tree(std::span<const Light> lights, const Clear& clear, const Job& job = {});
 
 }  // namespace lodestone::light

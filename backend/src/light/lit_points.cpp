@@ -17,10 +17,18 @@
 namespace lodestone::light {
 namespace {
 
-constexpr int kMostBounces = 4;     // mirrors and panes in a row
-constexpr double kPoint = 0.04;     // size over distance below which one ray tells of a light
-constexpr double kBeside = 8;       // in distances of points: farther is not beside
-constexpr double kRelative = 1e-4;  // of its way, where a ray begins again
+// The most mirrors and panes in a row that a ray follows.
+// Taste: more find points deeper in mirrors, more slowly.
+constexpr int kMostBounces = 4;
+// The size over the distance of a light below which one ray tells its share.
+// Taste: a larger one makes soft shadows hard for the choice of lights.
+constexpr double kPoint = 0.04;
+// The reach of a point, in distances of points.
+// Taste: a larger one lets points speak for farther ones.
+constexpr double kBeside = 8;
+// Where a ray begins again, in parts of its way.
+// Law: positions are known to 1e-7 of it; this is a large margin.
+constexpr double kRelative = 1e-4;
 
 bool see_through(const Material& material) {
     const bool covered =
@@ -105,7 +113,7 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
     }
     seen_.finish();
     blocking_.finish();
-    // Rays are of single precision.
+    // Rays have single precision.
     least_ = 1e-6 * glm::length(seen_.box().size());
 }
 
@@ -184,12 +192,12 @@ LitScene::SightRay LitScene::ray_at(const View& view, double x, double y) {
     return ray;
 }
 
-/// From the last point on, as a matt surface hands on light.
+/// Continues from the last point, as a matt surface hands on light.
 void LitScene::bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const {
     for (int i = 0; i < times && !out.empty(); ++i) {
         const LitPoint& from = out.back();
         const double turn = 2 * std::numbers::pi * random.uniform();
-        const double out_of = random.uniform();  // square of the sine
+        const double out_of = random.uniform();  // the square of the sine
         const glm::dvec3 u = any_across(from.normal);
         const glm::dvec3 v = glm::cross(from.normal, u);
         SightRay ray;
@@ -224,7 +232,8 @@ LitGrid LitScene::points(const View& view, size_t count, int bounces, const Job&
             bounce(bounces, random, points);
         }
     });
-    // Neighbors in the picture, by the first point of each; those of far behind are none.
+    // Points are neighbors by the first point of each cell of the picture; one that lies far behind
+    // is none.
     grid.first.assign(found.size() + 1, 0);
     for (size_t i = 0; i < found.size(); ++i)
         grid.first[i + 1] = grid.first[i] + static_cast<uint32_t>(found[i].size());
@@ -262,7 +271,7 @@ double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& bl
     const auto free = [&](const glm::dvec3& place) {
         const glm::dvec3 way = place - from;
         const double distance = glm::length(way);
-        // As POV-Ray: what is that near to a light throws no shadow.
+        // In POV-Ray, too, a thing this near to a light throws no shadow.
         return distance <= tolerance_ ||
                !blocking_.occluded(from, way, 1 - tolerance_ / distance, blocker);
     };

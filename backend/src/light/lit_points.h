@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lit points: what a view shows of a scene, as points with what they send back.
+// Lit points: the visible surfaces of a scene in a view, as points with the light they send back.
 #pragma once
 
 #include "base/random.h"
@@ -13,35 +13,35 @@ namespace lodestone::light {
 struct LitGrid {
     size_t rows = 0;
     size_t columns = 0;
-    std::vector<uint32_t> first;  // point of each cell; one more at the end
+    std::vector<uint32_t> first;  // the first point of each cell; one more at the end
     std::vector<LitPoint> points;
 };
 
-/// A cell and those that touch it, rising.
+/// A cell and the cells that touch it, rising.
 std::vector<size_t> around(const LitGrid& grid, size_t row, size_t column);
 
-/// How far from a point those are that count as beside it.
+/// The distance within which other points count as beside this point.
 double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point);
 
-/// The drawn things, ready for rays. Things hidden from a class of rays are not met by it.
+/// The drawn things, ready for rays. Rays of a class do not meet things hidden from it.
 class LitScene {
 public:
-    /// Throws Error(RaysUnavailable); needs what is drawn to be resident, and to outlive it.
+    /// Throws Error(RaysUnavailable); all drawn things must be resident and outlive the scene.
     LitScene(const Model& model, const RendererSurfaces& renderer,
              std::span<const DrawnThing> drawn, const Job& job);
 
-    /// About `count` cells, a ray through each; `region` of a point is the index of the drawn
-    /// thing. `bounces`: then from where it ends on, each where light may come from.
+    /// About `count` cells, with a ray through each; `region` of a point is the index of the drawn
+    /// thing. `bounces`: further points from where the ray ends, each where light may come from.
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
-    /// What is seen at a place of the picture (0...1 from its left, top), nearest first.
+    /// The points at a place of the picture (0...1 from its left, top), nearest first.
     std::vector<LitPoint> seen(const View& view, double x, double y) const {
         return followed(ray_at(view, x, y));
     }
 
-    /// Share of a light that reaches a point; what is see-through hides nothing.
-    /// `blocker`: see Reaches.
+    /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
+    /// Reaches.
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
-    /// Whether any of a drawn thing is.
+    /// Whether any part of a drawn thing is see-through.
     bool partly_clear(uint32_t drawn) const {
         const SceneShape& shape = shapes_[shape_of_[drawn]];
         return shape.opaque != shape.all;
@@ -53,8 +53,8 @@ private:
     struct SceneShape {
         std::shared_ptr<const Mesh> mesh;
         std::shared_ptr<const ray::MeshScene> all;
-        std::shared_ptr<const ray::MeshScene>
-            opaque;  // null: nothing is; the same where everything is
+        /// The opaque part; null: nothing is opaque; the same as `all` where everything is.
+        std::shared_ptr<const ray::MeshScene> opaque;
     };
     struct LitSurface {
         SurfaceReflection reflection;
@@ -63,7 +63,7 @@ private:
     struct SightRay {
         glm::dvec3 origin;
         glm::dvec3 direction;
-        double z = 0;  // the way to its origin
+        double z = 0;  // the length of the way to its origin
     };
 
     LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
@@ -76,11 +76,11 @@ private:
     std::span<const DrawnThing> drawn_;
     std::vector<uint32_t> shape_of_;  // by drawn thing
     std::vector<SceneShape> shapes_;
-    std::vector<LitSurface> surfaces_;  // by material, and one for none
+    std::vector<LitSurface> surfaces_;  // by material, and one more for things without material
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
     double tolerance_ = 0;
-    double least_ = 0;  // no ray begins nearer than this to what it leaves
+    double least_ = 0;  // no ray begins nearer than this to the surface it leaves
 };
 
 }  // namespace lodestone::light

@@ -15,7 +15,9 @@ namespace lodestone::light {
 namespace {
 
 double of_sun(const Light& sun, const View& view, std::span<const Bound> occluders) {
-    constexpr double kFlattest = 0.1;  // sine of the elevation; below it shadows cross the scene
+    // The least sine of the sun's elevation.
+    // Taste: below it shadows cross the whole scene, so its size is the bound.
+    constexpr double kFlattest = 0.1;
     Bound all;
     for (const Bound& bound : occluders)
         all = merged(all, bound);
@@ -32,8 +34,12 @@ double of_sun(const Light& sun, const View& view, std::span<const Bound> occlude
 }
 
 double of_lamp(const Light& lamp, const View& view) {
+    // How many times the size of a light its penumbra is, at most.
+    // Taste: occluders a third of the way from the light enlarge it twice; nearer ones, more.
     constexpr double kMagnified = 2;
-    constexpr double kDarkest = 0.004;  // about one step of a display
+    // The irradiance below which a light counts as not shining.
+    // Law: about one step of an 8-bit display.
+    constexpr double kDarkest = 0.004;
     const bool area = lamp.kind == LightKind::Area;
     const glm::dvec3 shining = glm::abs(lamp.color * lamp.power) / (4 * kPi * (area ? 1 : kPi));
     const double size = 2 * extent_of(lamp);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Penumbra: how wide soft shadows can be in a picture. Where no pixel could tell, they are drawn
-// sharp, and where few could with fewer rays: lights are approximated too (dissertation 5.4.1).
+// Penumbra: how wide soft shadows can be in a picture. Where no pixel shows the difference they are
+// drawn sharp, and where few pixels do with fewer rays: lights are approximated, too (dissertation
+// 5.4.1).
 #pragma once
 
 #include "model/view.h"
@@ -9,11 +10,12 @@
 
 namespace lodestone::light {
 
-/// The widest penumbra in pixels that a light gives in a view of these occluders (world frame).
-/// Sun: what stands above the lowest point of all of them by h throws its shadow at most
-/// h / sin(elevation) far, seen no nearer than its bound less that way. Point and spot: twice their
-/// size (by occluders a third of the way from the light), seen no nearer than where they still
-/// light; areas likewise, their diagonal for the size. 0 without a size and without occluders.
+/// The widest penumbra, in pixels, that a light gives in a view of these occluders (world frame).
+/// Sun: a thing that rises h above the lowest point of all throws its shadow at most h /
+/// sin(elevation) far, seen no nearer than its bound minus that distance. Point and spot: twice
+/// their size (by occluders a third of the way from the light), seen no nearer than where they
+/// still light; areas in the same way, with their diagonal as the size. 0 without a size and
+/// without occluders.
 double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders);
 
 }  // namespace lodestone::light
