@@ -22,9 +22,17 @@
 namespace lodestone::solids {
 namespace {
 
+// The solids of levels.
+// Taste: each level has about half of the error of the one before, and twice the solids.
 constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
+// The rounds in which shells get their opacity.
+// Taste: more come nearer to the wanted area, more slowly.
 constexpr int kClearRounds = 4;
-constexpr uint64_t kClearRays = 8192;  // each round
+// The rays of each round.
+// Taste: more know the area better, more slowly.
+constexpr uint64_t kClearRays = 8192;
+// The subdivisions of ellipsoids as triangles for rays.
+// Taste: more are rounder and four times the triangles each.
 constexpr int kSubdivisions = 2;
 
 ClusterSample sample_at(const Mesh& mesh, const ray::SkinPtr& skin,
@@ -40,7 +48,7 @@ ClusterSample sample_at(const Mesh& mesh, const ray::SkinPtr& skin,
     return out;
 }
 
-/// Of what can be seen.
+/// The samples of the surface that can be seen.
 ClusterSamples seen(const Mesh& mesh, const ray::MeshScene& scene, const ray::SkinPtr& skin,
                     const CompositeOptions& options) {
     ClusterSamples out;
@@ -61,7 +69,7 @@ ClusterSamples seen(const Mesh& mesh, const ray::MeshScene& scene, const ray::Sk
     return out;
 }
 
-/// Of all there is, hidden or not, but what is transparent.
+/// The samples of the whole surface, hidden or not, without transparent parts.
 ClusterSamples all_of(const Mesh& mesh, const ray::MeshScene& scene, const ray::SkinPtr& skin,
                       const CompositeOptions& options) {
     ClusterSamples out;
@@ -78,8 +86,9 @@ ClusterSamples all_of(const Mesh& mesh, const ray::MeshScene& scene, const ray::
     return out;
 }
 
-/// A cluster is a patch of surface: neither sparse nor in two heaps by what it is part of, so what
-/// refuses one kind of solid gets the other, or the ball of its area.
+/// The solid of a cluster. A cluster is a patch of surface, so what its whole is part of makes it
+/// neither sparse nor two heaps: if it is refused as one kind of solid it gets the other, or the
+/// ball of its area.
 Solid solid_of(const Attributes& attributes) {
     Solid out;
     const bool preferred = boxlike(attributes);
@@ -96,7 +105,7 @@ Solid solid_of(const Attributes& attributes) {
     return out;
 }
 
-/// What of it can be seen, by rays; clear solids count as much as they cover.
+/// The attributes of the visible surface, by rays; clear solids count as much as they cover.
 Attributes measured(const ClusteredComposite& level, const CompositeOptions& options,
                     const Job& job) {
     const Mesh mesh = as_large_triangles(level.composite);
@@ -120,9 +129,12 @@ double lowest(const Mesh& mesh) {
     return bound_of(mesh.positions).box.low.z;
 }
 
-/// No edge longer than `longest`, as far as 65,536 triangles go: what spans several clusters (a
-/// trunk of two triangles) belongs to each in part. `source`: of each triangle, where it was.
+/// Divides edges longer than `longest`, up to 65,536 triangles, so that a triangle across several
+/// clusters (a trunk of two triangles) belongs to each in part. `source`: for each triangle, the
+/// one it was part of.
 Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
+    // The most triangles.
+    // Taste: more divide larger meshes, at more time and memory.
     constexpr size_t kMost = size_t{1} << 16u;
     Mesh out = mesh;
     if (out.slots.empty())
@@ -168,8 +180,8 @@ Mesh divided(const Mesh& mesh, double longest, std::vector<uint32_t>& source) {
     return out;
 }
 
-/// One number a triangle of the clusters' mesh: the cluster that has most of its samples, or that
-/// is nearest where it has none.
+/// The cluster of each triangle of the clusters' mesh: the one with most of its samples, or the
+/// nearest one where it has none.
 std::vector<uint32_t> clusters_of(const Mesh& mesh, const SampleClusters& clusters) {
     std::vector<std::map<uint32_t, uint32_t>> votes(mesh.triangles.size());
     for (uint32_t i = 0; i < clusters.all().size(); ++i) {
@@ -201,7 +213,7 @@ std::vector<uint32_t> clusters_of(const Mesh& mesh, const SampleClusters& cluste
     return out;
 }
 
-/// What can be seen of each cluster where the others are taken away.
+/// The visible surface of each cluster if the others are taken away.
 class IsolatedClusters {
 public:
     IsolatedClusters(const Mesh& mesh, const ray::SkinPtr& skin, uint64_t seed)
@@ -233,15 +245,17 @@ private:
     std::map<uint32_t, Attributes> known_;
 };
 
-/// A clear solid while its size is still looked for.
+/// A clear solid while its size is still searched for.
 struct ShelledSolid {
     Solid solid;
-    double density = 0;  // of the unscaled shell; 0: a solid
+    double density = 0;  // that of the unscaled shell; 0: a solid
 };
 
-/// `airy`: made of many parts, so that even what looks dense is none.
+/// `airy`: made of many parts, so that even a dense cluster is no solid.
 ShelledSolid shelled(const Attributes& attributes, bool airy) {
-    constexpr double kSolid = 0.9;  // what covers more of its shell is one
+    // The share of its shell that a cluster covers from which on it is a solid.
+    // Taste: a smaller share gives more solids, which hide what is behind them.
+    constexpr double kSolid = 0.9;
     ShelledSolid out;
     const bool box = boxlike(attributes);
     const auto shell = box ? shell_box(attributes) : shell_ellipsoid(attributes);
@@ -258,6 +272,8 @@ ShelledSolid shelled(const Attributes& attributes, bool airy) {
 /// Whether no single part makes up much of the cluster.
 bool made_of_many(const SampleCluster& cluster, const ClusterSamples& samples,
                   std::span<const uint32_t> parts) {
+    // The fewest equal parts that are many.
+    // Taste: fewer take bodies with some details for foliage.
     constexpr size_t kFewest = 8;
     if (parts.empty())
         return false;
@@ -271,7 +287,8 @@ bool made_of_many(const SampleCluster& cluster, const ClusterSamples& samples,
 }  // namespace
 
 Mesh as_large_triangles(const Composite& composite) {
-    // Flat triangles have less area than what they lie on.
+    // Flat triangles have less area than the surface they lie on.
+    // Law: the ratio of the areas of the ball and of its triangles.
     static const double kSwell = [] {
         const Mesh ball = tessellate_ellipsoid({}, kSubdivisions);
         double area = 0;
@@ -339,14 +356,23 @@ std::vector<ClusteredComposite> clear_composites(const Mesh& whole, const ray::S
                                                  std::span<const uint32_t> parts,
                                                  const Attributes& wanted,
                                                  const CompositeOptions& options, const Job& job) {
-    // A shell through the middle of a cluster's surface leaves gaps between clusters; one around it
-    // is this much larger (a ball's outside and its variances: sqrt(5 / 3)).
+    // The growth of a shell. A shell through the middle of a cluster's surface leaves gaps between
+    // clusters; one around it is sqrt(5 / 3) times as large (a ball's outside and its variances).
+    // Taste: smaller shells leave gaps between clusters, larger ones blur the outline.
     constexpr double kAround = 1.2;
-    // What all shells together cover grows slowly with what each does.
+    // The power by which the depth of shells follows the missing area, because the area that all
+    // shells cover grows slowly with what each covers.
+    // Taste: a larger power comes nearer in fewer rounds and may swing.
     constexpr double kDepth = 2.5;
+    // The largest change of the shells' depth.
+    // Taste: a larger one makes clusters that hide each other denser.
     constexpr double kMostDepth = 6;
+    // The largest opacity of a shell.
+    // Taste: a larger one is no longer clear.
     constexpr double kMostOpaque = 0.98;
-    constexpr double kLongest = 1.0 / 8;  // over the radius
+    // The longest edge, over the radius of the mesh.
+    // Taste: a shorter one divides parts between more clusters, at more time.
+    constexpr double kLongest = 1.0 / 8;
     std::vector<ClusteredComposite> out;
     std::vector<uint32_t> source;
     const Mesh mesh = divided(whole, kLongest * bound_of(whole.positions).radius, source);
@@ -388,7 +414,7 @@ std::vector<ClusteredComposite> clear_composites(const Mesh& whole, const ray::S
         }
         if (!clear)
             return out;
-        double depth = 1;  // of all shells, over that of the clusters alone
+        double depth = 1;  // that of all shells, over that of the clusters alone
         for (int round = 0; round < kClearRounds; ++round) {
             level.composite.solids.clear();
             level.opacities.clear();

@@ -9,16 +9,21 @@
 namespace lodestone::solids {
 namespace {
 
-// Heights above the floor over the height of the whole: less is a rounding.
+// The least height above the floor, over the height of the whole.
+// Law: less is rounding of double precision, with a large margin.
 constexpr double kSameHeight = 1e-9;
+// The most rounds of stretching.
+// Taste: more come nearer; it mostly needs a few.
 constexpr int kRounds = 30;
-constexpr double kLastChange = 1e-7;  // a round that changes less is the last
+// The change below which a round is the last.
+// Taste: a smaller change takes more rounds for nothing that is seen.
+constexpr double kLastChange = 1e-7;
 
 double area_of(const Primitive& primitive, bool box) {
     return (box ? box_shell(primitive.half_size) : ellipsoid_shell(primitive.half_size)).area;
 }
 
-/// Stretched along Z and across it; axes stay as they are.
+/// Stretches along Z and across it; the axes stay as they are.
 void stretch(Primitive& primitive, double along, double across) {
     for (int i = 0; i < 3; ++i) {
         const glm::dvec3& axis = primitive.axes[i];
@@ -42,7 +47,10 @@ HeightRange reach_of(const Primitive& primitive, bool box) {
 }
 
 Primitive standing_on(const Primitive& primitive, bool box, double floor) {
-    // What would have to become another thing (tilted and far below the floor) is moved instead.
+    // A primitive that would have to change too much (tilted and far below the floor) is moved
+    // instead.
+    // The most stretch.
+    // Taste: a larger one keeps more solids on the floor in strange proportions.
     constexpr double kMost = 2;
     const HeightRange before = reach_of(primitive, box);
     const double height = before.high - before.low;
@@ -57,7 +65,7 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
         const HeightRange now = reach_of(out, box);
         const double along = (before.high - floor) / (now.high - now.low);
         stretch(out, along, 1);
-        // Between what a width does to tops (squared) and to sides.
+        // The power lies between the effects of the width on tops (squared) and on sides.
         const double across = std::pow(area / area_of(out, box), 0.7);
         stretch(out, 1, across);
         whole_along *= along;
@@ -70,7 +78,7 @@ Primitive standing_on(const Primitive& primitive, bool box, double floor) {
             break;
         }
     }
-    // Where both cannot be had, the area counts: it is what is seen.
+    // Where both cannot be had the area counts, because it is seen.
     out.half_size *= std::sqrt(area / area_of(out, box));
     out.center.z += floor - reach_of(out, box).low;
     return out;

@@ -11,12 +11,15 @@
 namespace lodestone::solids {
 namespace {
 
-// What solids show grows with less than the square of their size: they hide more of each other.
+// The power by which sizes follow the missing area.
+// Taste: a larger power may swing; the area grows more slowly, as solids hide each other.
 constexpr double kGrowth = 0.7;
-// Of one round; more than this is no correction.
+// The largest change of size in one round.
+// Taste: a larger one is no correction.
 constexpr double kMostStep = 1.5;
 
-/// How far off in shares of what is wanted: area, centroid (radii of gyration), variances.
+/// How far off the solids are, as shares of what is wanted: area, centroid (radii of gyration),
+/// variances.
 struct MatchError {
     double area = 0;
     double centroid = 0;
@@ -36,16 +39,26 @@ struct MatchError {
 
 void match_composite(Composite& composite, const Attributes& wanted, double floor,
                      const VisibleSolids& visible, bool shape, int rounds, const Job& job) {
-    // Rounds of few rays go the way; all rays go the last of it, as often as it pays.
+    // Rounds with few rays go most of the way; rounds with all rays go the end of it, as often as
+    // it pays.
+    // The share of the rays in the first rounds.
+    // Taste: a larger one takes longer and learns little more.
     constexpr double kFew = 1.0 / 8;
+    // Law: all rays.
     constexpr double kAll = 1;
+    // The rounds with all rays.
+    // Taste: more come nearer than the rays can tell.
     constexpr int kLast = 3;
-    constexpr int kMost = 8;  // where it is far off: solids that stand and hide much of each other
+    // The rounds with all rays where solids are far off, because they stand and hide much of each
+    // other.
+    // Fitted: by tests/bench/bench_replace.py, a cube by 8 solids.
+    constexpr int kMost = 8;
     const MatchError far{0.01, 0.003, 0.005};
     const MatchError rough{0.004, 0.004, 0.004};
     const MatchError exact{0.001, 0.0005, 0.001};
-    // Plates around a closed body have no size that gives both its area and its variances: after so
-    // many rounds the ratios of these are enough, as for a single solid.
+    // The rounds after which the ratios of area and variances are enough, as for a single solid:
+    // plates around a closed body have no size that gives both its area and its variances.
+    // Taste: more rounds try longer for a size that does not exist.
     constexpr int kPatience = 5;
     const auto within = [&](const MatchError& miss, const MatchError& most) {
         return miss.area <= most.area &&
@@ -105,7 +118,11 @@ void match_composite(Composite& composite, const Attributes& wanted, double floo
 
 void settle_composite(Composite& composite, const Attributes& wanted, double floor,
                       const VisibleSolids& visible, const Job& job) {
-    constexpr double kStands = 1e-6;  // radii of gyration
+    // How far above the floor a solid still stands, in radii of gyration.
+    // Law: rounding of double precision, with a large margin.
+    constexpr double kStands = 1e-6;
+    // The largest change of size when solids are settled.
+    // Taste: a larger one would hide an error of matching.
     constexpr double kMostScale = 1.02;
     std::vector<measure::SurfaceInertia> each;
     const measure::SurfaceInertia now = visible.of(composite, 1, job, &each);
@@ -115,7 +132,7 @@ void settle_composite(Composite& composite, const Attributes& wanted, double flo
         std::clamp(std::sqrt(wanted.visible_area / now.area), 1 / kMostScale, kMostScale);
     const glm::dvec3 pivot(now.center.x, now.center.y, floor);
     std::vector<bool> stands;
-    double follows = 0;  // of a move along Z
+    double follows = 0;  // the share of a move along Z that they follow
     for (size_t i = 0; i < each.size(); ++i) {
         const Solid& solid = composite.solids[i];
         stands.push_back(reach_of(solid.primitive, solid.box).low <=

@@ -13,8 +13,14 @@ namespace lodestone::solids {
 namespace {
 
 constexpr size_t kNumbers = BroydenCorrection::kNumbers;
-constexpr size_t kUnknowns = 6;    // of a solid: a move, logarithms of three stretches
-constexpr double kMostMove = 0.5;  // radii of gyration
+// The unknowns of a solid.
+// Law: a move along three axes, logarithms of three stretches.
+constexpr size_t kUnknowns = 6;
+// The largest move of a step, in radii of gyration.
+// Taste: a larger one goes farther than the linear step is right.
+constexpr double kMostMove = 0.5;
+// The largest logarithm of a stretch in a step: half of a solid.
+// Taste: a larger one goes farther than the linear step is right.
 constexpr double kMostStretch = 0.4;
 using Row = BroydenCorrection::Row;
 
@@ -22,7 +28,7 @@ double trace_of(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
 }
 
-/// Numbers whose squares sum up to those of the parts; off the diagonal every one counts twice.
+/// Numbers whose squares add up to those of the parts; elements off the diagonal count twice.
 Row numbers_of(const MatchResidual& of) {
     const double twice = std::sqrt(2.0);
     const glm::dmat3& v = of.variances;
@@ -30,7 +36,7 @@ Row numbers_of(const MatchResidual& of) {
             v[1][1], v[2][2],       twice * v[0][1], twice * v[0][2], twice * v[1][2]};
 }
 
-/// How much the logarithm of a shell's area grows with that of each half size. source: of
+/// How much the logarithm of a shell's area grows with that of each half size. source: for
 /// ellipsoids Thomsen's formula, right within a hundredth; with a power of 1 it is a box's area.
 glm::dvec3 growth_of(const Solid& solid) {
     const double power = solid.box ? 1 : 1.6075;
@@ -39,7 +45,7 @@ glm::dvec3 growth_of(const Solid& solid) {
     return 1.0 - faces / (faces.x + faces.y + faces.z);
 }
 
-/// Lowest point, and how much lower it gets with the logarithm of each half size.
+/// The lowest point of a solid, and how much lower it gets with the logarithm of each half size.
 struct LowestPoint {
     double low = 0;
     glm::dvec3 sinks{0.0};
@@ -57,7 +63,7 @@ LowestPoint foot_of(const Solid& solid) {
     return out;
 }
 
-/// What one unknown does to the whole.
+/// The effects of one unknown on the whole.
 class MatchingJacobian {
 public:
     MatchingJacobian(const measure::SurfaceInertia& now, bool size)
@@ -77,7 +83,9 @@ public:
     }
     Row of_stretch(const measure::SurfaceInertia& part, const glm::dvec3& center,
                    const glm::dvec3& axis, double growth) const {
-        // What grows hides more of the others.
+        // A solid that grows hides more of the others.
+        // The share of its growth that is seen.
+        // Taste: a larger one makes steps smaller and slower.
         constexpr double kSeen = 0.7;
         const glm::dvec3 arm = part.center - now_.center;
         const glm::dvec3 shift = glm::dot(axis, part.center - center) * axis;
@@ -106,7 +114,7 @@ private:
     bool size_;
 };
 
-/// Solves a symmetric system in place, by elimination; what cannot be told is 0.
+/// Solves a symmetric system in place, by elimination; unknowns that it does not determine are 0.
 std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<double> right) {
     const size_t count = right.size();
     double largest = 0;
@@ -114,6 +122,7 @@ std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<
         largest = std::max(largest, matrix[i][i]);
     std::vector<uint8_t> told(count, 0);
     for (size_t i = 0; i < count; ++i) {
+        // Law: rounding of double precision, with a large margin.
         constexpr double kLeast = 1e-9;
         if (!(matrix[i][i] > kLeast * largest))
             continue;
@@ -132,7 +141,7 @@ std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<
     return right;
 }
 
-/// The unknowns of all solids, moves in metres.
+/// The unknowns of all solids, with moves in metres.
 std::vector<double> places_of(const Composite& composite) {
     std::vector<double> out;
     for (const Solid& solid : composite.solids) {
@@ -148,7 +157,9 @@ std::vector<double> places_of(const Composite& composite) {
 
 void BroydenCorrection::learn(const std::vector<double>& at, double unit,
                               const std::vector<double>& weight, const Row& missing) {
-    constexpr double kLeast = 1e-16;  // of a step that tells anything
+    // The square of the smallest step that tells anything.
+    // Law: rounding of double precision.
+    constexpr double kLeast = 1e-16;
     corrections_.resize(at.size(), Row{});
     if (effect_.size() == at.size()) {
         std::vector<double> moved(at.size(), 0);
@@ -197,8 +208,8 @@ void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
     const double mean = now.area / static_cast<double>(solids);
     if (!(mean > 0) || !(effects.gyration() > 0))
         return;
-    // Unknowns are in radii of gyration and in logarithms, each divided by the root of its weight:
-    // what shows little would otherwise not be moved at all.
+    // The unknowns are in radii of gyration and in logarithms, each divided by the root of its
+    // weight: otherwise an unknown with little effect would not be moved at all.
     std::vector<Row> effect(kUnknowns * solids);
     std::vector<double> weight(effect.size(), 0);
     std::vector<LowestPoint> feet;
@@ -207,6 +218,8 @@ void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
         feet.push_back(foot_of(solid));
         if (each[i].empty())
             continue;
+        // The least area of a solid in its weight, in parts of the mean.
+        // Taste: a smaller one moves hidden solids farther, for little effect.
         constexpr double kLeastShare = 0.1;
         const double own = mean / std::max(each[i].area, kLeastShare * mean);
         const glm::dvec3 growth = growth_of(solid);
@@ -232,7 +245,7 @@ void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
     std::vector<size_t> standing;  // solids that are kept on the floor
     std::vector<double> step(effect.size(), 0);
     const auto sinks = [&](size_t solid, size_t unknown) {
-        // Of the solid's lowest point, in radii of gyration.
+        // The effects on the height of the solid's lowest point, in radii of gyration.
         if (unknown < 3)
             return unknown == 2 ? 1.0 : 0.0;
         return -feet[solid].sinks[static_cast<int>(unknown) - 3] / effects.gyration();
@@ -266,6 +279,8 @@ void gauss_newton_step(Composite& composite, const measure::SurfaceInertia& now,
         }
         const size_t before = standing.size();
         for (size_t i = 0; i < solids; ++i) {
+            // How far below the floor a solid may be, in radii of gyration.
+            // Taste: a smaller one keeps more solids on the floor for nothing that is seen.
             constexpr double kTolerance = 1e-6;
             double low = feet[i].low;
             for (size_t unknown = 0; unknown < kUnknowns; ++unknown)

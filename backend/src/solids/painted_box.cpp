@@ -14,13 +14,14 @@
 namespace lodestone::solids {
 namespace {
 
-// Of what colors of vertices are off, over the mean color, the root of the mean square: so much may
-// one color for all be off, ...
+// The errors of the vertices' colors that are allowed, as the root of the mean square over the mean
+// color: for one color for all, and in addition for merged colors.
+// Fitted: by tests/bench/sheet_replace.py and the street: 0.5 leaves the book pile too dark.
 constexpr double kOneColor = 0.3;
-// ... and so much, in addition, some merged ones.
+// Fitted: by tests/bench/sheet_replace.py and the street: 0.2 paints white fences.
 constexpr double kMerged = 0.25;
 
-/// Vertices of one color: light by color, and light on them.
+/// The vertices of one color: light by color, and the light that falls on them.
 struct VertexShade {
     glm::dvec4 sum{0.0};
     double vertices = 1;
@@ -32,8 +33,8 @@ VertexShade merged(const VertexShade& a, const VertexShade& b) {
     return {a.sum + b.sum, a.vertices + b.vertices};
 }
 
-/// What merging two adds to the sum of squares over all vertices: beside others any side may be all
-/// that is seen.
+/// The price of merging two: what it adds to the sum of squares over all vertices, which count
+/// alike, because any side may be the only one seen beside others.
 double price(const VertexShade& a, const VertexShade& b) {
     const glm::dvec3 color = merged(a, b).color();
     const glm::dvec3 from_a = a.color() - color;
@@ -41,8 +42,8 @@ double price(const VertexShade& a, const VertexShade& b) {
     return a.vertices * glm::dot(from_a, from_a) + b.vertices * glm::dot(from_b, from_b);
 }
 
-/// Merges the nearest two again and again, as long as all that adds at most `most`. `shade_of`: the
-/// number of each vertex's.
+/// Merges the nearest two again and again, as long as this adds at most `most` in all. `shade_of`:
+/// the index of each vertex's shade.
 void merge(std::vector<VertexShade>& shades, std::vector<size_t>& shade_of, double most) {
     while (shades.size() > 1) {
         double least = std::numeric_limits<double>::infinity();
@@ -76,7 +77,9 @@ void merge(std::vector<VertexShade>& shades, std::vector<size_t>& shade_of, doub
 
 std::optional<PaintedBox> painted_box(const Primitive& box, const Material& material,
                                       std::span<const glm::dvec4> shown) {
-    constexpr double kUnsure = 0.01;  // what hardly any light falls on has the mean color
+    // The weight of the mean color at each vertex.
+    // Taste: a larger one mutes colors; without it, vertices in the dark have colors by chance.
+    constexpr double kUnsure = 0.01;
     PaintedBox out{tessellate_box(box), material};
     if (shown.size() != out.mesh.positions.size())
         fail(Status::Internal, "a box has ", out.mesh.positions.size(), " vertices, not ",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Painted box: a box of few colors, where one would not be as bright from all sides.
+// Painted box: a box of few colors, for things that one color would not make equally bright from
+// all sides.
 #pragma once
 
 #include "model/material.h"
@@ -13,16 +14,16 @@
 
 namespace lodestone::solids {
 
-/// Such a box as a mesh of 12 triangles with vertex colors.
+/// A painted box as a mesh of 12 triangles with vertex colors.
 struct PaintedBox {
     Mesh mesh;
     Material material;
 };
 
-/// `shown`: of each vertex of tessellate_box(box) the color that it should have (red, green, blue),
-/// and how much light falls on the box there. Near colors are merged, mostly to two to five; all
-/// light together stays. None where one color is enough. `material`: the box's; its color is not
-/// used. Throws Error: Internal, for another number of vertices.
+/// `shown`: for each vertex of tessellate_box(box) the color that it should have (red, green,
+/// blue), and how much light falls on the box there. Near colors are merged, mostly to two to five;
+/// the sum of all light stays. None where one color is enough. `material`: that of the box; its
+/// color is not used. Throws Error(Internal) for another number of vertices.
 std::optional<PaintedBox> painted_box(const Primitive& box, const Material& material,
                                       std::span<const glm::dvec4> shown);
 

@@ -10,11 +10,14 @@
 namespace lodestone::solids {
 namespace {
 
-// Black and white are as far apart as points at this many radii of gyration.
+// The distance between black and white, in radii of gyration of points.
+// Taste: a larger one splits by color rather than by place.
 constexpr double kColorDistance = 0.5;
-constexpr int kMeans = 12;  // rounds of 2-means
+// The rounds of 2-means.
+// Taste: more change hardly anything; it mostly ends sooner.
+constexpr int kMeans = 12;
 
-/// Of the samples of a cluster, of which each stands for `area`.
+/// The attributes of a cluster's samples, each of which stands for `area`.
 Attributes attributes_of(const std::vector<ClusterSample>& samples,
                          const std::vector<uint32_t>& cluster, double area) {
     Attributes out;

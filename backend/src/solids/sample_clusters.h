@@ -11,7 +11,7 @@
 
 namespace lodestone::solids {
 
-/// A point of a surface with all that clusters are told apart by.
+/// A point of a surface with all that distinguishes clusters.
 struct ClusterSample {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0.0};
@@ -19,45 +19,47 @@ struct ClusterSample {
     uint32_t triangle = 0;
 };
 
-/// Of which each stands for the same area.
+/// Samples, each of which stands for the same area.
 struct ClusterSamples {
     std::vector<ClusterSample> points;
-    double area = 0;  // of one
+    double area = 0;  // the area of one sample
 };
 
 struct SampleCluster {
-    uint32_t number = 0;  // of its own: what is split is another one
+    uint32_t number = 0;  // its own number: after a split, both halves have new ones
     std::vector<uint32_t> samples;
-    Attributes attributes;  // of the samples alone
+    Attributes attributes;  // those of its samples alone
 
-    /// Area times variance.
+    /// The area times the variance.
     double spread() const {
         return attributes.moments[0][0] + attributes.moments[1][1] + attributes.moments[2][2];
     }
 };
 
-/// One cluster of all samples, then the one of the largest spread split in two by place and color
-/// (2-means), as long as both halves are large enough.
+/// One cluster of all samples, then the cluster with the largest spread split in two by place and
+/// color (2-means), as long as both halves are large enough.
 class SampleClusters {
 public:
+    /// The fewest samples of a cluster.
+    /// Taste: fewer give smaller clusters, whose solids are more by chance.
     static constexpr size_t kFewestSamples = 16;
 
-    /// Keeps the samples, of which there are kFewestSamples at least.
+    /// Keeps the samples, which must be kFewestSamples at least.
     explicit SampleClusters(ClusterSamples samples);
 
-    /// Splits until there are so many, or nothing can be split any more.
+    /// Splits until there are `count` clusters, or none can be split any more.
     void split_to(size_t count, const Job& job);
 
     const std::vector<SampleCluster>& all() const { return clusters_; }
     const ClusterSamples& samples() const { return samples_; }
 
 private:
-    /// The second half, where there are two; the first one stays.
+    /// The second half, if the cluster can be split; the first one stays.
     std::optional<std::vector<uint32_t>> split(SampleCluster& cluster) const;
 
     ClusterSamples samples_;
     std::vector<SampleCluster> clusters_;
-    std::vector<uint8_t> whole_;  // cannot be split
+    std::vector<uint8_t> whole_;  // by cluster: it cannot be split
     uint32_t numbers_ = 1;
 };
 

@@ -11,28 +11,38 @@
 namespace lodestone::solids {
 namespace {
 
-/// Variances below this share of the largest are zero but for rounding.
+/// The share of the largest variance below which variances are zero.
+/// Law: rounding of double precision, with a large margin.
 constexpr double kFlatVariance = 1e-12;
-/// Least thickness relative to the next larger half axis: thin, but no two faces in one place.
+/// The least thickness, relative to the next larger half axis.
+/// Taste: a larger one is seen; without thickness two faces would be in one place.
 constexpr double kThickness = 1e-3;
-/// Visible area over that of the matched solid. Below, the group is mostly air.
+/// The visible area over that of the matched solid below which a group is mostly air.
+/// Taste: a larger one refuses more solids.
 constexpr double kSparse = 0.1;
-/// A row (one axis this many times the next) is refused earlier: scaled to its area, the solid
-/// would be shorter than 0.6 of the row (square root of this).
+/// A row (one axis is this many times the next) is refused earlier.
+/// Taste: a smaller number treats more things as rows.
 constexpr double kRow = 4;
+// Law: the square of 0.6; a sparser solid, scaled to its area, would be shorter than that.
 constexpr double kSparseRow = 0.36;
-/// Matched size over the extent of the bound. Things in two heaps ask for a solid that reaches past
-/// them: 1.44 (box) and 1.67 (ellipsoid) in the limit; a cube asks for an ellipsoid of 1.29.
+/// The largest matched size over the extent of the bound. Things in two heaps ask for a solid that
+/// reaches beyond them: 1.44 (box) and 1.67 (ellipsoid) in the limit; a cube asks for an ellipsoid
+/// of 1.29.
+/// Taste: between a filled box (1) and two heaps (1.44).
 constexpr double kBoxReach = 1.2;
+// Taste: between a cube (1.29) and two heaps (1.67).
 constexpr double kEllipsoidReach = 1.4;
-/// What covers more than this of its shell is better shown as a solid of its area, and what covers
-/// less is hardly there.
+/// The share of its shell that a clear solid covers: an object that covers more is better shown as
+/// a solid of its area, and one that covers less is hardly there.
+/// Taste: a larger share makes more solids clear, a smaller one draws air as solid.
 constexpr double kClear = 0.55;
+// Taste: a larger share leaves out things that are still seen.
 constexpr double kFaintest = 0.02;
-/// Half way from a sphere to a box.
+/// The moment of normals from which on a box shows the outline better.
+/// Law: half way from a sphere (0.6) to a box (1).
 constexpr double kBoxMoment = 0.8;
 
-/// The frame the variances are matched in.
+/// The frame in which the variances are matched.
 glm::dmat3 axes_of(const Attributes& attributes) {
     return attributes.axes;
 }
@@ -58,8 +68,8 @@ bool usable(const Attributes& attributes) {
            std::isfinite(trace / attributes.visible_area) && trace / attributes.visible_area > 0;
 }
 
-/// Half axes of the box with the given variances: Newton on logarithms. The Jacobian's determinant
-/// stays within 5.1...8.0, so steps are always defined; 4 suffice.
+/// The half axes of the box with the given variances: Newton on logarithms. The Jacobian's
+/// determinant stays within 5.1...8.0, so steps are always defined; 4 are enough.
 glm::dvec3 match_box(const glm::dvec3& variances) {
     glm::dvec3 sides = glm::sqrt(12.0 * variances);
     for (int step = 0; step < 50; ++step) {
@@ -85,10 +95,15 @@ glm::dvec3 match_box(const glm::dvec3& variances) {
     return 0.5 * sides;
 }
 
-/// Each half axis follows its own variance; the others' influence is weak, so this contracts.
+/// The half axes of an ellipsoid: each follows its own variance; the influence of the others is
+/// weak, so this contracts.
 glm::dvec3 match_ellipsoid(const glm::dvec3& variances) {
-    constexpr double kFaster = 0.55;  // 12 steps for 14 with a square root
-    constexpr double kSame = 1e-8;    // nobody measures the variances that well
+    // The power by which half axes follow the ratio of variances.
+    // Fitted: by the steps for the ellipsoids of samples/street (0.5 takes more).
+    constexpr double kFaster = 0.55;
+    // The change below which the half axes stand still.
+    // Taste: a smaller one takes more steps; nobody measures variances that well.
+    constexpr double kSame = 1e-8;
     glm::dvec3 half = glm::sqrt(3.0 * variances);
     for (int step = 0; step < 200; ++step) {
         const glm::dvec3 ratio = variances / ellipsoid_shell(half).variances;
@@ -110,13 +125,13 @@ void keep_thickness(glm::dvec3& half) {
         half[order[i]] = std::max(half[order[i]], kThickness * half[order[i - 1]]);
 }
 
-/// The primitive whose variances are the object's, and how much of its area can be seen.
+/// The primitive whose variances are the object's, and the share of its area that can be seen.
 struct MatchedPrimitive {
     Primitive primitive;
     double density = 0;
 };
 
-/// Nothing where the object has no extent to match, or is in two heaps.
+/// None where the object has no extent to match, or is in two heaps.
 template <typename Match, typename Measure>
 std::optional<MatchedPrimitive> matched(const Attributes& attributes, const Bound& bound,
                                         Match match, Measure measure, double reach) {
@@ -135,7 +150,7 @@ std::optional<MatchedPrimitive> matched(const Attributes& attributes, const Boun
         const double half = primitive.half_size[i];
         if (!std::isfinite(half) || !(half > 0))
             return std::nullopt;
-        // What is flat along an axis has no extent there to compare with.
+        // An object that is flat along an axis has no extent there to compare with.
         if (!bound.empty() && half > 2 * kThickness * longest &&
             2 * half > reach * extent_along(bound, primitive.axes[i]))
             return std::nullopt;
@@ -173,8 +188,9 @@ std::optional<ClearSolid> fit_clear(const Attributes& attributes, const Bound& b
     return ClearSolid{found->primitive, found->density};
 }
 
-/// 32 Gauss-Legendre nodes on 0...1.
+/// The 32 Gauss-Legendre nodes on 0...1.
 struct GaussLegendre {
+    // Taste: more nodes are more exact, more slowly; 32 hold closed forms to 1e-10.
     static constexpr int kCount = 32;
     std::array<double, kCount> at;
     std::array<double, kCount> weight;
@@ -214,8 +230,8 @@ ShellMoments box_shell(const glm::dvec3& half_size) {
 
 ShellMoments ellipsoid_shell(const glm::dvec3& half_size) {
     // One octant of the unit sphere u, dA = |u / h| hx hy hz dw. The shortest half axis is c (u's
-    // height z), the longest a (angle 0). Where the axes differ much the integrand bends within
-    // c / b of the equator and b / a of the long axis: sinh spreads those places out.
+    // height z), the longest a (angle 0). Where the axes differ much the integrand bends within c /
+    // b of the equator and b / a of the long axis: sinh spreads those places out.
     static const GaussLegendre kGauss;
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(),
@@ -225,10 +241,11 @@ ShellMoments ellipsoid_shell(const glm::dvec3& half_size) {
     const double c = half_size[order[2]];
     const double bend_z = c / b;
     const double bend_angle = b / a;
+    // Law: pi / 2.
     constexpr double kQuarter = 1.57079632679489661923;
     const double end_z = std::asinh(1 / bend_z);
     const double end_angle = std::asinh(kQuarter / bend_angle);
-    std::array<double, GaussLegendre::kCount> weights;  // of heights
+    std::array<double, GaussLegendre::kCount> weights;  // the weights of heights
     std::array<double, GaussLegendre::kCount> z_squares;
     for (size_t j = 0; j < weights.size(); ++j) {
         const double t = end_z * kGauss.at[j];
@@ -244,12 +261,14 @@ ShellMoments ellipsoid_shell(const glm::dvec3& half_size) {
         const double angle_weight = kGauss.weight[i] * end_angle * bend_angle * std::cosh(s);
         const double x = std::cos(angle);
         const double y = std::sin(angle);
-        const double across = (b / a * x) * (b / a * x) + y * y;  // times b^2
+        const double across = (b / a * x) * (b / a * x) + y * y;  // this is multiplied by b^2
         const double bend_across = bend_z * bend_z * across;
-        // Sums in lanes, which the compiler may not make of one by itself.
+        // The sums are in lanes, because the compiler may not divide one sum by itself.
+        // Law: four doubles are a vector of AVX2, and kCount is a multiple of it.
         constexpr size_t kLanes = 4;
         std::array<double, kLanes> all{};
-        std::array<double, kLanes> level{};  // times the square of what is not height
+        // Multiplied by the square of the part across the height.
+        std::array<double, kLanes> level{};
         for (size_t j = 0; j < weights.size(); j += kLanes) {
             for (size_t lane = 0; lane < kLanes; ++lane) {
                 const double up = z_squares[j + lane];

@@ -11,7 +11,8 @@
 namespace lodestone::solids {
 namespace {
 
-/// Sampling noise may leave a mean a rounding outside its range; what is no number is `usual`.
+/// Sampling noise may leave a mean outside its range by a rounding; a value that is not a number
+/// becomes `usual`.
 double within(double value, double most, double usual) {
     return std::isfinite(value) ? std::clamp(value, 0.0, most) : usual;
 }
@@ -44,7 +45,7 @@ void brighten(Material& material, const glm::dvec3& factor) {
     material.base_color =
         glm::clamp(material.base_color * factor, glm::dvec3(0.0), glm::dvec3(1.0));
     if (material.base_color_texture) {
-        // One factor for all pictures of the same hues: POV-Ray then needs one picture for them.
+        // One factor for all pictures of the same hues, so that POV-Ray needs one picture for them.
         const double mean = (factor.x + factor.y + factor.z) / 3;
         material.base_color_texture.scale *= mean;
         material.base_color_texture.offset *= mean;

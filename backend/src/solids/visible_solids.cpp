@@ -14,11 +14,11 @@
 namespace lodestone::solids {
 namespace {
 
-/// Solids of one kind, each in the frame in which it is the unit ball, or the cube -1...1. Single
-/// precision: points are relative to the middle of all. All of them are asked for at once, four in
-/// one instruction, which takes less time than to stop at the first.
+/// The solids of one kind, each in the frame in which it is the unit ball, or the cube -1...1.
+/// Single precision: points are relative to the middle of all. Rays ask all of them at once, four
+/// in one instruction, which takes less time than to stop at the first.
 struct SolidFrames {
-    std::array<std::vector<float>, 12> columns;  // of a 3 x 4 matrix, row by row
+    std::array<std::vector<float>, 12> columns;  // by solid: the numbers of a 3 x 4 matrix
 
     void add(const Primitive& primitive, const glm::dvec3& middle) {
         for (size_t row = 0; row < 3; ++row) {
@@ -32,7 +32,7 @@ struct SolidFrames {
     }
     size_t size() const { return columns[0].size(); }
 
-    /// Calls `meets` with start and direction in the frame of each, and keeps what it tells.
+    /// Calls `meets` with start and direction in the frame of each, and keeps the results.
     template <typename Meets>
     void ask(const glm::vec3& from, const glm::vec3& along, std::vector<int32_t>& met,
              const Meets& meets) const {
@@ -68,7 +68,7 @@ struct SolidFrames {
             float first = 0;
             float last = std::numeric_limits<float>::max();
             const auto slab = [&](float at, float way) {
-                const float inverse = 1 / way;  // infinite is right: 0 is no way out of a slab
+                const float inverse = 1 / way;  // infinity is right: 0 is no way out of a slab
                 const float a = (-1 - at) * inverse;
                 const float b = (1 - at) * inverse;
                 first = greater(first, lesser(a, b));
@@ -116,7 +116,7 @@ private:
 
     SolidFrames balls_;
     SolidFrames boxes_;
-    std::vector<size_t> number_;  // of a solid among its kind
+    std::vector<size_t> number_;  // the index of a solid among its kind
     std::vector<int32_t> met_;
 };
 
@@ -136,7 +136,7 @@ struct MomentSums {
         first += weight * other.first;
         second += weight * other.second;
     }
-    /// Nothing where no area is left.
+    /// Empty where no area is left.
     measure::SurfaceInertia about(const glm::dvec3& origin) const {
         measure::SurfaceInertia out;
         if (!(area > 0))
@@ -153,10 +153,10 @@ struct MomentSums {
 struct SolidPoint {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0.0};
-    double weight = 1;  // of its area, over the mean
+    double weight = 1;  // that of its area, over the mean
 };
 
-/// `turn`: cosine and sine of where around.
+/// A point on an ellipsoid; `turn`: cosine and sine of its angle.
 SolidPoint on_ball(const Primitive& primitive, double area, double u, const glm::dvec2& turn) {
     const double z = 1 - 2 * u;
     const double radius = std::sqrt(std::max(0.0, 1 - z * z));
@@ -171,7 +171,7 @@ SolidPoint on_ball(const Primitive& primitive, double area, double u, const glm:
     return out;
 }
 
-/// From the frame around a normal to the world.
+/// The direction in the world of one in the frame around a normal.
 glm::dvec3 turned(const glm::dvec3& normal, const glm::dvec3& along) {
     const glm::dvec3 other = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(other, normal));
@@ -212,7 +212,7 @@ measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double sha
                                           std::vector<measure::SurfaceInertia>* each) const {
     struct SolidPatch {
         size_t solid;
-        int face;  // of a box
+        int face;  // that of a box
         double up_to;
         double area;
     };
@@ -223,7 +223,7 @@ measure::SurfaceInertia VisibleSolids::of(const Composite& composite, double sha
     for (const Solid& solid : composite.solids)
         middle += solid.primitive.center / static_cast<double>(count);
     double area = 0;
-    std::vector<MomentSums> seen(count);  // of each solid
+    std::vector<MomentSums> seen(count);  // by solid
     std::vector<SolidPatch> patches;
     for (size_t i = 0; i < count; ++i) {
         const auto& [box, primitive, slot] = composite.solids[i];

@@ -13,12 +13,14 @@ double ThinPart::thickness() const {
 }
 
 std::optional<ThinPart> find_thin_part(const Mesh& part, const Attributes& attributes) {
-    constexpr double kLongest = 12;  // over the thickness, at least
+    // The least length over the thickness.
+    // Taste: a smaller one widens parts whose ends are seen.
+    constexpr double kLongest = 12;
     const std::optional<ClearSolid> shell = shell_box(attributes);
     if (!shell)
         return std::nullopt;
     ThinPart out{shell->primitive, attributes.visible_area};
-    // Variances are those of a box of another thickness all along: ends are the part's own.
+    // The variances are those of a box as thick all along; the ends are the part's own.
     const glm::dvec3 along = out.box.axes[0];
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
