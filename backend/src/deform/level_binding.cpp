@@ -11,11 +11,19 @@ namespace lodestone::deform {
 namespace {
 
 constexpr uint32_t kNowhere = ~uint32_t{0};
+// The error samples on the source's vertices.
+// Taste: more know the error better and take more time in every frame.
 constexpr uint32_t kSourceWitnesses = 2048;
+// The error samples on the level's vertices.
+// Taste: more know the error better and take more time in every frame.
 constexpr uint32_t kLevelVertices = 1024;
+// The error samples on the level's area.
+// Taste: more know the error better and take more time in every frame.
 constexpr uint32_t kLevelPoints = 1024;
+// Taste: any seed; another one picks other samples.
 constexpr uint64_t kSeed = 1;
-// A walk ends sooner, unless the surface is very fine.
+// The most steps of a walk, which ends sooner unless the surface is very fine.
+// Taste: more find places on finer surfaces, more slowly.
 constexpr int kSteps = 256;
 
 SurfaceAnchor anchor_at(const PoseSurface& surface, const geometry::NearestWalk& nearest,
@@ -34,7 +42,7 @@ SurfaceAnchor anchor_at(const PoseSurface& surface, const geometry::NearestWalk&
     return anchor;
 }
 
-/// Normals along the axes of their anchors; those of flat faces zero.
+/// The normals along the axes of their anchors; zero for flat faces.
 std::vector<glm::vec3> bound_normals(const BoundLevel& level, const PoseSurface& surface) {
     const VertexFacing facing = vertex_facing_of(level.mesh);
     std::vector<glm::vec3> normals(level.mesh.normals.size(), glm::vec3(0.0f));
@@ -82,11 +90,11 @@ std::vector<uint32_t> points_of(const Mesh& mesh, const PosedSurface& pose) {
     return points;
 }
 
-/// What is known of one level while it is bound.
+/// The data that are known of one level while it is bound.
 struct LevelBinder::BindingTrace {
-    std::vector<std::vector<uint32_t>> points;  // by place: those that ended up there
-    std::vector<uint32_t> place_of;             // by (welded) point; kNowhere: vanished
-    geometry::VertexRings rings;                // of the level, by place
+    std::vector<std::vector<uint32_t>> points;  // by place: the points that ended up there
+    std::vector<uint32_t> place_of;             // by (welded) point; kNowhere: it vanished
+    geometry::VertexRings rings;                // those of the level, by place
 };
 
 LevelBinder::LevelBinder(const Mesh& finest, const PoseSurface& surface)
@@ -105,9 +113,9 @@ std::optional<BoundLevel> LevelBinder::bind(simplify::TracedLevel&& level) const
     BoundLevel out;
     out.mesh = std::move(level.mesh);
     out.places.resize(out.mesh.positions.size());
-    // Vertices that were split off since (texture coordinates of their own) are where one was.
+    // A vertex that was split off since (for its own texture coordinates) is where another one was.
     const std::vector<uint32_t> same = weld(out.mesh);
-    std::vector<uint32_t> number_of;  // a place, by its number in the trace
+    std::vector<uint32_t> number_of;  // the number of a place, by its number in the trace
     uint32_t places = 0;
     for (uint32_t vertex = 0; vertex < out.places.size(); ++vertex) {
         const uint32_t known = vertex < level.places.size() ? vertex : same[vertex];
@@ -159,7 +167,7 @@ std::optional<BoundLevel> LevelBinder::bind(simplify::TracedLevel&& level) const
 
 void LevelBinder::add_source_samples(const BindingTrace& trace, BoundLevel& level) const {
     const PosedSurface& pose = surface_.pose();
-    std::optional<ray::MeshScene> whole;  // of the level, for parts that vanished
+    std::optional<ray::MeshScene> whole;  // the whole level, for parts that vanished
     for (const measure::WeightedVertex& from :
          measure::weighted_vertices(mesh_of(pose), kSourceWitnesses, kSeed)) {
         const glm::dvec3 here(pose.points[from.vertex]);
@@ -168,7 +176,7 @@ void LevelBinder::add_source_samples(const BindingTrace& trace, BoundLevel& leve
         geometry::NearestWalk nearest(level.mesh.positions, level.mesh.triangles, here);
         const uint32_t place = trace.place_of[welded_[from.vertex]];
         if (place != kNowhere) {
-            // From the triangles at its place on, which are of its own sheet.
+            // The search begins at the triangles at its place, which are of its own sheet.
             for (const uint32_t near : trace.rings.some_around(place))
                 nearest.visit(near);
             nearest.walk(
@@ -188,7 +196,8 @@ void LevelBinder::add_source_samples(const BindingTrace& trace, BoundLevel& leve
         const int at = welded_[t.x] == welded_[from.vertex]   ? 0
                        : welded_[t.y] == welded_[from.vertex] ? 1
                                                               : 2;
-        witness.source = {t[at], t[(at + 1) % 3], t[(at + 2) % 3]};  // its first corner
+        // The first of them is its own corner.
+        witness.source = {t[at], t[(at + 1) % 3], t[(at + 2) % 3]};
         witness.level = nearest.triangle();
         witness.level_u = static_cast<float>(nearest.u());
         witness.level_v = static_cast<float>(nearest.v());
@@ -218,7 +227,8 @@ void LevelBinder::add_level_samples(const BindingTrace& trace, BoundLevel& level
         measure_source(witness, pose);
         out.push_back(witness);
     }
-    // Points at even steps along the list of triangles, spread over them by the R2 sequence.
+    // The points are at even steps along the list of triangles, spread over them by the R2
+    // sequence.
     const double total = surface_area(mesh);
     if (!(total > 0))
         return;
@@ -258,7 +268,7 @@ void LevelBinder::add_level_samples(const BindingTrace& trace, BoundLevel& level
         };
         if (closest.triangle != ray::kNoTriangle && own(pose.triangles[closest.triangle].x)) {
             nearest.visit(closest.triangle);
-        } else {  // another sheet is nearer: from where its corners are tied to on
+        } else {  // another sheet is nearer: begin where its corners are tied to
             const auto welded = [&](uint32_t point) { return welded_[point]; };
             for (int corner = 0; corner < 3; ++corner)
                 nearest.start(rings_, welded, level.anchors[level.places[t[corner]]].corners);

@@ -8,9 +8,15 @@
 namespace lodestone::deform {
 namespace {
 
-constexpr double kErrorShare = 0.999;  // as in measure/deviation/surface_deviation
+// The share of the area whose distance is the error.
+// Law: the same as in measure/deviation/surface_deviation.
+constexpr double kErrorShare = 0.999;
+// The share of the source's lengths that have grown by less.
+// Taste: a larger one lets single stretched edges decide.
 constexpr double kGrowthShare = 0.99;
-// Of a walk: farther than so many triangles, surfaces that slide along each other seem to be apart.
+// The most steps of a walk: farther than this many triangles, surfaces that slide along each other
+// seem to be apart.
+// Taste: more walk farther, more slowly.
 constexpr int kSearchSteps = 24;
 
 struct WeightedValue {
@@ -18,7 +24,7 @@ struct WeightedValue {
     double weight;
 };
 
-/// The least value that so large a share of the weight does not exceed; 0 of nothing.
+/// The least value that this share of the weight does not exceed; 0 for no values.
 double quantile(std::vector<WeightedValue>& values, double share) {
     double sum = 0;
     for (const WeightedValue& one : values)
@@ -34,7 +40,7 @@ double quantile(std::vector<WeightedValue>& values, double share) {
     return values.empty() ? 0 : values.back().value;
 }
 
-/// Of three corners in one pose.
+/// Three corners in one pose.
 struct PosedCorners {
     glm::dvec3 a, b, c;
 
@@ -56,7 +62,7 @@ PoseError pose_error(const PoseErrorSamples& error_samples, const FollowedLevel&
     PoseError out;
     std::vector<WeightedValue> distances;
     std::vector<WeightedValue> growths;
-    // It stands for as much more of the surface as that has grown.
+    // The sample stands for more of the surface, by the factor that its triangle has grown.
     const auto add = [&](const PoseErrorSample& witness, const PosedCorners& source,
                          double distance) {
         if (!std::isfinite(distance))
