@@ -14,13 +14,24 @@
 namespace lodestone::prune {
 namespace {
 
+// The fewest parts of a crowd, and of a kind of connected parts.
+// Taste: with fewer, the loss of each part is seen.
 constexpr size_t kFewestParts = 32;
-// Of the area, a kind of connected parts: branches are no leaves.
+// The least share of the area of a kind of connected parts.
+// Taste: a smaller share would prune branches like leaves.
 constexpr double kLeastShare = 0.25;
-constexpr size_t kFewestOfKind = 8;      // given parts
-constexpr double kLargestPart = 8;       // over the median of its kind
-constexpr double kSlender = 3;           // length over width
-constexpr double kDifferentSizes = 0.3;  // squared standard deviation over mean of areas
+// The fewest given parts of a kind.
+// Taste: with fewer, the loss of each part is seen.
+constexpr size_t kFewestOfKind = 8;
+// The largest part, in medians of its kind.
+// Taste: a larger one would prune trunks like leaves.
+constexpr double kLargestPart = 8;
+// The length over the width from which on a part is slender.
+// Taste: a larger one lets pickets grow in length, too.
+constexpr double kSlender = 3;
+// The squared deviation of areas, over their squared mean, from which on sizes differ.
+// Taste: a smaller one tries to keep the largest parts more often, for less.
+constexpr double kDifferentSizes = 0.3;
 
 bool finite_triangle(const Mesh& mesh, const Triangle& t) {
     for (int corner = 0; corner < 3; ++corner) {
@@ -31,13 +42,13 @@ bool finite_triangle(const Mesh& mesh, const Triangle& t) {
     return true;
 }
 
-/// One number a triangle: triangles that share an edge have the same.
+/// One number for each triangle: triangles that share an edge have the same.
 std::vector<uint32_t> connected(const Mesh& mesh) {
     const std::vector<uint32_t> welded = weld(mesh);
     std::vector<uint32_t> parents(mesh.triangles.size());
     std::iota(parents.begin(), parents.end(), 0u);
     struct PartEdge {
-        uint32_t end;  // the higher one
+        uint32_t end;  // the higher end
         uint32_t triangle;
     };
     std::vector<size_t> first(mesh.positions.size() + 2, 0);  // by the lower end
@@ -68,13 +79,13 @@ std::vector<uint32_t> connected(const Mesh& mesh) {
     return parents;
 }
 
-/// The numbers 0, 1, ... instead of others, in their order; returns how many there are.
+/// Replaces numbers by 0, 1, ... in their order; returns how many there are.
 size_t renumber(std::vector<uint32_t>& numbers) {
     std::vector<uint32_t> known = numbers;
     known.erase(std::unique(known.begin(), known.end()), known.end());
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
-    uint32_t last = 0;  // mostly the next one is the same
+    uint32_t last = 0;  // the next number is mostly the same
     for (uint32_t& number : numbers) {
         if (known[last] != number)
             last = static_cast<uint32_t>(std::lower_bound(known.begin(), known.end(), number) -
@@ -84,13 +95,13 @@ size_t renumber(std::vector<uint32_t>& numbers) {
     return known.size();
 }
 
-/// What is known of a part while its triangles are gone through.
+/// The sums over a part while its triangles are visited.
 struct PartStatistics {
     double area = 0;
-    glm::dvec3 first{0.0};  // about the origin: the middle of the mesh's bound
+    glm::dvec3 first{0.0};  // about the middle of the mesh's bound
     glm::dmat3 second{0.0};
     bool known = false;
-    uint16_t slot = 0;  // of its first triangle
+    uint16_t slot = 0;  // the slot of its first triangle
     Hasher hash;
 };
 
@@ -115,8 +126,8 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-/// Puts a list in an order of which every beginning is spread evenly: both halves of space take
-/// turns in proportion, and so do their halves.
+/// Orders a list so that every beginning of it is spread evenly: both halves of space take turns in
+/// proportion, and so do their halves.
 void spread(const std::vector<Crowd::CrowdPart>& parts, std::span<uint32_t> list, uint64_t seed) {
     if (list.size() < 2)
         return;
@@ -163,7 +174,7 @@ void spread(const std::vector<Crowd::CrowdPart>& parts, std::span<uint32_t> list
     std::copy(merged.begin(), merged.end(), list.begin());
 }
 
-/// What puts a kept part's points where they are when it has grown.
+/// The transform that enlarges a kept part in its place.
 Affine enlargement(const Crowd::CrowdPart& part, double growth) {
     Affine out;
     const double even = std::sqrt(growth);
@@ -222,7 +233,7 @@ Crowd find_crowd(const Mesh& mesh, std::span<const uint32_t> given) {
     struct PartKind {
         std::vector<double> areas;
         double area = 0;
-        double largest = 0;  // that still belongs to it
+        double largest = 0;  // the largest area that still belongs to it
         size_t parts = 0;
     };
     std::map<uint16_t, PartKind> kinds;
@@ -279,7 +290,7 @@ std::vector<uint32_t> prune_order(const Crowd& crowd, PruneOrder order, uint64_t
             return crowd.parts[a].area > crowd.parts[b].area;
         });
     }
-    // The first of each kind come before everything: no color is ever gone.
+    // The first of each kind come before all others, so that no color is ever gone.
     std::vector<uint8_t> seen(crowd.slots.size(), 0);
     std::vector<uint32_t> firsts;
     std::vector<uint32_t> others;
@@ -315,7 +326,7 @@ PrunedMesh prune_crowd(const Mesh& mesh, const Crowd& crowd, std::span<const uin
     out.variance = before > 0 ? after / before : 1;
 
     std::vector<uint8_t> chosen(mesh.triangles.size(), 0);
-    std::vector<uint32_t> parts;  // of the chosen triangles
+    std::vector<uint32_t> parts;  // those of the chosen triangles
     for (size_t i = 0; i < chosen.size(); ++i) {
         if (crowd.part_of[i] == kNoPart || kept[crowd.part_of[i]] == 0)
             continue;
