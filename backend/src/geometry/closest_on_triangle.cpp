@@ -19,7 +19,7 @@ Lanes dot(const FourVectors& a, const FourVectors& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Parameter in 0...1 of the point of a + s d that is closest to p.
+/// The parameter in 0...1 of the point of a + s d that is closest to p.
 double on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& d) {
     const double square = glm::dot(d, d);
     return square > 0 ? std::clamp(glm::dot(p - a, d) / square, 0.0, 1.0) : 0.0;
@@ -40,7 +40,7 @@ OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const g
         if (u >= 0 && v >= 0 && u + v <= 1)
             return {a + u * ab + v * ac, u, v};
     }
-    // Outside the prism over the triangle: the nearest point lies on an edge.
+    // Outside the prism over the triangle the nearest point lies on an edge.
     const double s_ab = on_segment(p, a, ab);
     const double s_ac = on_segment(p, a, ac);
     const double s_bc = on_segment(p, b, c - b);
@@ -68,7 +68,8 @@ TriangleSpot nearest_spot(const TrianglePoints& corners, const glm::vec3& point)
     return {glm::dot(off, off), 0, weights};
 }
 
-/// As nearest_weights(), all regions at once: the last one that is written is the first there.
+/// Decides as nearest_weights() does, but for all regions at once: the last one that is written is
+/// the first one there.
 void four_nearest_spots(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
                         const glm::vec3& point, FourSpots& spots) {
     const auto corner = [&](size_t k) {

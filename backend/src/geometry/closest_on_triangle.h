@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The place of a triangle that is closest to a point: exactly, one at a time, and in single precision
-// for the many that fitting asks for.
+// Closest on triangle: the place of a triangle that is closest to a point: exactly, one at a time,
+// and in single precision for the many places that fitting asks for.
 #pragma once
 
 #include "base/maths.h"
@@ -19,23 +19,23 @@ struct OnTriangle {
     double u = 0;
     double v = 0;
 };
-/// Also of a triangle without area.
+/// The closest point; also for a triangle without area.
 OnTriangle closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                const glm::dvec3& c);
 
-/// No triangle was found.
+/// The number that says that no triangle was found.
 inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
 
 using TrianglePoints = std::array<glm::vec3, 3>;
 
 /// A place on a triangle.
 struct TriangleSpot {
-    float square = 1e30f;  // of the distance
+    float square = 1e30f;  // the squared distance
     uint32_t triangle = kNoTriangle;
     glm::vec3 weights{0.0f};
 };
 
-/// Barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
+/// The barycentric coordinates of the point of triangle abc nearest to the origin. source: Ericson,
 /// Real-Time Collision Detection, 5.1.5.
 template <typename Number>
 glm::vec<3, Number> nearest_weights(const glm::vec<3, Number>& a, const glm::vec<3, Number>& b,
@@ -76,17 +76,18 @@ glm::vec<3, Number> nearest_weights(const glm::vec<3, Number>& a, const glm::vec
 /// The place of a triangle nearest to a point.
 TriangleSpot nearest_spot(const TrianglePoints& corners, const glm::vec3& point);
 
-/// Places of four triangles nearest to a point: the same bits as nearest_spot().
+/// The places of four triangles nearest to a point: the same bits as nearest_spot().
 struct FourSpots {
+    /// Law: four floats are a vector of 16 bytes, which every x86-64 processor has.
     static constexpr size_t kSize = 4;
     std::array<float, kSize> squares;
-    std::array<std::array<float, kSize>, 3> weights;  // of each corner
+    std::array<std::array<float, kSize>, 3> weights;  // by corner
 };
 void four_nearest_spots(const std::array<TrianglePoints, FourSpots::kSize>& triangles,
                         const glm::vec3& point, FourSpots& spots);
 
 /// The nearest place of several triangles, the first of those that are equally near, if it is
-/// nearer than `best`. `corners(t)` are those of triangle t.
+/// nearer than `best`. `corners(t)`: the corners of triangle t.
 template <typename Corners>
 void nearest_of_triangles(std::span<const uint32_t> triangles, const glm::vec3& point,
                           const Corners& corners, TriangleSpot& best) {

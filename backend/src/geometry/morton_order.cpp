@@ -10,14 +10,17 @@
 namespace lodestone::geometry {
 namespace {
 
-constexpr unsigned kBits = 10;  // an axis; and sorted by at a time
+// The bits of a coordinate; also those that one pass sorts by.
+// Taste: more make finer cells and larger tables; three axes must fit into 32 bits.
+constexpr unsigned kBits = 10;
+// Law: the values of kBits bits.
 constexpr uint32_t kValues = 1u << kBits;
 
 struct MortonKey {
     uint32_t code, point;
 };
 
-uint32_t spread(uint32_t v) {  // two zeros behind each of ten bits
+uint32_t spread(uint32_t v) {  // puts two zeros behind each of ten bits
     v = (v | v << 16u) & 0x030000ffu;
     v = (v | v << 8u) & 0x0300f00fu;
     v = (v | v << 4u) & 0x030c30c3u;

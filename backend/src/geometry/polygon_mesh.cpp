@@ -11,8 +11,12 @@ namespace lodestone {
 namespace {
 
 constexpr uint32_t kEnd = ~uint32_t{0};
-constexpr size_t kMostTries = 256;  // for an equal vertex, the last made first
-constexpr double kRounding = 2e-5;  // given normals nearer than this are those of the faces
+// The most tries for an equal vertex, the last made first.
+// Taste: more find more equal vertices; the limit bounds the time.
+constexpr size_t kMostTries = 256;
+// The distance below which given normals are those of the faces.
+// Law: Blender's normals equal ours to 1e-5 (measured); this is twice that.
+constexpr double kRounding = 2e-5;
 
 glm::dvec3 point(const PolygonMesh& faces, size_t corner) {
     const float* p = faces.positions + 3 * size_t{faces.vertices[corner]};
@@ -39,7 +43,7 @@ glm::dvec3 unit(const glm::dvec3& v) {
     return length > 0 ? v / length : glm::dvec3(0.0);
 }
 
-/// True when the line between the first and third corner lies outside of a face of four.
+/// True when the line between the first and third corner lies outside of a face of four corners.
 bool split_other_way(const PolygonMesh& faces, size_t begin) {
     const glm::dvec3 first = point(faces, begin);
     const glm::dvec3 line = point(faces, begin + 2) - first;
@@ -79,7 +83,8 @@ size_t triangle_count(const PolygonMesh& faces) {
                : faces.triangles.size() / 3;
 }
 
-/// Unit normals of vertices: means of the faces', weighted by their angles. 0 where there is none.
+/// The unit normals of vertices: means of the faces' normals, weighted by their angles. 0 where a
+/// vertex has none.
 std::vector<glm::vec3> vertex_normals(const PolygonMesh& faces) {
     std::vector<glm::dvec3> sums(faces.vertex_count, glm::dvec3(0.0));
     for (size_t face = 0; face < faces.count(); ++face) {
@@ -121,7 +126,7 @@ public:
     }
 
     bool has_normals() const { return has_normals_; }
-    /// Every vertex looks the same from all of its corners.
+    /// Whether every vertex looks the same from all of its corners.
     bool whole() const {
         return (!has_normals_ || (!any_flat_ && faces_.normals == nullptr)) &&
                faces_.uvs == nullptr && faces_.colors == nullptr;
@@ -162,6 +167,8 @@ private:
 
 void check(const PolygonMesh& faces) {
     const size_t corners = faces.vertices.size();
+    // The most vertices and corners.
+    // Law: indices have 32 bits, and some numbers above are marks.
     constexpr size_t kMost = size_t{1} << 31u;
     if (faces.vertex_count > kMost || corners > kMost)
         fail(Status::InvalidArgument, "a mesh of ", faces.vertex_count, " vertices and ", corners,
@@ -259,8 +266,8 @@ Mesh mesh_of(const PolygonMesh& faces, size_t slot_count) {
         mesh.uvs.resize(faces.vertex_count);
     if (faces.colors != nullptr)
         mesh.colors.resize(faces.vertex_count);
-    // What the first corner of a position shows stands in its place, what others show differently
-    // follows after all positions, in chains; almost always one or two long.
+    // The first corner of a position takes its place; corners that differ follow behind all
+    // positions, in chains, which almost always are one or two long.
     std::vector<uint8_t> taken(faces.vertex_count, 0);
     std::vector<uint32_t> next(faces.vertex_count, kEnd);
     std::vector<uint32_t> made(faces.vertices.size(), kEnd);  // by corner

@@ -9,7 +9,8 @@
 namespace lodestone {
 namespace {
 
-/// Along the primitive's axes from its center, mirrored to where no coordinate is negative.
+/// The point along the primitive's axes from its center, mirrored so that no coordinate is
+/// negative.
 glm::dvec3 mirrored(const Primitive& primitive, const glm::dvec3& point) {
     return glm::abs((point - primitive.center) * primitive.axes);
 }
@@ -23,10 +24,16 @@ double distance_to_box(const Primitive& box, const glm::dvec3& point) {
 }
 
 double distance_to_ellipsoid(const Primitive& ellipsoid, const glm::dvec3& point) {
-    // So far from the planes of symmetry that the nearest point is one, so little that it does not
-    // matter; over the largest half size. Flatter ones are so thick.
+    // The least distance from the planes of symmetry, over the largest half size: large enough that
+    // there is one nearest point, and small enough not to matter. Flatter primitives get this
+    // thickness.
+    // Law: rounding of double precision, with a large margin.
     constexpr double kAside = 1e-12;
+    // How much the sum may be above 1 on the ellipsoid.
+    // Law: rounding of double precision, with a large margin.
     constexpr double kOn = 1e-10;
+    // The most of Newton's steps.
+    // Taste: a few are enough; the limit bounds the time.
     constexpr int kMostSteps = 32;
     const glm::dvec3 from_center = mirrored(ellipsoid, point);
     const double size = largest(ellipsoid.half_size);
@@ -37,7 +44,8 @@ double distance_to_ellipsoid(const Primitive& ellipsoid, const glm::dvec3& point
     const double least = std::min({half.x, half.y, half.z});
     const glm::dvec3 more = (half - least) * (half + least);
     // With s = t + least^2 the root of the sum of (half p / (s + more))^2 is 1; one over it rises
-    // and is concave. So from where the largest of the three is 1 Newton's steps never go too far.
+    // and is concave. So Newton's steps that begin where the largest of the three is 1 never go too
+    // far.
     const glm::dvec3 arm = half * p;
     double s = largest(arm - more);
     glm::dvec3 inverse(0.0);

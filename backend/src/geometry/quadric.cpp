@@ -7,7 +7,7 @@
 namespace lodestone::geometry {
 namespace {
 
-/// L D L^T of a positive definite symmetric matrix.
+/// The factors L and D of a positive definite symmetric matrix, which is L D L^T.
 struct LdltFactors {
     double l10, l20, l21, d0, d1, d2;
 
@@ -55,11 +55,11 @@ CollapseOptimum optimal_collapse(const EdgeEnd& a, const EdgeEnd& b, const glm::
     const glm::dvec3 linear = b.quadric * d - a.quadric * d;
     const double pull = kEdgePull * trace;
     const LdltFactors factors(q, pull);
-    // The second solve starts the pull from the first answer: what the planes decide is then exact
-    // to kEdgePull squared.
+    // The second solve starts the pull from the first answer, so that the directions that planes
+    // decide are exact to kEdgePull squared.
     glm::dvec3 y = factors.solve(linear);
     y = factors.solve(linear + pull * y);
-    // Volume: facet . y = h; the shared triangles contain the edge, so they do not enter h.
+    // The volume: facet . y = h; the shared triangles contain the edge, so they do not enter h.
     const glm::dvec3 facet = a.facet + b.facet - shared;
     if (glm::dot(facet, facet) > 0.01 * trace * trace) {
         const glm::dvec3 turned = factors.solve(facet);
@@ -71,7 +71,7 @@ CollapseOptimum optimal_collapse(const EdgeEnd& a, const EdgeEnd& b, const glm::
     }
     const double reach = glm::dot(d, d);
     if (!(glm::dot(y, y) <= 9 * reach)) {
-        // A nearly singular corner far away: the best of three points of the edge.
+        // The corner is nearly singular and far away: take the best of three points of the edge.
         CollapseOptimum best{middle, collapse_cost(a, b, middle)};
         for (const glm::dvec3& point : {a.point, b.point}) {
             const double cost = collapse_cost(a, b, point);

@@ -9,13 +9,23 @@
 namespace lodestone {
 namespace {
 
-// Of the strand's largest radius: half a pixel where it is four pixels wide.
+// The bend that is straightened, in parts of the strand's largest radius.
+// Taste: a larger one saves triangles; 0.25 is half a pixel where the strand is four pixels wide.
 constexpr double kStraight = 0.25;
-constexpr int kParts = 4;            // of a segment, to bend it
-constexpr size_t kLongestRun = 256;  // points
+// The parts of a bent segment.
+// Taste: more are smoother and more triangles, before straightening.
+constexpr int kParts = 4;
+// The most points that are straightened together.
+// Taste: longer runs keep fewer points; the time grows with their square.
+constexpr size_t kLongestRun = 256;
+// The sides of a tube.
+// Taste: more are rounder and more triangles; strands are a few pixels wide at most.
 constexpr uint32_t kSides = 3;
-// Corners of an equilateral triangle this many radii from the axis: perimeter 2 pi r.
+// The distance of the corners from the axis, in radii.
+// Law: an equilateral triangle with this one has the perimeter 2 pi r.
 constexpr double kWiden = 2 * std::numbers::pi / (3 * std::numbers::sqrt3);
+// The most vertices of a mesh.
+// Law: indices have 32 bits, and some numbers above are marks.
 constexpr uint64_t kMostVertices = uint64_t{1} << 31u;
 
 struct StrandPoint {
@@ -23,7 +33,7 @@ struct StrandPoint {
     double radius;
 };
 
-/// The strand's points that can be drawn: finite, each a little away from the one before.
+/// Collects the strand's points that can be drawn: finite, each a little away from the one before.
 void collect(const HairStrands& strands, size_t first, size_t count,
              std::vector<StrandPoint>& keys) {
     keys.clear();
@@ -40,8 +50,8 @@ void collect(const HairStrands& strands, size_t first, size_t count,
     }
 }
 
-/// Bends the line through its keys as Blender draws hair: by Catmull and Rom's curve. The ends go
-/// on as they began; radii stay between their neighbors'.
+/// Bends the line through its keys as Blender draws hair: by Catmull and Rom's curve. The ends
+/// continue as they began; radii stay between their neighbors'.
 void bend(std::vector<StrandPoint>& keys) {
     if (keys.size() < 3)
         return;
@@ -65,7 +75,7 @@ void bend(std::vector<StrandPoint>& keys) {
     keys = std::move(bent);
 }
 
-/// How far a key is from the cone between two others.
+/// The distance of a key from the cone between two others.
 double distance(const StrandPoint& key, const StrandPoint& from, const StrandPoint& to) {
     const glm::dvec3 along = to.point - from.point;
     const double square = glm::dot(along, along);
@@ -75,7 +85,7 @@ double distance(const StrandPoint& key, const StrandPoint& from, const StrandPoi
     return std::max(aside, std::abs(key.radius - (from.radius + part * (to.radius - from.radius))));
 }
 
-/// Keeps the keys that the line bends at (Douglas and Peucker); true when there is a tube to draw.
+/// Keeps the keys where the line bends (Douglas and Peucker); true when there is a tube to draw.
 bool straighten(std::vector<StrandPoint>& keys) {
     double widest = 0;
     for (const StrandPoint& key : keys)
@@ -84,7 +94,7 @@ bool straighten(std::vector<StrandPoint>& keys) {
         return false;
     std::vector<uint8_t> keep(keys.size(), 0);
     std::vector<std::pair<size_t, size_t>> open;
-    for (size_t low = 0; low + 1 < keys.size(); low += kLongestRun) {  // a bound on the time
+    for (size_t low = 0; low + 1 < keys.size(); low += kLongestRun) {  // the runs bound the time
         const size_t high = std::min(low + kLongestRun, keys.size() - 1);
         keep[low] = keep[high] = 1;
         open.emplace_back(low, high);
@@ -131,7 +141,7 @@ public:
     explicit TubeMaker(Mesh& mesh) : mesh_(mesh) {}
 
     void add(const std::vector<StrandPoint>& keys, uint16_t slot) {
-        // Straightening may leave two ends in one place: the strand returns to its root.
+        // Straightening may leave two ends in one place, where the strand returns to its root.
         glm::dvec3 side(0.0);
         TubeRing before;
         for (size_t i = 0; i < keys.size(); ++i) {
@@ -139,7 +149,7 @@ public:
             const glm::dvec3 out = i + 1 < keys.size() ? way(keys[i], keys[i + 1]) : in;
             glm::dvec3 tangent = i > 0 ? in + out : out;
             const double length = glm::length(tangent);
-            tangent = length > 1e-6 ? tangent / length : out;  // it turns back on itself
+            tangent = length > 1e-6 ? tangent / length : out;  // the strand turns back on itself
             if (tangent == glm::dvec3(0.0))
                 tangent = {0, 0, 1};
             // The side is carried along, so that the tube does not twist.
@@ -159,7 +169,7 @@ public:
 private:
     struct TubeRing {
         uint32_t first = 0;
-        bool point = false;  // where the tube has no radius
+        bool point = false;  // the tube has no radius there
     };
 
     static glm::dvec3 way(const StrandPoint& from, const StrandPoint& to) {
@@ -168,8 +178,8 @@ private:
         return length > 0 ? along / length : glm::dvec3(0.0);
     }
 
-    /// A point has a vertex for each side, with the normal of its middle: one that looked along the
-    /// tube would shade all of a straight strand as if it turned to its tip.
+    /// A ring without radius has a vertex for each side, with the normal of that side's middle: a
+    /// normal along the tube would shade all of a straight strand as if it turned to its tip.
     TubeRing ring_at(const StrandPoint& key, const glm::dvec3& tangent, const glm::dvec3& side) {
         const auto first = static_cast<uint32_t>(mesh_.positions.size());
         const bool point = !(key.radius > 0);

@@ -20,8 +20,9 @@ glm::dvec2 on_box(const glm::dvec3& p, const glm::dvec3& normal) {
     return {normal.z > 0 ? 1 - p.y : p.y, p.x};
 }
 
-/// On the axis, to rounding of floats, there is none: not a number.
+/// The longitude of a point; not a number on the axis, where there is none but for rounding.
 double longitude(const glm::dvec3& p) {
+    // Law: rounding of single precision, with a large margin.
     constexpr double kOnAxis = 1e-5;
     if (std::hypot(p.x, p.y) < kOnAxis)
         return std::nan("");

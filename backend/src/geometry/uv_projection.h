@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UvProjection: texture coordinates made from positions.
+// UV projection: texture coordinates made from positions.
 #pragma once
 
 #include "base/maths.h"
@@ -18,10 +18,10 @@ enum class UvProjection : uint8_t {
     Tube = 3,    // longitude around that point's z axis, and z
 };
 
-/// The texture coordinates of a triangle's corners, from points in the space that the picture is
-/// laid on and the triangle's normal (any length) in the object's. Triangles across the seam of
-/// Sphere and Tube go on beyond 1, so that a repeated picture has no seam. source: Blender's image
-/// texture node, as Cycles draws it; Box without blending
+/// The texture coordinates of a triangle's corners, from points in the space of the picture and the
+/// triangle's normal (of any length) in the object's. Triangles across the seam of Sphere and Tube
+/// continue beyond 1, so that a repeated picture has no seam. source: Blender's image texture node,
+/// as Cycles draws it; Box without blending
 std::array<glm::dvec2, 3> project_uvs(UvProjection projection,
                                       const std::array<glm::dvec3, 3>& points,
                                       const glm::dvec3& normal);

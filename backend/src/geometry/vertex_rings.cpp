@@ -19,7 +19,8 @@ bool NearestWalk::visit(uint32_t index) {
     const OnTriangle on = closest_on_triangle(from_, a, b, c);
     const glm::dvec3 arm = on.point - from_;
     const double square = glm::dot(arm, arm);
-    const glm::dvec3 sum = a + b + c;  // the nearest point may lie on the edge of two that are
+    // The nearest point may lie on the edge between two triangles.
+    const glm::dvec3 sum = a + b + c;
     if (!std::isfinite(square) || !std::isfinite(sum.x + sum.y + sum.z))
         return false;
     if (square > square_ || (square == square_ && index > triangle_))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VertexRings: the triangles around every vertex, and the nearest of them found by walking.
+// Vertex rings: the triangles around every vertex, and the nearest of them found by walking.
 #pragma once
 
 #include "model/mesh.h"
@@ -11,7 +11,7 @@
 
 namespace lodestone::geometry {
 
-/// Triangles by a number that their corners have: their vertex, or what several vertices share.
+/// The triangles by a number of their corners: the vertex, or a number that several vertices share.
 class VertexRings {
 public:
     VertexRings() = default;
@@ -30,13 +30,14 @@ public:
         }
     }
 
-    /// Ascending.
+    /// The triangles around a vertex, ascending.
     std::span<const uint32_t> around(uint32_t number) const {
         return {triangles_.data() + first_[number], triangles_.data() + first_[number + 1]};
     }
 
-    /// Not more of them than anybody who asks for every vertex has time for: hubs have thousands.
+    /// At most kMost of them, for callers that visit every vertex: hubs have thousands.
     std::span<const uint32_t> some_around(uint32_t number) const {
+        /// Taste: more find nearer triangles at hubs, more slowly.
         constexpr size_t kMost = 64;
         const std::span<const uint32_t> all = around(number);
         return all.first(std::min(all.size(), kMost));
@@ -47,8 +48,8 @@ private:
     std::vector<uint32_t> triangles_;
 };
 
-/// Looks for the nearest point of some triangles; among equally near ones the lowest. Triangles
-/// with corners that are no numbers are passed over.
+/// Searches for the nearest point of some triangles; among equally near ones the lowest. Triangles
+/// with corners that are not numbers are ignored.
 class NearestWalk {
 public:
     static constexpr uint32_t kNone = ~uint32_t{0};
@@ -62,8 +63,8 @@ public:
     /// True when the triangle is the nearest so far.
     bool visit(uint32_t index);
 
-    /// Visits what is around the corner of a triangle that has least around it: the triangle
-    /// itself, or what it has become where its polygon is cut another way.
+    /// Visits the triangles around the corner of a triangle that has the fewest around it: the
+    /// triangle itself, or the one it has become where its polygon is cut another way.
     template <typename NumberOf>
     void start(const VertexRings& rings, const NumberOf& number_of, const Triangle& corners) {
         std::span<const uint32_t> least = rings.some_around(number_of(corners.x));
@@ -77,8 +78,8 @@ public:
     }
 
     /// Goes on from the nearest so far to neighbors that are nearer, at most `steps` times: first
-    /// along vertices, which is cheap, then along triangles. `number_of` a vertex is its number in
-    /// the rings.
+    /// along vertices, which is fast, then along triangles. `number_of`: gives the number of a
+    /// vertex in the rings.
     template <typename NumberOf>
     void walk(const VertexRings& rings, const NumberOf& number_of, int steps) {
         if (triangle_ == kNone)
@@ -117,7 +118,7 @@ public:
     const Triangle& corners() const { return triangles_[triangle_]; }
     double u() const { return u_; }
     double v() const { return v_; }
-    double square() const { return square_; }  // of the distance
+    double square() const { return square_; }  // the squared distance
 
 private:
     double square_to(uint32_t vertex) const {
