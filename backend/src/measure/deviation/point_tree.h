@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PointTree: the nearest of a set of points that is wanted.
+// PointTree: a k-d tree that finds the nearest of those points that the caller wants.
 #pragma once
 
 #include "base/maths.h"
@@ -10,17 +10,19 @@
 
 namespace lodestone::measure {
 
-/// A balanced k-d tree (Bentley 1975): halves by the median along the longest side of their bound.
+/// A balanced k-d tree (Bentley 1975) that is split at the median along the longest side of the
+/// bound.
 class PointTree {
 public:
     PointTree() = default;
-    /// `numbers` are what the points are called. All are finite.
+    /// `numbers` are the names of the points. All points are finite.
     PointTree(std::vector<glm::dvec3> points, std::vector<uint32_t> numbers);
 
+    /// Whether the tree holds no point.
     bool empty() const { return nodes_.empty(); }
 
-    /// The square of the distance to the nearest point whose number is `wanted`, or `square` where
-    /// that is not larger.
+    /// The square of the distance (m^2) to the nearest point whose number is `wanted`, or `square`
+    /// where that is not larger.
     template <typename Wanted>
     double nearest(const glm::dvec3& from, double square, const Wanted& wanted) const {
         search(0, nodes_.size(), from, square, wanted);
@@ -28,12 +30,14 @@ public:
     }
 
 private:
+    /// Points of a leaf, which are visited one by one.
+    /// Taste: a larger value saves memory and costs more distances a search.
     static constexpr size_t kLeaf = 8;
 
     struct PointNode {
         glm::dvec3 point;
         uint32_t number;
-        uint32_t axis;  // of the split, of the one in the middle of its range
+        uint32_t axis;  // the axis of the split, for the point in the middle of its range
     };
 
     void build(size_t begin, size_t end);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SurfaceDeviation: how far a solid stand-in is from the finest surface, as far as that can be seen.
+// SurfaceDeviation: how far a solid stand-in is from the finest surface, as far as it can be seen.
 #pragma once
 
 #include "measure/deviation/surface_samples.h"
@@ -20,20 +20,23 @@ class VisibleLooks;
 /// the finest shows the look that is there instead; and, for a look that the finest has nowhere (a
 /// mean color), the radius within which the finest's own colors mix to it. If the same textured
 /// material shows another color there, it was moved by as much as its texture slid. Every look that
-/// at least .2 % of the area shows has its own quantile, so a lost road is wrong by half its width,
-/// however large the field around it is. Transparent points are neither sampled nor matched.
+/// at least 0.2 % of the area shows has its own quantile, so a lost road is wrong by half its
+/// width, however large the field around it is. Transparent points are neither sampled nor matched.
 struct SurfaceDeviation {
-    double error = 0;  // the largest quantile: places (99.9 %) both ways, and moves of every look
-    double max = 0;    // the largest distance that was seen
+    /// Metres: the largest quantile of places (99.9 %), both ways, and of moves of every look.
+    double error = 0;
+    double max = 0;  // metres: the largest distance that was seen
 };
 
+/// The numbers of samples of a comparison.
 struct DeviationOptions {
-    uint32_t samples = 8192;        // points uniform in area, each direction
-    uint32_t most_vertices = 8192;  // of the finest; a larger one is represented by so many
+    uint32_t samples = 8192;  // points uniform in area, in each direction
+    /// Vertices of the finest; a larger mesh is represented by so many.
+    uint32_t most_vertices = 8192;
     uint64_t seed = 1;
-    /// Not 0: it is told which triangles of the finest can be seen, by so many rays of each
-    /// (seen_from_outside()), and vertices of hidden ones alone are hidden without rays of their
-    /// own. Of what refracts nothing is hidden.
+    /// Rays of each triangle by which seen_from_outside() tells which triangles of the finest can
+    /// be seen; vertices of hidden triangles alone are then hidden without rays of their own. 0: no
+    /// triangle is asked. A mesh that refracts hides nothing.
     int rays_of_triangle = 0;
 };
 
@@ -49,69 +52,72 @@ public:
     DeviationReference(const Mesh& finest, const DeviationOptions& options,
                        const SurfaceLooks& surface = {}, const Job& job = {});
     ~DeviationReference();
-    /// What repaint() found on its way; empty where there was nothing to vote on.
+    /// The answers that repaint() found on its way; empty where there was nothing to vote on.
     struct RepaintResult {
-        std::shared_ptr<const ray::MeshScene> scene;  // of the level, opaque, for closest points
-        std::vector<ray::ClosestPoint>
-            nearest;  // to each visible point; infinitely far: not searched
+        std::shared_ptr<const ray::MeshScene> scene;  // the level, opaque, for closest points
+        /// The point of the level nearest to each visible point; infinitely far: not searched.
+        std::vector<ray::ClosestPoint> nearest;
         bool surely_useless = false;
     };
     DeviationReference(const DeviationReference&) = delete;
     DeviationReference& operator=(const DeviationReference&) = delete;
 
-    /// `surface` is numbered by the same palette. Same bits on any number of threads, and may be
-    /// called from any. If one of the two meshes has nothing to measure to, both numbers are the
-    /// diameter of the other's bounding sphere; two empty meshes agree. Of an error larger than
-    /// `useless` it may be told no more than that it is, which takes less time: by any number above
-    /// `useless`, infinite where that is very sure.
+    /// The deviation of a stand-in, whose `surface` is numbered by the same palette. It may be
+    /// called from any thread, and the bits are the same on any number of threads. If one of the
+    /// two meshes has nothing to measure to, both numbers are the diameter of the other's bounding
+    /// sphere; two empty meshes agree. When the error is larger than `useless`, the answer may be
+    /// any number above `useless` (infinite where that is very sure), which takes less time.
     SurfaceDeviation of(const Mesh& stand_in, const SurfaceLooks& surface = {}, const Job& job = {},
                         double useless = std::numeric_limits<double>::infinity()) const {
         return of(stand_in, surface, {}, useless, job);
     }
-    /// The same for a level after repaint(), whose result is `known`, or without it (empty). No
-    /// triangle of the level may have moved since.
+    /// The deviation of a level after repaint(), whose result is `known`, or of a level without it
+    /// (empty). No triangle of the level may have moved since.
     SurfaceDeviation of(const Mesh& stand_in, const SurfaceLooks& surface,
                         const RepaintResult& known, double useless, const Job& job) const;
 
-    /// The same of a box or an ellipsoid that shows one look everywhere. Distances to it are exact;
-    /// it is asked at a quarter of the points, and at its corners or as many as tell an ellipsoid.
+    /// The deviation of a box or an ellipsoid that shows one look everywhere. Distances to it are
+    /// exact; they are measured from a quarter of the points, and from the corners of a box or from
+    /// as many points as tell an ellipsoid.
     SurfaceDeviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
                         const Job& job) const;
 
-    /// The same with half of all points: less exact, in half of the time.
+    /// The deviation told by half of all points: less exact, in half of the time.
     SurfaceDeviation roughly(const Mesh& stand_in, const SurfaceLooks& surface,
                              const RepaintResult& known, double useless, const Job& job) const;
 
     /// Gives each triangle of a level (with the finest's slots and skin) the slot that most of the
     /// visible points nearest to it show, if enough of them agree: boards look like the tiles that
     /// lay on them. A textured slot is given only with texture coordinates that show what those
-    /// points show. A level whose error is surely above `useless` is left as it is; `rough`: that
-    /// of roughly().
+    /// points show. A level whose error is surely above `useless` is left as it is; with `rough`
+    /// that is the error of roughly().
     RepaintResult repaint(Mesh& level, const ray::MeshSkin* skin = nullptr, const Job& job = {},
                           bool rough = false,
                           double useless = std::numeric_limits<double>::infinity()) const;
 
-    /// Of the finest, as it was made for this.
+    /// The scene of the finest, as it was made for this.
     const ray::MeshScene& scene() const { return scenes_.whole(); }
-    /// Likewise; of the mesh it was made from, which must still be there.
+    /// The sampler of the finest; it refers to the mesh it was made from, which must still be
+    /// there.
     const VisibleSampler& sampler() const { return sampler_; }
-    /// By triangle of the finest, 1 where it can be seen; empty where that was not asked for, or
-    /// where the finest refracts.
+    /// The triangles of the finest that can be seen, 1 or 0 for each; empty where that was not
+    /// asked for, or where the finest refracts.
     const std::vector<uint8_t>& seen_triangles() const { return seen_triangles_; }
-    /// What the first rays of sampler() found, once.
+    /// The points that the first rays of sampler() found; may be taken once.
     std::vector<CastPoints> take_cast_points() { return std::move(cast_); }
 
-    /// How many visible points and vertices of the finest there are.
+    /// The number of visible points and vertices of the finest.
     size_t visible_points() const { return seen_.points.size(); }
 
 private:
-    /// Points of the finest.
+    /// Points of the finest that can be seen.
     struct SeenSamples {
         std::vector<SurfaceSample> points;  // neighbors in the list are mostly neighbors in space
-        std::unique_ptr<const VisibleLooks> looks;  // the same, to be searched
+        std::unique_ptr<const VisibleLooks> looks;  // the same points, to be searched
     };
     struct Against;
-    /// Asked at so many points and vertices; `exact`: the solid that the mesh is about.
+    /// A mesh, and how many of its points and vertices are asked; `exact` is the solid that the
+    /// mesh is about.
     struct StandIn {
         const Mesh& mesh;
         const SurfaceLooks& surface;
@@ -133,7 +139,7 @@ private:
     std::vector<uint8_t> seen_triangles_;
     const LookPalette* palette_;
     SeenSamples seen_;
-    mutable std::once_flag once_;  // of half of them: nobody may ask
+    mutable std::once_flag once_;  // makes few_: mostly nobody asks for it
     mutable SeenSamples few_;
     double diameter_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surface samples: points of a mesh that distances are measured from.
+// SurfaceSample: points of a mesh that distances are measured from.
 #pragma once
 
 #include "base/job.h"
@@ -11,7 +11,8 @@
 
 namespace lodestone::measure {
 
-/// Only the place of a sample counts (vertices lie on borders of looks).
+/// The look of a sample of which only the place counts (vertices lie on borders of looks).
+/// Law: the largest number of 16 bits; LookPalette numbers fewer looks than that.
 inline constexpr uint16_t kAnyLook = 0xffff;
 
 /// A point, its share of a direction's weight, and what it looks like.
@@ -21,14 +22,15 @@ struct SurfaceSample {
     uint16_t look = kAnyLook;
     uint16_t slot = 0;         // the material slot it shows
     bool varies = false;       // its triangle shows other things elsewhere
-    glm::dvec3 side{0.0};      // unit normal towards whoever sees it; 0: not known
-    glm::dvec3 color{0.0};     // what it shows, display-encoded
-    glm::dvec2 uv{0.0};        // of a mesh that has any
-    double metres_per_uv = 0;  // at least so far apart are points whose uv differ by 1
+    glm::dvec3 side{0.0};      // unit normal towards the viewer; 0: not known
+    glm::dvec3 color{0.0};     // the shown color, display-encoded
+    glm::dvec2 uv{0.0};        // texture coordinates, where the mesh has any
+    double metres_per_uv = 0;  // points whose uv differ by 1 are at least so far apart
 };
 
-/// What a mesh looks like: one look a triangle, its skin, and what looks mean. Empty looks: all
-/// alike. Without a skin everything is opaque and of its slot's mean color.
+/// The look of a mesh: one number a triangle, its skin, and the palette that numbers the looks.
+/// Empty looks: all triangles look alike. Without a skin everything is opaque and of its slot's
+/// mean color.
 struct SurfaceLooks {
     std::span<const uint16_t> looks;
     const LookPalette* palette = nullptr;
@@ -42,28 +44,29 @@ struct WeightedVertex {
 };
 
 /// At most `most` vertices with weight, chosen evenly over the list; the weights of those left out
-/// go to the rest, so that their sum is the mesh's area.
+/// go to the others, so that the sum is the mesh's area in m^2.
 std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, uint64_t seed);
 
-/// Points uniform in area, one in each of `count` equal steps along the list of triangles; only
-/// their places count. Where the scene shows nothing there is none.
+/// Adds points uniform in area, one in each of `count` equal steps along the list of triangles;
+/// only their places count. No point is added where the scene shows nothing.
 void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out);
 
-/// The vertices themselves, where the scene shows anything at them.
+/// Adds the vertices themselves, where the scene shows anything at them.
 void add_vertex_samples(const Mesh& mesh, const ray::MeshScene& scene,
                         const std::vector<WeightedVertex>& vertices,
                         std::vector<SurfaceSample>& out);
 
-/// Points that rays from outside hit, sharing the visible area of one side equally. Of something
-/// with glass all points: rays end at glass, but eyes do not. What the sampler's first rays found,
-/// up to twice as many as points were wanted; with glass none.
+/// Adds points that rays from outside hit; they share the visible area of one side equally. On a
+/// mesh with glass all points are added: rays end at glass, but eyes do not. Returns the points of
+/// the sampler's first rays, up to twice as many as points were wanted; with glass none.
 std::vector<CastPoints> add_visible_points(const Mesh& mesh, const VisibleSampler& sampler,
                                            const SurfaceLooks& surface, uint32_t count,
                                            const Job& job, std::vector<SurfaceSample>& out);
 
-/// Vertices from beside which some ray sees infinity. `seen`: the triangles that can be seen, if
-/// that is known (else empty); a vertex of none of them is not asked for.
+/// Adds vertices from beside which some ray sees infinity. `seen` marks the triangles that can be
+/// seen, if that is known (else empty); a vertex of none of them is not asked for. `lift` is in
+/// metres.
 void add_visible_vertices(const Mesh& mesh, const ray::MeshScene& scene, const OutsideSides& sides,
                           std::span<const uint8_t> seen,
                           const std::vector<WeightedVertex>& vertices, double lift, uint64_t seed,

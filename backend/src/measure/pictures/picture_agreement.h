@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PictureAgreement: from which pixel size on pictures of a stand-in and of the finest look the same.
+// PictureAgreement: the pixel size from which on pictures of a stand-in and of the finest look the
+// same.
 #pragma once
 
 #include "base/job.h"
@@ -11,15 +12,19 @@
 namespace lodestone::measure {
 
 /// Pictures agree when, over the covered pixels of all of them, the mean difference of coverage
-/// (0...1) is at most this, ...
+/// (0...1) is at most this.
+/// Taste: a larger value lets foliage grow thin or thick before its levels are refused.
 inline constexpr double kMostCoverageOff = 0.10;
-/// ... and that of light, over the mean light of the finest's, at most this.
+/// Pictures agree when the mean difference of light, over the mean light of the finest, is at most
+/// this.
+/// Taste: a larger value lets stand-ins be darker, brighter or smoother for less cost.
 inline constexpr double kMostLightOff = 0.20;
 
+/// The answer of a comparison of pictures.
 struct PictureAgreement {
-    double error = 0;       // the smallest pixel size at which pictures agree, metres
-    double coverage = 0;    // all covered area of the stand-in over that of the finest
-    glm::dvec3 light{0.0};  // the finest's mean light where covered over the stand-in's, by color
+    double error = 0;       // metres: the smallest pixel size at which pictures agree
+    double coverage = 0;    // the covered area of the stand-in over that of the finest
+    glm::dvec3 light{0.0};  // by color: the finest's mean light where covered over the stand-in's
 };
 
 /// The error of what is not solid: foliage, fences, crowds, things one can see through. If single
@@ -33,43 +38,53 @@ struct PictureAgreement {
 /// differences.
 class AgreementReference {
 public:
-    /// Samples along a side of the finest's bounding square; the smallest pixel is two wide.
+    /// Samples along a side of the finest's bounding square; the smallest pixel is two samples
+    /// wide.
+    /// Taste: a larger value resolves smaller errors, for time that grows with its square.
     static constexpr int kSide = 90;
-    /// Enough for what is coarse anyway, four times faster.
+    /// Samples along a side for objects whose levels are coarse anyway.
+    /// Taste: half of kSide, four times faster; a smaller value cannot tell errors below a
+    /// twentieth of the size.
     static constexpr int kCoarseSide = 45;
-    /// Enough for how bright something is, and for pixels of a sixth of its size.
+    /// Samples along a side where only the brightness counts, or pixels of a sixth of the size.
+    /// Taste: a third of kSide, nine times faster; a smaller value adds noise to brightness.
     static constexpr int kBrightSide = 30;
 
-    /// Keeps the pictures alone. `side` is one of these. Throws Error: InvalidArgument,
-    /// RaysUnavailable, Cancelled.
+    /// Keeps the pictures alone. `side` is one of the three numbers above. Throws Error:
+    /// InvalidArgument, RaysUnavailable, Cancelled.
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                        int side = kSide, const Job& job = {});
-    /// The same with a scene made from this mesh, and this skin, before.
+    /// Takes a scene that was made from this mesh and this skin before.
     AgreementReference(const Mesh& finest, const ray::MeshScene& scene, const ray::SkinPtr& skin,
                        uint64_t seed, int side, const Job& job);
 
-    /// Same bits on any number of threads. Two meshes that show nothing agree at every size. If the
-    /// pictures agree at no size, the error is one to two sides of the picture, the more they
-    /// differ.
+    /// The agreement of a stand-in with the finest. The bits are the same on any number of threads.
+    /// Two meshes that show nothing agree at every size. If the pictures agree at no size, the
+    /// error is one to two sides of the picture, the more they differ.
     PictureAgreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
 
-    /// Which point of a stand-in each sample of the pictures shows, and how much light falls on it.
-    /// This takes most of the time, and is the same for all skins with the same transparency.
+    /// The point of a stand-in that each sample of the pictures shows, and how much light falls on
+    /// it. Tracing takes most of the time, and the result is the same for all skins with the same
+    /// transparency.
     class TracedPictures;
-    /// Keeps a reference to the mesh. Same bits on any number of threads.
+    /// Traces the pictures of a stand-in. Keeps a reference to the mesh. The bits are the same on
+    /// any number of threads.
     TracedPictures trace(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
-    /// `skin` is the one it was traced in, or differs from that in colors and scales of textures
-    /// alone.
+    /// The agreement of traced pictures. `skin` is the one they were traced in, or one that differs
+    /// from it in colors and scales of textures alone.
     PictureAgreement of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
-    /// The error of gaps alone. The pictures compared are the finest's and one that differs from it
-    /// only where the finest shows a point that has no visible point of the stand-in within twice
-    /// `off` (and the distance of samples). Returns the smallest pixel size at which they agree (0:
-    /// all sizes), or the error of of() if the stand-in covers much less in all.
+    /// The error of gaps alone, in metres. The pictures compared are the finest's and one that
+    /// differs from it only where the finest shows a point that has no visible point of the
+    /// stand-in within twice `off` metres (and the distance of samples). Returns the smallest pixel
+    /// size at which they agree (0: all sizes), or the error of of() if the stand-in covers much
+    /// less in all.
     double gap_error(const TracedPictures& stand_in, const ray::SkinPtr& skin, double off) const;
-    /// As of(), without the error.
+    /// The agreement without the error: coverage and light alone, which is faster.
     PictureAgreement brightness_of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
 
 private:
+    /// Axes along which pictures are taken.
+    /// Law: the faces, edges and corners of a cube, one of each opposite pair (3 + 6 + 4).
     static constexpr size_t kViews = 13;
 
     TracedPictures trace(const Mesh& stand_in, const ray::MeshScene& scene,
@@ -78,21 +93,23 @@ private:
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
     Pictures shown(const TracedPictures& traced, const ray::MeshSkin* skin) const;
-    /// All of it.
+    /// The sum of light and coverage over all samples of all views.
     static glm::dvec4 total(const TracedPictures& traced, const ray::MeshSkin* skin);
-    /// Of each sample, from the middle; not finite where there is nothing.
+    /// The point that each sample shows, in metres from the middle; not finite where there is
+    /// nothing.
     std::vector<glm::vec3> points_of(const TracedPictures& traced) const;
+    /// The size at which pictures agree.
     struct AgreementSize {
-        double error = 0;      // as PictureAgreement::error
-        bool smallest = true;  // they agree at the smallest size
+        double error = 0;      // metres, for PictureAgreement::error
+        bool smallest = true;  // true: they agree at the smallest size
     };
     AgreementSize agreement_size(const Pictures& other) const;
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
     int side_;
-    std::vector<glm::dvec2>
-        places_;  // of each sample in its picture, in half sides from the middle
+    /// The place of each sample in its picture, in half sides from the middle.
+    std::vector<glm::dvec2> places_;
     Pictures finest_;
     std::vector<glm::vec3> finest_points_;
     glm::dvec4 finest_total_{0.0};
@@ -102,12 +119,12 @@ class AgreementReference::TracedPictures {
     friend AgreementReference;
 
     struct TracedSample {
-        uint32_t triangle = ray::kNoTriangle;  // none: nothing is there
+        uint32_t triangle = ray::kNoTriangle;  // kNoTriangle: nothing is there
         float u = 0;
         float v = 0;
         float light = 0;
     };
-    /// What the samples of a slot have together.
+    /// The sums over all samples of one slot.
     struct SlotLight {
         double light = 0;
         double count = 0;

@@ -14,9 +14,9 @@ namespace lodestone::measure {
 
 /// Differences between pixels of one size, with the noise of their samples and without.
 struct PixelDifference {
-    double sum = 0;       // of magnitudes
-    double squares = 0;   // likewise
-    double products = 0;  // of the differences of both halves of the samples
+    double sum = 0;       // sum of magnitudes
+    double squares = 0;   // sum of squares
+    double products = 0;  // sum of products of the differences of both halves of the samples
 
     void add(double first, double second) {
         const double both = 0.5 * (first + second);
@@ -24,22 +24,22 @@ struct PixelDifference {
         squares += both * both;
         products += first * second;
     }
-    /// Mean of `count` magnitudes, as of pictures of very many samples: noise is independent
-    /// between the halves, so their products know what it added to the squares.
+    /// The mean of `count` magnitudes, as pictures of very many samples would have it: noise is
+    /// independent between the halves, so their products know what it added to the squares.
     double mean(double count) const {
         const double real = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0;
         return sum / count * std::sqrt(real);
     }
 };
 
-/// What pixels of one size tell.
+/// The differences of all pixels of one size.
 struct PixelMisses {
     size_t covered = 0;  // pixels that either picture covers
     PixelDifference coverage;
-    PixelDifference light;    // of three colors
-    double finest_light = 0;  // sum
+    PixelDifference light;    // three colors a pixel
+    double finest_light = 0;  // sum of the finest's light over covered pixels
 
-    /// Over what may be missed.
+    /// The larger of both differences, over what is allowed: above 1 the pictures do not agree.
     double worst() const {
         if (covered == 0)
             return 0;
@@ -56,12 +56,13 @@ struct PictureRect {
     glm::ivec2 high{0};
 };
 
-/// Of each view of pictures of `side` by `side` samples (light, coverage), one a view.
+/// The part of each view where either picture shows something. The pictures have `side` by `side`
+/// samples a view (light, coverage).
 std::vector<PictureRect> picture_rects(const std::vector<glm::vec4>& a,
                                        const std::vector<glm::vec4>& b, size_t views, int side);
 
-/// Of such pictures, in pixels of `pixel` by `pixel` samples, which divides the side. `a` is the
-/// finest's; `parts` are theirs.
+/// The differences of such pictures, in pixels of `pixel` by `pixel` samples; `pixel` divides the
+/// side. `a` is the finest's; `parts` are the rectangles of both.
 PixelMisses pixel_misses(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
                          const std::vector<PictureRect>& parts, int side, int pixel);
 

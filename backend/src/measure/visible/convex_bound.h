@@ -22,9 +22,10 @@ struct BoundRay {
 /// something times area() is the visible surface area of that (4.17, 4.18).
 class ConvexBound {
 public:
-    /// Around the points, `lift` metres further out (> 0, so that the bound has a volume).
+    /// Encloses the points, `lift` metres further out (> 0, so that the bound has a volume).
     ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& axes, double lift);
 
+    /// The area of the bound's surface, m^2.
     double area() const { return faces_.empty() ? 0 : faces_.back().area_up_to; }
 
     /// The inward ray of four numbers in [0, 1). Needs area() > 0.
@@ -34,7 +35,7 @@ private:
     struct BoundFace {
         glm::dvec3 corner, side, other;  // a triangle of the polytope's surface
         glm::dvec3 inward;
-        double area_up_to;  // of this one and all before
+        double area_up_to;  // the area of this face and of all before
     };
     std::vector<BoundFace> faces_;
 };

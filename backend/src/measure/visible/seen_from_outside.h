@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Seen from outside: which triangles of a mesh can be seen at all.
+// Visible triangles: which triangles of a mesh can be seen from outside at all.
 #pragma once
 
 #include "base/job.h"
@@ -8,16 +8,18 @@
 
 namespace lodestone::measure {
 
-/// 1 for each triangle from which a ray reaches infinity, else 0: hidden triangles may be dropped
-/// before simplifying. Rays leave random points in random directions (cosine), on both sides of
-/// parts that are not closed and opaque. A triangle larger than the mean gets in proportion more
-/// rays, up to 64 times `rays_per_triangle`: a large one that was dropped would leave a hole that
-/// is seen. Each gets half of its rays first, and the rest only if a triangle that shares a corner
-/// with it was seen. Triangles without area count as seen.
-/// Same bits on any number of threads. Throws Error: InvalidArgument, RaysUnavailable, Cancelled.
+/// The triangles of the mesh that can be seen: 1 for each from which a ray reaches infinity, else
+/// 0. Hidden triangles may be dropped before simplifying. Rays leave random points in random
+/// directions (cosine), on both sides of parts that are not closed and opaque. A triangle larger
+/// than the mean gets in proportion more rays, up to 64 times `rays_per_triangle`: a large one that
+/// was dropped would leave a hole that is seen. Each triangle gets half of its rays first, and the
+/// others only if a triangle that shares a corner with it was seen. Triangles without area count as
+/// seen.
+/// The bits are the same on any number of threads. Throws Error: InvalidArgument, RaysUnavailable,
+/// Cancelled.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
                                        int rays_per_triangle, uint64_t seed, const Job& job = {});
-/// The same where the sides are known.
+/// Takes the sides of the mesh where they are known.
 std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& scene,
                                        const OutsideSides& sides, int rays_per_triangle,
                                        uint64_t seed, const Job& job = {});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sobol points in four dimensions, shifted by a seed: evener than random ones, and any of them can
-// be had by its number, so that threads need not share anything.
+// SobolPoints: Sobol points in four dimensions, shifted by a seed. They are evener than random
+// ones, and any of them can be had by its number, so that threads need not share anything.
+// Our own although libraries exist: four dimensions fit in one table made by the compiler, every
+// point is asked by its number and not in turn, and stores depend on these very numbers.
 #pragma once
 
 #include <array>
@@ -9,7 +11,8 @@
 
 namespace lodestone::measure {
 
-/// Spreads a number over 64 bits, so that neighboring seeds and numbers have nothing in common.
+/// Spreads a number over 64 bits, so that neighboring seeds and numbers have nothing in common: a
+/// mixer of the form of SplitMix64 (Steele, Lea and Flood 2014) with other factors.
 constexpr uint64_t scramble(uint64_t x) {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 32u)) * 0xd6e8feb86659fd93u;
@@ -25,8 +28,13 @@ constexpr SobolDirections sobol_directions() {
     SobolDirections out{};
     for (size_t bit = 0; bit < 32; ++bit)
         out[bit][0] = uint32_t{1} << (31 - bit);
+    /// Law: the degrees of the primitive polynomials 1 + x, 1 + x + x^2 and 1 + x + x^3 (Joe and
+    /// Kuo 2008).
     constexpr std::array<uint32_t, 3> kDegree{1, 2, 3};
-    constexpr std::array<uint32_t, 3> kPolynomial{0, 1, 1};  // without the first and last term
+    /// Law: the coefficients of these polynomials without the first and last term (Joe and Kuo
+    /// 2008).
+    constexpr std::array<uint32_t, 3> kPolynomial{0, 1, 1};
+    /// Law: the starting direction numbers of Joe and Kuo 2008, dimensions 2 to 4.
     constexpr std::array<std::array<uint32_t, 3>, 3> kStart{{{1, 0, 0}, {1, 3, 0}, {1, 3, 1}}};
     for (size_t i = 0; i < 3; ++i) {
         const size_t degree = kDegree[i];
@@ -47,6 +55,7 @@ constexpr SobolDirections sobol_directions() {
     return out;
 }
 
+/// Law: the direction numbers by bit and dimension, as sobol_directions() derives them.
 inline constexpr SobolDirections kSobolDirections = sobol_directions();
 
 /// Points of [0, 1)^4. Each is uniform over the seeds; together they fill the space evenly.
@@ -57,6 +66,7 @@ public:
             shift_[i] = static_cast<uint32_t>(scramble(scramble(seed) + i) >> 32u);
     }
 
+    /// The point of that number, from any thread.
     std::array<double, 4> point(uint32_t number) const {
         std::array<uint32_t, 4> bits = shift_;
         for (size_t bit = 0; number != 0; ++bit, number >>= 1u) {
