@@ -10,19 +10,20 @@
 
 namespace lodestone::ray {
 
-/// The search's state in a scene's own frame. In double precision, so that the answer does not
-/// depend on the candidates that were visited besides the nearest one.
+/// The state of one search, in the frame of a scene. It is in double precision, so that the answer
+/// does not depend on the candidates that were visited besides the nearest one.
 struct ClosestSearch {
     std::span<const glm::vec3> positions;
     std::span<const Triangle> triangles;
     glm::dvec3 point;
-    /// Whether there is anything at a point of a triangle; null: everywhere.
+    /// Whether there is anything at a point of a triangle; null: there is something everywhere.
     const std::function<bool(uint32_t triangle, double u, double v)>* shows = nullptr;
-    double square = std::numeric_limits<double>::infinity();  // of the distance
+    double square = std::numeric_limits<double>::infinity();  // of the distance so far
     uint32_t triangle = kNoTriangle;
     geometry::OnTriangle where{};
 
-    /// Whether the triangle is nearer than all before, or as near and lower.
+    /// Takes the triangle if it is nearer than all before, or as near and lower; returns whether it
+    /// was.
     bool visit(uint32_t index);
 
     /// The radius that a search in single precision has to cover so that no triangle within
@@ -30,9 +31,9 @@ struct ClosestSearch {
     float reach(double distance) const;
 
 private:
-    /// The nearest point of a triangle where something is, found to an eighth of its size and
-    /// better at the edge of the hole that `hidden` lies in. False when there is nothing nearer
-    /// than before.
+    /// The nearest point of a triangle where something is shown, found to an eighth of the
+    /// triangle's size and better at the edge of the hole that `hidden` lies in. False when there
+    /// is nothing nearer than before.
     bool find_shown(uint32_t index, geometry::OnTriangle& hidden) const;
 };
 

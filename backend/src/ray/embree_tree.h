@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Embree's tree over one mesh, in the tree's own frame: the only file pair that sees Embree.
+// EmbreeTree: Embree's tree over one mesh, in the tree's own frame; no other file pair sees Embree.
 #pragma once
 
 #include "ray/mesh_cover.h"
@@ -9,35 +9,37 @@
 
 namespace lodestone::ray {
 
-/// Empty when Embree 3.13 was found and passed its test of known answers, else why not. It is
-/// looked for once per process.
+/// The reason why there is no Embree; empty when Embree 3.13 was found and passed its test of known
+/// answers. The library is looked for once per process.
 const std::string& why_no_embree();
-/// Throws Error(RaysUnavailable) with the reason when there is one.
+/// Throws Error(RaysUnavailable) with that reason when there is one.
 void require_embree();
 
+/// The tree of one mesh. Const methods may be called from any thread.
 class EmbreeTree {
 public:
-    /// `positions` lie in the unit sphere or are not finite, and have one element more than there
-    /// are: Embree loads 16 bytes at a time. With a cover, hits where nothing is do not count. All
-    /// must outlive the tree. Throws Error(RaysUnavailable) or std::bad_alloc.
+    /// `positions` lie in the unit sphere or are not finite, and have one element more than the
+    /// mesh has vertices: Embree loads 16 bytes at a time. With a cover, hits where nothing is do
+    /// not count. All three must outlive the tree. Throws Error(RaysUnavailable) or std::bad_alloc.
     EmbreeTree(const std::vector<glm::vec3>& positions, const std::vector<Triangle>& triangles,
                const MeshCover* cover);
     ~EmbreeTree();
     EmbreeTree(const EmbreeTree&) = delete;
     EmbreeTree& operator=(const EmbreeTree&) = delete;
 
+    /// The first hit of a ray.
     struct EmbreeHit {
-        uint32_t triangle = kNoTriangle;  // among equally near ones the lowest
+        uint32_t triangle = kNoTriangle;  // the lowest of equally near ones
         double u = 0;
         double v = 0;
         double t = 0;
     };
-    /// Directions have unit length.
+    /// The first hit within `far`, and whether there is any. Directions have unit length.
     EmbreeHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
-    /// Some triangle that blocks a ray without end.
+    /// Some triangle that blocks a ray without end; kNoTriangle: none does.
     uint32_t blocker(const glm::dvec3& origin, const glm::dvec3& direction) const;
-    /// As MeshScene::list_crossed.
+    /// Lists crossed triangles like MeshScene::list_crossed().
     size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                         std::span<uint32_t> list) const;
 

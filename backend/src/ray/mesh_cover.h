@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MeshCover: where a see-through mesh is there, and where rays pass.
+// MeshCover: where a see-through mesh covers what is behind it, and where rays pass.
 #pragma once
 
 #include "ray/mesh_skin.h"
@@ -8,18 +8,18 @@
 
 namespace lodestone::ray {
 
-/// Keeps of the mesh what it needs. Any thread.
+/// The cover of one mesh. Keeps what it needs of the mesh. May be used from any thread.
 class MeshCover {
 public:
     MeshCover(const Mesh& mesh, SkinPtr skin);
 
-    /// As the MeshScene's.
+    /// These three answer for the MeshScene's functions of the same names.
     bool ends_ray(uint32_t triangle, double u, double v) const;
     bool shows(uint32_t triangle, double u, double v) const;
     std::optional<double> uniform_alpha(uint32_t triangle) const;
 
 private:
-    Mesh mesh_;  // without positions
+    Mesh mesh_;  // the mesh without positions
     SkinPtr skin_;
 };
 

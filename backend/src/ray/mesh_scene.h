@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MeshScene: rays and closest points against one mesh.
+// MeshScene: one mesh made ready for rays and closest points.
 #pragma once
 
 #include "model/mesh.h"
@@ -14,14 +14,16 @@
 
 namespace lodestone::ray {
 
+/// The number of no triangle.
+/// Law: the largest number of 32 bits; no mesh has so many triangles.
 inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
 
-/// Whether rays can be cast here: Embree 3.13 was found and passed its test of known answers. It is
-/// looked for once, beside our own library and then where the system keeps libraries.
+/// Whether rays can be cast here: Embree 3.13 was found and passed its test of known answers. The
+/// library is looked for once, beside our own library and then where the system keeps libraries.
 bool available(std::string* reason = nullptr);
 
-/// While one of these lives, many rays of its thread cost less: the thread flushes denormal numbers
-/// to zero, as Embree wants it, and does so until then instead of ray by ray.
+/// While an object of this class lives, many rays of its thread cost less: the thread flushes
+/// denormal numbers to zero, as Embree wants it, and does so until the end instead of ray by ray.
 class FlushDenormals {
 public:
     FlushDenormals();
@@ -33,14 +35,14 @@ private:
     unsigned saved_;
 };
 
-/// Where a ray meets the mesh first. The point is (1-u-v) a + u b + v c of the triangle's corners.
+/// The first point where a ray meets the mesh: (1-u-v) a + u b + v c of the triangle's corners.
 struct RayHit {
     bool hit = false;
-    uint32_t triangle = kNoTriangle;  // among equally near ones the lowest
+    uint32_t triangle = kNoTriangle;  // the lowest of equally near ones
     double u = 0;
     double v = 0;
     double t = std::numeric_limits<double>::infinity();  // point = origin + t direction
-    glm::dvec3 point{0.0};                               // in the mesh's frame, on the triangle
+    glm::dvec3 point{0.0};                               // on the triangle, in the mesh's frame
 };
 
 /// The point of the mesh nearest to another one; with no point in reach the distance is infinite.
@@ -52,7 +54,7 @@ struct ClosestPoint {
     double v = 0;
 };
 
-/// What a scene is asked for.
+/// The questions that a scene is asked.
 enum class SceneUse : uint8_t { Everything, ClosestPoints };
 
 /// A mesh made ready for rays. It keeps its own copy, moved to its bound's center and scaled by a
@@ -61,11 +63,11 @@ enum class SceneUse : uint8_t { Everything, ClosestPoints };
 /// available() is false. Answers do not depend on the number of threads that built the scene.
 class MeshScene {
 public:
-    /// Triangles with a non-finite vertex are never hit. An empty mesh is never hit either. Throws
-    /// Error(InvalidArgument) when an index is out of range. With a skin rays pass through what it
-    /// shows as transparent, as often as that covers nothing, and the nearest point is one where
-    /// there is something; a mesh that is opaque costs nothing more for it.
-    /// One for closest points alone takes less time and memory; it may not be asked for hits.
+    /// Makes a mesh ready. Triangles with a non-finite vertex are never hit; an empty mesh is never
+    /// hit either. Throws Error(InvalidArgument) when an index is out of range. With a skin rays
+    /// pass through transparent points, as often as these cover nothing, and the nearest point is
+    /// one where there is something; a mesh that is opaque costs nothing more for it.
+    /// A scene for closest points alone takes less time and memory; it may not be asked for hits.
     explicit MeshScene(const Mesh& mesh, SkinPtr skin = nullptr,
                        SceneUse uses = SceneUse::Everything);
     ~MeshScene();
@@ -74,7 +76,7 @@ public:
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;
 
-    /// How many triangles the mesh had.
+    /// The number of triangles of the mesh.
     size_t triangles() const;
 
     /// Whether rays may pass through some of its points. Then both sides of every triangle can be
@@ -83,9 +85,10 @@ public:
     /// Whether a ray that meets a point of a triangle ends there: the same answer at every time,
     /// and over many points as often as their alpha says.
     bool ends_ray(uint32_t triangle, double u, double v) const;
-    /// Whether there is anything to see at all.
+    /// Whether there is anything to see at a point of a triangle.
     bool shows(uint32_t triangle, double u, double v) const;
-    /// How often ends_ray() is true, where that is as often at all points of the triangle.
+    /// The share of rays that end at the triangle, where it is the same at all its points; else
+    /// none.
     std::optional<double> uniform_alpha(uint32_t triangle) const;
 
     /// The nearest hit with 0 <= t <= far, from either side. Direction need not have unit length;
@@ -93,24 +96,25 @@ public:
     RayHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                      double far = std::numeric_limits<double>::infinity()) const;
 
-    /// Whether first_hit would hit; faster.
+    /// Whether first_hit() would hit; faster.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   double far = std::numeric_limits<double>::infinity()) const;
 
-    /// The same without an end, sooner among rays that the same triangles block (see RecentBlockers).
+    /// Whether anything blocks a ray without end; faster for rays that the same triangles block
+    /// (see RecentBlockers).
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   RecentBlockers& blockers) const;
 
-    /// Lists the triangles that end rays where this one crosses them with 0 <= t <= far, in no
-    /// order, as many as there is room for. How many were listed.
+    /// Lists the triangles that end rays where this ray crosses them with 0 <= t <= far, in no
+    /// order, as many as `list` has room for. Returns how many were listed.
     size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                         std::span<uint32_t> list) const;
 
-    /// The nearest point of any triangle within `radius`. A small radius is faster; so is a
-    /// triangle that may be near, which changes nothing else. With `enough`, some point within that
-    /// distance will do where there is one.
-    /// Where something transparent is nearest, the edge of what is not is found to an eighth of its
-    /// triangle's size.
+    /// The nearest point of any triangle within `radius` metres. A small radius is faster; so is
+    /// `perhaps`, a triangle that may be near, which changes nothing else. With `enough`, some
+    /// point within that distance will do where there is one.
+    /// Where something transparent is nearest, the edge of the opaque part is found to an eighth of
+    /// its triangle's size.
     ClosestPoint closest_point(const glm::dvec3& point,
                                double radius = std::numeric_limits<double>::infinity(),
                                uint32_t perhaps = kNoTriangle, double enough = 0) const;

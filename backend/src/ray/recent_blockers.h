@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// RecentBlockers: the triangles that blocked rays lately, which may block the next ones beside these.
+// RecentBlockers: triangles that blocked rays lately and may block the rays that come next.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,11 +9,11 @@
 
 namespace lodestone::ray {
 
-/// Of one scene, by one thread. A scene that is asked with them answers the same, sooner where what
-/// blocks a ray is likely to block the next one.
+/// The blockers of one scene, for one thread. A scene that is asked with them gives the same
+/// answers, sooner where the triangle that blocks a ray is likely to block the next one.
 class RecentBlockers {
 public:
-    /// Takes the place of the oldest of eight. Corners lie in the unit sphere.
+    /// Adds a triangle in the place of the oldest of eight. Corners lie in the unit sphere.
     void add(const std::array<glm::vec3, 3>& corners);
     /// Whether one of them surely blocks a ray without end: by so much that a watertight test in
     /// single precision says so too. The direction has unit length.
@@ -21,15 +21,18 @@ public:
 
 private:
     using Four = float __attribute__((vector_size(16)));
+    /// Groups of four triangles.
+    /// Taste: a larger value remembers more blockers and costs 40 instructions more for every ray.
     static constexpr size_t kFours = 2;
 
-    /// Edges as Pluecker coordinates: a ray passes each on the side that a product tells.
+    /// Edges as Pluecker coordinates: the sign of a product tells on which side a ray passes an
+    /// edge.
     struct PlueckerTriangles {
         std::array<std::array<Four, 3>, 3> edges;
         std::array<std::array<Four, 3>, 3> moments;
         std::array<Four, 3> normal;
-        Four height;  // of the plane, times the normal's length
-        Four slack;   // of products; without one, as at first, a triangle without area
+        Four height;  // the plane's, times the normal's length
+        Four slack;   // the doubt of products; a triangle without area at first
     };
     std::array<PlueckerTriangles, kFours> fours_{};
     size_t next_ = 0;
