@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces: which triangles of a mesh are one loose part.
+// LooseSurfaces: the loose part of a mesh that each triangle belongs to.
 #pragma once
 
 #include "model/mesh.h"
@@ -8,9 +8,9 @@
 
 namespace lodestone::group {
 
-/// One number a triangle, rising from 0 in order of first triangles: those that share a whole edge
-/// have the same. Where more than one surface meets in an edge (boxes that touch) it joins each
-/// with itself alone.
+/// The part of each triangle, one number a triangle, rising from 0 in the order of first triangles:
+/// triangles that share a whole edge have the same number. Where more than one surface meets in an
+/// edge (boxes that touch) the edge joins each surface with itself alone.
 std::vector<uint32_t> loose_parts(const Mesh& mesh);
 
 }  // namespace lodestone::group
