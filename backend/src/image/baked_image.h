@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bake: a new picture whose every texel is computed from other pictures' texels.
+// BakedImage: a new picture whose every texel is computed from other pictures' texels.
 #pragma once
 
 #include "base/job.h"
@@ -12,12 +12,15 @@
 
 namespace lodestone::image {
 
-/// What a step does with the results a, b, c of earlier steps; by channel unless said otherwise.
+/// The operation of a step on the results a, b, c of earlier steps; by channel unless said
+/// otherwise.
 enum class BakeOp : uint8_t {
     Constant = 0,  // value
-    Texel = 1,  // of texture args[0] (its picture's color and alpha; scale, offset, channel unused)
+    /// The texel of texture args[0]: its picture's color and alpha; scale, offset and channel are
+    /// unused.
+    Texel = 1,
     Channel = 2,  // a's channel value.x (0...3), in all channels
-    Luma = 3,     // of a, in all channels
+    Luma = 3,     // the luma of a, in all channels
     Combine = 4,  // red of a, green of b, blue of c
     Add = 5,
     Subtract = 6,
@@ -36,9 +39,10 @@ enum class BakeOp : uint8_t {
     ToHsv = 19,     // hue, saturation and value 0...1
     FromHsv = 20,   // hue wraps
     ToSrgb = 21,    // display-encodes linear color
-    FromSrgb = 22,  // the way back
+    FromSrgb = 22,  // decodes display-encoded color
 };
 
+/// One step: an operation, the numbers of the steps it takes, and its constants.
 struct BakeStep {
     BakeOp op = BakeOp::Constant;
     std::array<uint32_t, 3> args{0, 0, 0};
@@ -46,19 +50,22 @@ struct BakeStep {
     std::vector<glm::vec4> table;  // Ramp, Curves: evenly spaced over 0...1, linear between
 };
 
-/// Most steps, and most texels a side of what is baked and of what is read for it.
+/// The most steps of a baked picture.
+/// Taste: a larger value bakes longer node graphs, for more time a texel.
 inline constexpr size_t kMostBakeSteps = 256;
+/// The most texels along a side of a baked picture, and of the pictures that are read for it.
+/// Taste: a larger value keeps more detail, for memory and time that grow with its square.
 inline constexpr int kMostBakeSide = 4096;
 
-/// The last step's color for each texel of a picture of that size that fills 0...1 x 0...1;
-/// alpha 1. Not a number counts as 0. Throws Error(InvalidArgument) when a step uses a later one,
-/// or a texture or table that is not there.
+/// The picture of the last step's color for each texel of a picture of that size that fills 0...1 x
+/// 0...1; alpha is 1. A value that is not a number counts as 0. Throws Error(InvalidArgument) when
+/// a step uses a later one, or a texture or table that is not there.
 Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures, int width,
            int height, const Job& job = {});
 
-/// What is baked, as a picture: an 8-bit PNG, display-encoded for Srgb, else the numbers as they
-/// are. The newest ones (256 MiB) are remembered for the life of the process: an animation bakes
-/// once. Any thread.
+/// The baked picture as an 8-bit PNG, display-encoded for Srgb, else the numbers as they are. The
+/// newest pictures (256 MiB) are remembered for the life of the process: an animation bakes once.
+/// May be called from any thread.
 PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
                         int width, int height, ColorSpace space, const std::string& name,
                         const Job& job = {});

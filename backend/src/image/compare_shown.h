@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compare by what is shown: which things two pictures differ in most, and where, in false colors.
+// ShownDifferences: the things in which two pictures differ most, and where, in false colors.
 #pragma once
 
 #include "image/image.h"
@@ -11,16 +11,17 @@
 
 namespace lodestone::image {
 
-/// What a picture of identities shows where nothing is.
+/// The number in a picture of identities where nothing is drawn.
+/// Law: identities count from 1.
 inline constexpr uint32_t kNothing = 0;
 
-/// The linear color that marks thing number `i` in a picture of identities. Exact in half floats,
-/// for the first 2^24 - 1.
+/// The linear color that marks thing number `i` in a picture of identities. It is exact in half
+/// floats, for the first 2^24 - 1 things.
 std::array<double, 3> identity_color(uint32_t i);
 
-/// Of each pixel 1 + the number of the thing it shows, or kNothing. `marked` is a linear picture
-/// drawn in identity_color()s without antialiasing. Throws Error(InvalidArgument) for one that is
-/// not linear.
+/// The identities of all pixels: 1 + the number of the thing that the pixel shows, or kNothing.
+/// `marked` is a linear picture drawn in identity_color()s without antialiasing. Throws
+/// Error(InvalidArgument) for a picture that is not linear.
 std::vector<uint32_t> identities(const Image& marked);
 
 /// Adds for each thing the sum, over the pixels that show it, of the mean over R, G, B of |a - b|
@@ -29,11 +30,12 @@ std::vector<uint32_t> identities(const Image& marked);
 void add_differences(const Image& a, const Image& b, const std::vector<uint32_t>& shown,
                      std::span<double> sums);
 
-/// Of a difference of display values: black 0, blue .02, green .05, yellow .1, red .25 and more;
-/// linear.
+/// The false color of a difference of display values, linear: black at 0, blue at 0.02, green at
+/// 0.05, yellow at 0.1, red at 0.25 and more.
 std::array<float, 3> difference_color(float difference);
 
-/// Opaque and linear; of the largest |a - b| of R, G, B of each pixel. Throws as above.
+/// The picture of false colors, opaque and linear, of the largest |a - b| of R, G, B of each pixel.
+/// Throws Error(InvalidArgument) when sizes differ.
 Image difference_picture(const Image& a, const Image& b);
 
 }  // namespace lodestone::image

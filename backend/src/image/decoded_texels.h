@@ -14,37 +14,41 @@
 
 namespace lodestone::image {
 
+/// The texels of a decoded picture.
 struct DecodedTexels {
     int width = 0;
     int height = 0;
     std::vector<float> rgba;  // linear, straight alpha, top row first
-    glm::dvec4 least{0.0};    // of each channel
-    bool reduced = false;     // fewer than the picture has
+    glm::dvec4 least{0.0};    // the least value of each channel
+    bool reduced = false;     // true: fewer texels than the picture has
 };
 
-/// Never changed once made; shared by all that look things up.
+/// Shared texels; they never change once made.
 using TexelsPtr = std::shared_ptr<const DecodedTexels>;
 
-/// A picture with at most `most_side` texels a side, each the mean of a block (colors weighted by
-/// alpha). Throws Error(BadFile).
+/// The texels of a picture with at most `most_side` along a side, each the mean of a block (colors
+/// weighted by alpha). Throws Error(BadFile).
 TexelsPtr texels_of(const Picture& picture, int most_side);
 
-/// Where a texture's number is at least `cutoff`: every channel is the share of the block that is.
-/// Means of the number itself would lose what is thinner than a block.
+/// The texels of a texture with a cutoff: every channel is the share of the block where the
+/// texture's number is at least `cutoff`. Means of the number itself would lose shapes thinner than
+/// a block. Throws Error(BadFile).
 TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_side);
 
-/// Decodes every picture once, as long as all fit into `most_bytes`; the least used go first. What
-/// is in use elsewhere stays alive there. Any thread; nothing depends on their order.
+/// A cache that decodes every picture once, as long as all fit into `most_bytes`; the least used go
+/// first. Texels in use elsewhere stay alive there. May be used from any thread; no answer depends
+/// on the order.
 class TexelCache {
 public:
     explicit TexelCache(int most_side = 256, size_t most_bytes = size_t{256} << 20u)
         : most_side_(most_side), most_bytes_(most_bytes) {}
 
-    /// Null where there is no picture or its bytes are not resident. Throws Error(BadFile).
+    /// The texels of a texture; null where there is no picture or its bytes are not resident.
+    /// Throws Error(BadFile).
     TexelsPtr of(const Texture& texture);
     TexelsPtr at_least(const Texture& texture, double cutoff);
 
-    /// Bytes it holds now.
+    /// The bytes that the cache holds now.
     size_t bytes() const;
 
 private:
@@ -61,7 +65,7 @@ private:
     mutable std::mutex mutex_;
     std::mutex one_large_;  // pictures are decoded as floats: not several huge ones at a time
     std::unordered_map<Hash, std::shared_ptr<CachedTexels>> entries_;
-    std::list<Hash> by_use_;  // made ones, the last used first
+    std::list<Hash> by_use_;  // entries that are made, the last used first
     size_t bytes_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image: pictures as floats; reading PNG, JPEG and OpenEXR, writing PNG.
+// Image: pictures as floats; PNG, JPEG and OpenEXR are read, PNG is written.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,11 @@
 
 namespace lodestone::image {
 
-/// More pixels than this are refused before anything is allocated (2^26: 8192 x 8192, 1 GiB).
+/// A picture with more pixels is refused before anything is allocated (8192 x 8192).
+/// Taste: a larger value lets one picture take more than 1 GiB (16 bytes a pixel).
 inline constexpr size_t kMostPixels = size_t{1} << 26u;
 
+/// A picture in memory.
 struct Image {
     int width = 0;
     int height = 0;
@@ -22,7 +24,7 @@ struct Image {
     size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };
 
-/// Pixels of a picture, from its upper left corner.
+/// A rectangle of pixels, from the picture's upper left corner.
 struct ImageRegion {
     int left = 0;
     int top = 0;
@@ -30,22 +32,26 @@ struct ImageRegion {
     int height = 0;
 };
 
-/// The kind is told by the first bytes. PNG: every color type and depth; JPEG: gray and RGB;
-/// OpenEXR: R, G, B, A or Y of a flat picture, the display window of it (outside the data window:
-/// 0). Missing alpha is 1. Throws Error(Io) or Error(BadFile) with a sentence naming the file.
+/// Reads a picture, whose kind is told by the first bytes. PNG: every color type and depth; JPEG:
+/// gray and RGB; OpenEXR: R, G, B, A or Y of a flat picture, of which the display window is read (0
+/// outside the data window). Missing alpha is 1. Throws Error(Io) or Error(BadFile) with a sentence
+/// naming the file.
 Image read(const std::filesystem::path& path);
-/// The same from memory; `name` is what errors call it.
+/// Reads a picture from memory; `name` is what errors call it.
 Image read(std::string_view bytes, const std::string& name);
-/// A part of an OpenEXR picture, which may have more than kMostPixels, as may the part: memory is
-/// taken for that alone. Throws as read() and Error(InvalidArgument) for what is not within it.
+/// Reads a part of an OpenEXR picture. The picture may have more than kMostPixels, and so may the
+/// part: memory is taken for the part alone. Throws as read(), and Error(InvalidArgument) for a
+/// part that is not within the picture.
 Image read_region(const std::filesystem::path& path, const ImageRegion& part);
 
-/// 8 bit, RGB when every alpha is 1, else RGBA; a linear image is encoded first. All or nothing.
+/// Writes 8 bits a channel, RGB when every alpha is 1, else RGBA; a linear image is encoded first.
+/// The file is written whole or not at all.
 void write_png(const std::filesystem::path& path, const Image& image);
-/// The same, as the file's bytes. Throws Error(InvalidArgument).
+/// The bytes of such a PNG file. Throws Error(InvalidArgument).
 std::string png_bytes(const Image& image);
 
-/// Linear, associated -> sRGB, straight, clamped to 0...1 (not a number: 0); else the same image.
+/// The image for a display: linear with associated alpha becomes sRGB with straight alpha, clamped
+/// to 0...1 (not a number: 0); another image stays as it is.
 Image encoded(const Image& image);
 
 /// The sRGB transfer functions (IEC 61966-2-1), for 0...1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Codecs: one function a file format; seen only inside the image floor.
+// Image codecs: one function a file format; seen only inside the image floor.
 #pragma once
 
 #include "image/image.h"
@@ -8,13 +8,14 @@
 
 namespace lodestone::image {
 
+/// The decoders take a file's bytes; `name` is what errors call it. Throw Error(BadFile).
 Image decode_png(std::string_view bytes, const std::string& name);
 Image decode_jpeg(std::string_view bytes, const std::string& name);
-/// Without a part: all of it, of at most kMostPixels.
+/// Decodes all of a picture of at most kMostPixels, or the part.
 Image decode_exr(std::string_view bytes, const std::string& name,
                  const std::optional<ImageRegion>& part = std::nullopt);
 
-/// `rows` holds height rows of width * channels bytes; 3 or 4 channels. The file's bytes.
+/// The bytes of a PNG file. `rows` holds height rows of width * channels bytes; 3 or 4 channels.
 std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels);
 
 /// An image of that size, all 0. Throws Error(BadFile) when it is empty or above kMostPixels.

@@ -9,37 +9,41 @@
 
 namespace lodestone::image {
 
-/// A picture, decoded: linear color when its space is Srgb, else its numbers; straight alpha.
-/// `name` of errors is the picture's. Throws Error(BadFile).
+/// The decoded picture: linear color when its space is Srgb, else its numbers; straight alpha.
+/// Errors call it by the picture's name. Throws Error(BadFile).
 Image decoded(const Picture& picture);
 
-/// No file of a picture is larger.
+/// The largest file of a picture in bytes.
+/// Taste: a larger value lets one picture file take more than 1 GiB of memory before it is decoded.
 inline constexpr uint64_t kMostFileBytes = uint64_t{1} << 30u;
 
-/// A picture of a file's bytes, proved to decode. What decoding told is remembered by hash for the
-/// life of the process, so a second time costs the hash only. Throws Error(BadFile) calling it
-/// `name` when it is no PNG, JPEG or OpenEXR. Any thread.
+/// The picture of a file's bytes, proved to decode. The result of decoding is remembered by hash
+/// for the life of the process, so a second time costs the hash only. Throws Error(BadFile) calling
+/// it `name` when it is no PNG, JPEG or OpenEXR. May be called from any thread.
 PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name);
 
-/// A texture's value for a texel: color, and where one number is wanted.
+/// The value of a texture for a texel: as a color, and where one number is wanted.
 glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel);
 double number_of(const Texture& texture, const glm::dvec4& texel);
 
-/// Looks up the texels of one texture, reduced to at most `most_side` a side by averaging: for
-/// measuring, not for pictures. Threads may share it.
+/// A sampler that looks up the texels of one texture, reduced to at most `most_side` along a side
+/// by averaging: for measuring, not for pictures. Threads may share it.
 class TextureSampler {
 public:
+    /// The usual texels along a side.
+    /// Taste: a larger value measures finer patterns, for memory that grows with its square.
     static constexpr int kMostSide = 1024;
 
     /// Without a picture every value is `otherwise`.
     TextureSampler(const Texture& texture, const glm::dvec3& otherwise, int most_side = kMostSide);
-    /// With texels of its picture that others may share; null: as without a picture.
+    /// Takes texels of the picture that others may share; null: as without a picture.
     TextureSampler(const Texture& texture, const glm::dvec3& otherwise, TexelsPtr texels);
 
     explicit operator bool() const { return texels_ != nullptr; }
+    /// The values at texture coordinates.
     glm::dvec3 color(glm::dvec2 uv) const;
     double number(glm::dvec2 uv) const;
-    /// The picture's own color and alpha there. There must be a picture.
+    /// The picture's own color and alpha at texture coordinates. There must be a picture.
     glm::dvec4 texel(glm::dvec2 uv) const;
     /// The texel of a column and row (0: the top one).
     glm::dvec4 at(int column, int row) const;
@@ -49,7 +53,7 @@ public:
 private:
     Texture texture_;
     glm::dvec3 otherwise_;
-    TexelsPtr texels_;  // null: none
+    TexelsPtr texels_;  // null: there is no picture
 };
 
 }  // namespace lodestone::image
