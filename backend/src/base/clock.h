@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clocks for reports.
+// Clocks: wall time and CPU time for reports.
 #pragma once
 
 #include <chrono>
@@ -7,13 +7,13 @@
 
 namespace lodestone {
 
-/// Seconds of wall time since some moment.
+/// The seconds of wall time since some moment.
 inline double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
 
-/// CPU seconds of the whole process (all threads).
+/// The CPU seconds of the whole process (all threads).
 inline double cpu_seconds() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

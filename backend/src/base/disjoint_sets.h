@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Disjoint sets of the numbers 0 ... n - 1: `parents` starts as i for each i.
+// Disjoint sets: a partition of the numbers 0 ... n - 1, where `parents` starts as i for each i
+// (union-find with path halving).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ inline uint32_t root_of(std::vector<uint32_t>& parents, uint32_t i) {
     return i;
 }
 
-/// Makes one set of two; the same in any order of joins.
+/// Makes one set of two; the result is the same in any order of joins.
 inline void join(std::vector<uint32_t>& parents, uint32_t a, uint32_t b) {
     a = root_of(parents, a);
     b = root_of(parents, b);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors: a caller's mistake or an impossible state throws Error; what depends on the user's data
-// comes back as a value plus Problems.
+// Errors: a caller's mistake or an impossible state throws Error; a fault in the user's data comes
+// back as a value plus Problems.
 #pragma once
 
 #include <locale>
@@ -26,6 +26,7 @@ enum class Status {
     PovrayFailed = 31,
 };
 
+/// An exception with its cause; what() is a sentence for the user.
 class Error : public std::runtime_error {
 public:
     Error(Status cause, const std::string& sentence)
@@ -37,7 +38,7 @@ public:
 template <typename... Parts>
 std::string text(const Parts&... parts) {
     std::ostringstream out;
-    out.imbue(std::locale::classic());  // the host's may write 1.920 for 1920
+    out.imbue(std::locale::classic());  // the host's locale may write 1.920 for 1920
     (out << ... << parts);
     return out.str();
 }
@@ -48,11 +49,12 @@ template <typename... Parts>
     throw Error(status, text(parts...));
 }
 
+/// How much a problem matters to the user.
 enum class Severity { Info = 0, Warning = 1, Error = 2 };
 
-/// Something about the user's data that is worth a line in the report; never stops a scene.
+/// A fault in the user's data that is worth a line in the report; it never stops a scene.
 struct Problem {
-    std::string object;  // the user's name for it
+    std::string object;  // the user's name for the object
     Severity severity = Severity::Warning;
     std::string code;     // snake_case, stable, e.g. "non_finite_vertices"
     std::string message;  // a sentence that says what was done about it

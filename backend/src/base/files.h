@@ -11,21 +11,21 @@
 
 namespace lodestone {
 
-/// The whole file. Throws Error(Io) with the reason, or when it is larger than `limit` bytes.
+/// Reads the whole file. Throws Error(Io) with the reason, or when it is larger than `limit` bytes.
 std::string read_file(const std::filesystem::path& path, uint64_t limit = uint64_t{4} << 30u);
 
 /// Writes to a temporary name beside `path`, then renames: a killed run leaves the old file or the
-/// new one. Throws Error(Io); then nothing is left behind.
+/// new one. Throws Error(Io), and leaves nothing behind.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// True when `name` is a plain relative ASCII path of [A-Za-z0-9_./-] that stays below its folder.
 bool safe_relative_name(std::string_view name);
 
-/// Holds an exclusive advisory lock on a file for one writer; released when destroyed or killed.
+/// A lock on a file, exclusive and advisory, for one writer; released when destroyed or killed.
 class FileLock {
 public:
-    /// Waits while somebody else holds it. Throws Error(Io) naming the file where it cannot be
-    /// made, and what `job` throws when it is cancelled.
+    /// Waits while somebody else holds the lock. Throws Error(Io) naming the file when it cannot be
+    /// made, and Error(Cancelled) when `job` is cancelled.
     explicit FileLock(const std::filesystem::path& path, const Job& job = {});
     ~FileLock();
     FileLock(const FileLock&) = delete;

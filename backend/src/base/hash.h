@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Content hashes: names of files and keys of caches. Not cryptographic.
+// Content hash: names of files in stores and keys of caches. It is not cryptographic.
+// Every word of eight bytes is taken in by wyhash's folded 64 x 64 bit product (Wang Yi 2019, his
+// first two constants) beside degski's 64-bit mixer (two xor-shift-multiply rounds with
+// 0xd6e8feb86659fd93), four words at a time side by side in long inputs. The whole is our own and
+// stays, although libraries (xxHash) exist: the hashes are the names of files in every store that
+// was written.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +16,7 @@
 
 namespace lodestone {
 
+/// The hash of some content.
 using Hash = uint64_t;
 
 /// Accumulates bytes, eight at a time; equal input sequences give equal values on every run and
@@ -71,7 +77,8 @@ private:
         state_ = stepped(state_, next);
         ++count_;
     }
-    /// Four words at a time, side by side: one word after the other would wait for each product.
+    /// Takes in four words at a time, side by side: one word after the other would wait for each
+    /// product.
     void blocks(const unsigned char*& at, size_t& size) {
         uint64_t lanes[4] = {state_, state_ + 1, state_ + 2, state_ + 3};
         for (; size >= kBlock; size -= kBlock, at += kBlock) {
@@ -83,13 +90,15 @@ private:
         for (const uint64_t lane : lanes)
             word(lane);
     }
+    /// The bytes that are taken in side by side.
+    /// Law: four words of eight bytes; another value changes the hashes of long inputs.
     static constexpr size_t kBlock = 32;
 
     uint64_t state_ = 0x9e3779b97f4a7c15u;
     uint64_t count_ = 0;
 };
 
-/// 16 lower-case hexadecimal digits.
+/// The hash as 16 lower-case hexadecimal digits.
 inline std::string hex16(Hash hash) {
     constexpr char kDigits[] = "0123456789abcdef";
     std::string out(16, '0');

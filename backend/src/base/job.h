@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Progress and cancellation of a long call, written into memory the caller owns and polls.
+// Job: progress and cancellation of a long call, written into memory the caller owns and polls.
 #pragma once
 
 #include "base/error.h"
@@ -9,21 +9,21 @@
 
 namespace lodestone {
 
-/// What a long call is doing now; the C interface's lds_stage has the same numbers.
+/// The stage of a long call; the C interface's lds_stage has the same numbers.
 enum class JobStage : int32_t {
     Extract = 1,   // reading the scene from its program
     Measure = 2,   // attributes and errors
     Simplify = 3,  // making representations
-    Group = 4,     // structuring
+    Group = 4,     // making groups
     Store = 5,     // reading or writing a store
-    Choose = 6,    // the cut
+    Choose = 6,    // choosing the cut
     Export = 7,    // writing the scene for a renderer
-    Parse = 8,     // the renderer reads it
+    Parse = 8,     // the renderer reads the scene
     Trace = 9,     // the renderer draws it
 };
 
-/// A view of the caller's progress record. Copies share it; a default Job reports to nobody.
-/// Safe from any thread.
+/// A view of the caller's progress record. Copies share it; a default Job reports to nobody. It may
+/// be used from any thread.
 class Job {
 public:
     Job() = default;
@@ -45,13 +45,13 @@ public:
             *fraction_ = begin_ + (end_ - begin_) * (part < 0 ? 0 : (part > 1 ? 1 : part));
     }
 
-    /// Names what is being done now.
+    /// Names the stage of the call.
     void stage(JobStage now) const {
         if (stage_ != nullptr)
             *stage_ = static_cast<int32_t>(now);
     }
 
-    /// The same job seen by a step that covers `begin`...`end` of the bar.
+    /// The same job as a step sees it that covers `begin`...`end` of the bar.
     Job part(double begin, double end) const {
         Job step = *this;
         step.begin_ = begin_ + (end_ - begin_) * begin;

@@ -17,8 +17,14 @@
 
 namespace lodestone {
 
+/// The ratio of a circle's circumference to its diameter.
+/// Law: std::numbers::pi.
 inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kGoldenAngle = 2.399963229728653;  // kPi (3 - sqrt 5)
+/// The turn in radians that spreads directions evenly, kPi (3 - sqrt 5).
+/// Law: the golden angle (Vogel 1979).
+inline constexpr double kGoldenAngle = 2.399963229728653;
+/// A double larger than every number.
+/// Law: std::numeric_limits.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline bool finite(const glm::vec3& v) {
@@ -29,7 +35,7 @@ inline bool finite(const glm::dvec3& v) {
 }
 bool all_finite(std::span<const glm::vec3> points);
 
-/// `low` for what is not a number.
+/// The value between `low` and `high`; `low` for a value that is not a number.
 inline double limited(double value, double low, double high) {
     return value >= low ? glm::min(value, high) : low;
 }
@@ -44,13 +50,14 @@ inline double trace(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
 }
 
-/// x -> linear * x + offset. Column-major inside (GLM), row-major 3x4 in the C interface.
+/// An affine transform: x -> linear * x + offset. Column-major inside (GLM), row-major 3x4 in the C
+/// interface.
 struct Affine {
     glm::dmat3 linear{1.0};
     glm::dvec3 offset{0.0};
 
     glm::dvec3 operator()(const glm::dvec3& point) const { return linear * point + offset; }
-    /// (a * b)(x) = a(b(x))
+    /// The transform that applies `inner` first: (a * b)(x) = a(b(x)).
     Affine operator*(const Affine& inner) const {
         return {linear * inner.linear, linear * inner.offset + offset};
     }
@@ -59,16 +66,17 @@ struct Affine {
     bool finite() const;
 };
 
-/// Largest singular value of the linear part: by how much the transform can enlarge an error.
+/// The largest singular value of the linear part: by how much the transform can enlarge an error.
 double stretch(const Affine& transform);
 
-/// Eigenvalues (descending) and orthonormal, right-handed axes (columns) of a symmetric matrix.
+/// The eigenvalues (descending) and orthonormal, right-handed axes (columns) of a symmetric matrix.
 struct SymmetricEigen {
     glm::dvec3 values{0.0};
     glm::dmat3 axes{1.0};
 };
 SymmetricEigen eigen_symmetric(const glm::dmat3& matrix);
 
+/// An axis-aligned box; a new one is empty.
 struct Box3 {
     glm::dvec3 low{kInfinity};
     glm::dvec3 high{-kInfinity};
@@ -90,7 +98,7 @@ struct Box3 {
     glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : high - low; }
 };
 
-/// Where something is: a sphere and an axis-aligned box in the same frame; both contain it.
+/// The place of a thing: a sphere and an axis-aligned box in the same frame; both contain it.
 struct Bound {
     glm::dvec3 center{0.0};
     double radius = 0;
@@ -100,13 +108,13 @@ struct Bound {
 };
 
 Bound bound_of(std::span<const glm::vec3> points);
-/// Bound of both, in one frame.
+/// The bound of both, in one frame.
 Bound merged(const Bound& a, const Bound& b);
-/// Bound of the transformed thing (conservative; the box is the box of the transformed corners).
+/// The bound of the transformed thing (conservative; the box is that of the transformed corners).
 Bound transformed(const Bound& bound, const Affine& transform);
-/// The same where the transform's stretch is known.
+/// The bound of the transformed thing where the transform's stretch is known.
 Bound transformed(const Bound& bound, const Affine& transform, double stretch);
-/// Distance from a point to the bound: the larger of sphere and box distance, 0 inside.
+/// The distance from a point to the bound: the larger of sphere and box distance, 0 inside.
 double distance(const Bound& bound, const glm::dvec3& point);
 
 }  // namespace lodestone

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parallel loops; the only file pair that sees TBB.
+// Parallel loops: loops over threads and their number; no other file pair sees TBB.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,17 @@ namespace lodestone {
 /// is rethrown after the others have stopped.
 void parallel_for(size_t count, const std::function<void(size_t)>& body);
 
-/// Small items that a thread takes at a time: a loop over blocks of them costs little by itself.
+/// The small items that a thread takes at a time: a loop over blocks of them costs little by
+/// itself.
+/// Taste: a larger value leaves threads idle at the end of short loops, a smaller one calls TBB
+/// more often.
 inline constexpr size_t kBlock = 256;
 
-/// Threads a parallel loop started here would use.
+/// The number of threads that a parallel loop started here would use.
 int hardware_threads();
 
-/// As long as it lives, parallel loops started on this thread use at most `threads` threads
-/// (0 = all).
+/// A limit on threads: as long as it lives, parallel loops started on this thread use at most
+/// `threads` threads (0 = all).
 class ThreadLimit {
 public:
     explicit ThreadLimit(int threads);
