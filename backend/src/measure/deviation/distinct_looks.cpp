@@ -22,7 +22,7 @@ double decode(double encoded) {
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
 
-/// What a material shows where nothing is looked up: what it mixes is mixed.
+/// The mean look of a material where nothing is looked up; materials that are mixed count as mixed.
 struct MeanLook {
     glm::dvec3 light;  // color and emission
     glm::dvec3 emission;
@@ -44,8 +44,11 @@ struct MeanLook {
     }
 };
 
-/// Lamps may be brighter than any picture shows: twice as bright is another one.
+/// Whether two looks emit alike. Lamps may be brighter than any picture shows: twice as bright is
+/// another lamp.
 bool emit_alike(const glm::dvec3& a, const glm::dvec3& b) {
+    // The factor from which on lamps differ.
+    // Taste: a larger value takes brighter and darker lamps for one.
     constexpr double kSameLamp = 2;
     for (int i = 0; i < 3; ++i) {
         const double less = std::min(a[i], b[i]);
@@ -83,7 +86,7 @@ glm::dvec3 LookPalette::light_of(const glm::dvec3& color) {
 LookPalette::LightRange LookPalette::lights_alike(const glm::dvec3& color) {
     LightRange out;
     for (int i = 0; i < 3; ++i) {
-        // Encoding rises with light, and shows all that is above 1 as 1.
+        // Encoding rises with light, and shows everything above 1 as 1.
         out.least[i] = color[i] - kSameLook > 0 ? decode(color[i] - kSameLook) : -kInfinity;
         out.most[i] = color[i] + kSameLook < 1 ? decode(color[i] + kSameLook) : kInfinity;
     }

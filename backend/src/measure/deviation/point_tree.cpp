@@ -23,7 +23,7 @@ void PointTree::build(size_t begin, size_t end) {
     axis = size.z > size[axis] ? 2 : axis;
     const size_t middle = begin + (end - begin) / 2;
     const auto at = [&](size_t i) { return nodes_.begin() + static_cast<std::ptrdiff_t>(i); };
-    // By number where the places are equal: the same tree everywhere.
+    // Points in equal places are sorted by number: the tree is the same everywhere.
     std::nth_element(at(begin), at(middle), at(end),
                      [axis](const PointNode& a, const PointNode& b) {
                          return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis]

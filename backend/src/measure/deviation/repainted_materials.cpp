@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repainting: levels whose triangles show the material of what lay on them.
+// Repainted materials: levels whose triangles show the material of what lay on them.
 #include "base/parallel.h"
 #include "measure/deviation/sample_errors.h"
 #include "measure/deviation/surface_deviation.h"
@@ -12,9 +12,15 @@
 namespace lodestone::measure {
 namespace {
 
+/// The fewest votes that repaint a triangle.
+/// Taste: a larger value leaves small triangles the material they have.
 constexpr uint32_t kLeastVotes = 3;
-// Texture coordinates have six unknowns, and must prove right on more points than make them.
+// The fewest votes that give a triangle texture coordinates.
+// Law: coordinates that are linear on a plane have six unknowns, and need more points (two
+// equations each) than make them.
 constexpr size_t kLeastTextured = 8;
+/// The share of the voters that must see their color again with the new texture coordinates.
+/// Taste: a larger value repaints fewer textured triangles.
 constexpr double kLeastRight = 0.9;
 
 /// Texture coordinates as an affine function of the place on a plane.
@@ -35,14 +41,14 @@ struct UvMap {
 
 using Voters = std::vector<const SurfaceSample*>;
 
-/// That the level's triangle nearest to a point shows the point's slot.
+/// A vote that the level's triangle nearest to a point shows the point's slot.
 struct SlotVote {
     uint32_t triangle;
     uint16_t slot;
     const SurfaceSample* voter;
 };
 
-/// The map of a triangle's plane that suits the voters best; none where they lie in a line.
+/// Finds the map of a triangle's plane that suits the voters best; none where they lie in a line.
 std::optional<UvMap> fit(const Mesh& level, uint32_t triangle, const Voters& voters) {
     const Triangle& t = level.triangles[triangle];
     UvMap map;
@@ -62,7 +68,8 @@ std::optional<UvMap> fit(const Mesh& level, uint32_t triangle, const Voters& vot
         right[0] += voter->uv.x * place;
         right[1] += voter->uv.y * place;
     }
-    // Along the plane about the voters' middle: the last row and column are 0 but for the count.
+    // Coordinates in the plane about the voters' middle: the last row and column are 0 but for the
+    // count.
     const double spread = square[0][0] + square[1][1];
     const double determinant = square[0][0] * square[1][1] - square[0][1] * square[0][1];
     if (!(determinant > 1e-4 * spread * spread))
@@ -90,7 +97,8 @@ void set_uvs(Mesh& level, uint32_t triangle, const UvMap& map) {
 /// Whether the triangle, painted with `slot` and the map, shows what the voters show.
 bool shows_the_same(const Mesh& level, uint32_t triangle, uint16_t slot, const UvMap& map,
                     const ray::MeshSkin& skin, const Voters& voters) {
-    // One triangle that is all map: its corners' coordinates are looked up where each voter is.
+    // The probe is one triangle that is all map: its corners' coordinates are looked up where each
+    // voter is.
     Mesh probe;
     probe.positions.resize(3);
     probe.triangles = {{0, 1, 2}};
@@ -119,10 +127,14 @@ bool shows_one_slot(const Mesh& level, const std::vector<SurfaceSample>& points)
                        [&](uint16_t other) { return other == slot; });
 }
 
-/// Every so many points vote: some dozens a triangle are enough.
+/// The step between points that vote: some dozens a triangle are enough.
 size_t step_for(size_t triangles, size_t points) {
+    // Votes of a triangle, in the mean.
+    // Taste: a larger value is surer of each triangle's material, for a search each.
     constexpr size_t kVotes = 24;
-    constexpr size_t kMostStep = 8;  // points of one place lie in a row
+    // The largest step; points of one place lie in a row.
+    // Taste: a larger value is faster and may pass over small triangles.
+    constexpr size_t kMostStep = 8;
     return std::clamp<size_t>(points / (kVotes * std::max<size_t>(triangles, 1)), 1, kMostStep);
 }
 
@@ -204,7 +216,7 @@ DeviationReference::RepaintResult DeviationReference::repaint(Mesh& level,
             continue;
         const uint16_t slot = most.front().slot;
         if (skin != nullptr && skin->textured(level, slot)) {
-            // Its own coordinates belong to another texture.
+            // The triangle's own coordinates belong to another texture.
             if (most.size() < kLeastTextured)
                 continue;
             Voters voters;

@@ -7,10 +7,14 @@
 namespace lodestone::measure {
 namespace {
 
+/// The share of all samples whose places the error covers.
+/// Taste: a larger value counts single spikes, a smaller one loses thin parts.
 constexpr double kQuantile = 0.999;
-// Of the places of one look; and looks of a smaller share of the area than this are details, which
-// their places alone answer for.
+// The share of one look's samples whose moves the error covers.
+// Taste: a larger value counts single texels of a look that moved.
 constexpr double kLookQuantile = 0.99;
+/// Looks of a smaller share of the area are details, for which their places alone answer.
+/// Taste: a larger value loses narrow roads and signs, a smaller one keeps levels fine for specks.
 constexpr double kLeastLookShare = 0.002;
 
 /// A value for each look; looks are few and numbered from 0.
@@ -40,7 +44,10 @@ double weight_of(const std::vector<SurfaceSample>& samples, const std::vector<si
 
 double quantile(const std::vector<SurfaceSample>& samples, const std::vector<double>& distances,
                 std::vector<size_t> order, double most) {
-    // Mostly the farthest few decide: the rest is not sorted.
+    // The samples that are sorted first: mostly the farthest few decide, and the others are not
+    // sorted.
+    // Taste: a larger value sorts more than is mostly needed, a smaller one starts again more
+    // often.
     constexpr size_t kFirst = 32;
     const auto farther = [&](size_t a, size_t b) {
         return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
@@ -110,10 +117,16 @@ bool is_above(const std::vector<SurfaceSample>& samples, const std::vector<doubl
 bool surely_above(double useless, const std::vector<SurfaceSample>& samples,
                   const std::vector<size_t>& some, const std::vector<double>& places,
                   const std::vector<double>& moves) {
-    // Many times as much as the quantiles allow, of samples enough.
+    // The shares of samples that must lie above, many times as much as the quantiles allow.
+    // Taste: 20 times 1 - kQuantile; a larger value gives up later, a smaller one may give up too
+    // soon.
     constexpr double kPlaces = 0.02;
+    // Taste: 6 times 1 - kLookQuantile, for the same trade.
     constexpr double kMoves = 0.06;
+    // The fewest samples that must lie above.
+    // Taste: a larger value gives up later.
     constexpr size_t kFewest = 6;
+    // Law: a look that counts by kLeastLookShare without doubt, told by a part of the samples.
     constexpr double kLeastShare = 5 * kLeastLookShare;
     struct ShareAbove {
         double all = 0;

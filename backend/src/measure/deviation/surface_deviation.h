@@ -11,8 +11,8 @@ namespace lodestone::measure {
 
 class VisibleLooks;
 
-/// How far apart two surfaces and their looks are, in metres. Surfaces are compared both ways: from
-/// the visible surface of the finest to the whole stand-in, and from the whole stand-in to the
+/// The distance between two surfaces and their looks, in metres. Surfaces are compared both ways:
+/// from the visible surface of the finest to the whole stand-in, and from the whole stand-in to the
 /// whole finest.
 ///
 /// If the nearest point of the stand-in has another look than the visible point, that look was

@@ -10,8 +10,12 @@
 namespace lodestone::measure {
 namespace {
 
+/// Rays by which a vertex may be seen.
+/// Taste: a larger value finds vertices that are seen through narrower gaps.
 constexpr int kVertexRays = 16;
-constexpr uint32_t kMostRaysPerSample = 16;  // for visible points of a mesh that is hard to hit
+/// The rays for a point that is wanted, at most: a mesh may be hard to hit.
+/// Taste: a larger value finds more points on such meshes, and takes longer.
+constexpr uint32_t kMostRaysPerSample = 16;
 
 double area_of(const Mesh& mesh, size_t triangle) {
     const double area = 0.5 * glm::length(area_vector(mesh, triangle));
@@ -26,7 +30,7 @@ glm::dvec3 side_of(const Mesh& mesh, const VisiblePoint& point) {
     return (glm::dot(area, point.seen_from) < 0 ? -area : area) / length;
 }
 
-/// Of a point that is seen.
+/// The sample of a point that is seen.
 SurfaceSample shown_at(const Mesh& mesh, const SurfaceLooks& surface, const VisiblePoint& point,
                        double weight) {
     SurfaceSample out{point.point, weight};
@@ -78,9 +82,12 @@ private:
     std::vector<uint32_t> list_;
 };
 
-/// A little inside: at the very corner of a card a repeated picture shows its other side.
+/// Whether the scene shows a triangle at one of its corners, a little inside: at the very corner of
+/// a card a repeated picture shows its other side.
 bool shows_corner(const Mesh& mesh, const ray::MeshScene& scene, uint32_t triangle,
                   uint32_t vertex) {
+    // The share of the way from the corner to the triangle's middle.
+    // Taste: a larger value may step over a narrow edge that shows.
     constexpr double kInside = 0.05;
     const Triangle& t = mesh.triangles[triangle];
     const auto weight = [&](uint32_t corner) {
@@ -111,7 +118,8 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
     const double step = static_cast<double>(corners.size()) / most;
     double kept = 0;
     for (uint32_t i = 0; i < most; ++i) {
-        // One of each run of `step` vertices; the write position never passes the read position.
+        // The pick is one of each run of `step` vertices; the write position never passes the read
+        // position.
         const auto pick = static_cast<size_t>((i + random.uniform()) * step);
         corners[i] = corners[std::min(pick, corners.size() - 1)];
         kept += corners[i].weight;

@@ -14,7 +14,8 @@ namespace {
 
 /// Whether it is known which side of a place is seen; then it is a unit vector.
 bool is_sided(const glm::dvec3& side) {
-    constexpr double kUnknown = 0.5;  // square of a length
+    // Law: half of a unit vector's square; sides are unit vectors or 0.
+    constexpr double kUnknown = 0.5;
     return !(glm::dot(side, side) < kUnknown);
 }
 
@@ -23,7 +24,7 @@ bool face_alike(const glm::dvec3& a, const glm::dvec3& b) {
     return !is_sided(a) || !is_sided(b) || glm::dot(a, b) > 0;
 }
 
-/// LookPalette::light_of() of colors that are mostly those before.
+/// The light of LookPalette::light_of(), for colors that are mostly those before.
 class LightOf {
 public:
     const glm::dvec3& operator()(const glm::dvec3& color) {
@@ -41,6 +42,8 @@ private:
 
 std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible,
                              const LookPalette* palette) {
+    // The factor above the mean light from which on a look glows.
+    // Taste: a larger value takes fewer looks for lamps.
     constexpr double kMuch = 2;
     std::vector<uint8_t> out;
     if (palette == nullptr)
@@ -72,13 +75,14 @@ std::vector<uint8_t> glowing(const std::vector<SurfaceSample>& visible,
 
 VisibleLooks::VisibleLooks(const std::vector<SurfaceSample>& visible, const LookPalette* palette)
     : visible_(visible), glowing_(glowing(visible, palette)) {
-    // Every so many of the visible points are enough for a mean.
+    // The visible points that a mean is taken from, at most.
+    // Taste: a larger value knows where colors mix more exactly, for time at every sample.
     constexpr size_t kMostPoints = 512;
     LightOf light_of;
     const size_t step = std::max<size_t>(1, visible.size() / kMostPoints);
     for (size_t run = 0; run < visible.size(); run += step) {
-        // Any one of each run: they were drawn evenly, and every so many of such are in one
-        // place.
+        // Any point of each run will do: they were drawn evenly, and points at a regular step of
+        // such a sequence are in one place.
         const size_t i = std::min(run + scramble(run) % step, visible.size() - 1);
         if (visible[i].look != kAnyLook)
             mixed_.push_back({visible[i].point, visible[i].side, light_of(visible[i].color),
@@ -125,8 +129,9 @@ double VisibleLooks::nearest_of_color(const SurfaceSample& from, const glm::dvec
 
 double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& color,
                                    double most) const {
-    // A square and the number of what is so near: bits of floats that are not negative are in
-    // order. Nobody can guess which are, so all are written, and the next one over what is not.
+    // The keys of near points: the square of the distance and the number. Bits of floats that are
+    // not negative are in order. Nobody can guess which points are near, so all are written, and
+    // the next one over a point that is not.
     std::vector<uint64_t> near(mixed_.size());
     const bool sided = is_sided(from.side);
     size_t count = 0;
@@ -145,13 +150,15 @@ double VisibleLooks::mixing_radius(const SurfaceSample& from, const glm::dvec3& 
     }
     near.resize(count);
     // Points of a surface are spread about evenly over squares of distances: a few to a bin.
+    // Taste: 512 points make eight to a bin; a larger value sorts shorter runs and has more empty
+    // bins.
     constexpr size_t kBins = 64;
     const float scale = static_cast<float>(kBins) / farthest;
     const auto bin_of = [&](uint64_t key) {
         const float square = std::bit_cast<float>(static_cast<uint32_t>(key >> 32u));
         return std::isnormal(scale) ? std::min(static_cast<size_t>(square * scale), kBins - 1) : 0;
     };
-    std::array<size_t, kBins + 1> ends{};  // of the bins before, from the second on
+    std::array<size_t, kBins + 1> ends{};  // ends of the bins before, from the second on
     for (const uint64_t key : near)
         ++ends[bin_of(key) + 1];
     std::partial_sum(ends.begin(), ends.end(), ends.begin());

@@ -37,6 +37,8 @@ GlassRays::GlassRays(const Mesh& mesh, const ray::SkinPtr& skin, const ray::Mesh
 }
 
 ray::RayHit GlassRays::first_hit(glm::dvec3 from, glm::dvec3& along) const {
+    // Surfaces of glass that a ray passes at most.
+    // Taste: a larger value shows lamps behind more panes, for more rays through each.
     constexpr int kMostSurfaces = 8;
     ray::RayHit hit = scene_.first_hit(from, along);
     for (int i = 0; rest_ && hit.hit && clear(hit.triangle); ++i) {
@@ -50,6 +52,8 @@ ray::RayHit GlassRays::first_hit(glm::dvec3 from, glm::dvec3& along) const {
 }
 
 bool GlassRays::clear(uint32_t triangle) const {
+    // Glass is clear where less than this share is covered and more than it is transmitted.
+    // Taste: a larger value lets rays pass through frosted or colored glass, too.
     constexpr double kClear = 0.5;
     return skin_->opacity(mesh_, triangle, 1.0 / 3, 1.0 / 3) < kClear &&
            skin_->material(mesh_.slot(triangle)).transmission > kClear;
@@ -60,7 +64,7 @@ void GlassRays::bend(const ray::RayHit& hit, glm::dvec3& along) const {
     const glm::dvec3 normal = normal_at(mesh_, hit, -along);
     const double ior = std::max(skin_->material(mesh_.slot(hit.triangle)).ior, 0.1);
     const glm::dvec3 inside = glm::refract(along, normal, enters ? 1 / ior : ior);
-    // Where nothing gets out all of it is reflected.
+    // Where no light gets out, all of it is reflected.
     along = glm::dot(inside, inside) > 0.5 ? glm::normalize(inside)
                                            : glm::normalize(glm::reflect(along, normal));
 }

@@ -12,12 +12,17 @@
 namespace lodestone::measure {
 namespace {
 
-// As in pictures (agreement): of the light on a surface that faces the lamp.
+// The share of the light on a surface facing the lamp that comes from the sky.
+// Taste: pictures (kSky in picture_agreement.cpp) have the same; a larger value shows less of the
+// shape.
 constexpr double kAmbient = 0.25;
-// The smallest patches are so many times half as wide as the bound.
+// The smallest patches are the bound's width halved so many times.
+// Taste: a larger value tells finer differences, of which single rays know little.
 constexpr int kHalvings = 10;
 
-// Of the colors seen, over their mean, the root of the mean square: less is one color.
+// A surface shows one color when the root of the mean square of its colors' differences, over the
+// mean color, is less than this.
+// Taste: a larger value paints fewer boxes with several colors.
 constexpr double kOneColor = 0.1;
 
 ray::SurfaceAppearance shown_at(const Mesh& mesh, const ray::MeshSkin& skin,
@@ -26,7 +31,7 @@ ray::SurfaceAppearance shown_at(const Mesh& mesh, const ray::MeshSkin& skin,
     return skin.varies(mesh, slot) ? skin.at(mesh, hit.triangle, hit.u, hit.v) : skin.mean(slot);
 }
 
-/// Of all light on a surface that faces a lamp; `facing`: the cosine.
+/// The light on a surface, over that on a surface facing the lamp; `facing` is the cosine.
 double light_of(double facing) {
     return kAmbient + (1 - kAmbient) * facing;
 }
@@ -38,7 +43,7 @@ glm::dvec3 light_at(const Mesh& mesh, const ray::MeshSkin& skin, const ray::RayH
     return light_of(facing) * shown.color + shown.emission;
 }
 
-/// Obliquely beside the eye, around it by the golden angle, not below it.
+/// The direction to a sun obliquely beside the eye, around it by the golden angle, not below it.
 glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
     const double turn = kGoldenAngle * static_cast<double>(number);
     const glm::dvec3 other = std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
@@ -47,7 +52,7 @@ glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
     return glm::normalize(towards + std::cos(turn) * right + std::abs(std::sin(turn)) * up);
 }
 
-/// Which of six sides something is seen from.
+/// The number of the side, of six, that something is seen from.
 uint64_t side_of(const glm::dvec3& towards) {
     int most = 0;
     for (int axis = 1; axis < 3; ++axis)
@@ -55,8 +60,10 @@ uint64_t side_of(const glm::dvec3& towards) {
     return 2 * static_cast<uint64_t>(most) + (towards[most] < 0 ? 1 : 0);
 }
 
-/// The side, then for each halving three bits of the place (0...1 along each axis).
+/// The patch of a point: the side, then for each halving three bits of the place (0...1 along each
+/// axis).
 uint64_t patch_of(const glm::dvec3& towards, const glm::dvec3& place) {
+    // Law: the cells along an axis after so many halvings.
     constexpr int kCells = 1 << kHalvings;
     const glm::ivec3 cell(
         glm::clamp(place * double{kCells}, glm::dvec3(0.0), glm::dvec3(kCells - 1)));
@@ -74,6 +81,8 @@ LightPatches::LightPatches(const Mesh& finest, const VisibleSampler& sampler,
                            const ray::MeshSkin& skin, std::span<const CastPoints> cast,
                            uint64_t seed)
     : radius_(radius_of(finest)) {
+    // The points of the finest that are kept at most.
+    // Taste: a larger value resolves smaller patches, for a ray each and stand-in.
     constexpr size_t kMost = 2048;
     const SobolPoints numbers(seed);
     glm::dvec3 low(std::numeric_limits<double>::infinity());
@@ -137,8 +146,16 @@ LightPatches::PatchDifference LightPatches::difference(const std::vector<glm::dv
 double LightPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
                                           const ray::MeshSkin& skin, bool matched,
                                           double least) const {
+    // The brightness that is made up for, as a factor.
+    // Taste: a larger value forgives darker stand-ins, which are made as bright only up to their
+    // colors' range.
     constexpr double kMostBrighter = 2;
-    constexpr double kMostFarther = 2;  // as pictures that differ as a whole
+    // Patches as large as the bound count as so many times farther at most, as pictures do.
+    // Fitted: bench_street.py on the street, far camera, 2 px; 8 took a third more triangles for
+    // less SSIM.
+    constexpr double kMostFarther = 2;
+    // The share of the rays that must not be alone in their patch.
+    // Taste: a larger value ends the search at larger patches, a smaller one trusts few rays.
     constexpr double kLeastKnown = 0.5;
     if (!(glm::length(mean_) > 0) || !(2 * radius_ > least))
         return 0;
@@ -173,14 +190,17 @@ double LightPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshS
 
 std::vector<glm::dvec4> LightPatches::fitted_vertex_colors(const Mesh& stand_in,
                                                            const ray::MeshScene& finest) const {
-    // More would take steps (dark trousers under a bright shirt) for slopes that go on.
+    // Rounds of the fit below.
+    // Taste: more would take steps (dark trousers under a bright shirt) for slopes that go on.
     constexpr int kRounds = 2;
-    constexpr double kFromBelow = 0.125;  // how much eyes below the horizon count
+    // The weight of eyes below the horizon.
+    // Taste: a larger value lights boxes more for views from below, which are rare.
+    constexpr double kFromBelow = 0.125;
     struct PaintSample {
-        std::array<uint32_t, 3> vertices;  // of the stand-in
-        glm::dvec3 near;                   // how near to each, 1 in all
+        std::array<uint32_t, 3> vertices;  // vertices of the stand-in
+        glm::dvec3 near;                   // how near to each vertex, 1 in all
         glm::dvec3 wanted;                 // light of the finest
-        double light;                      // on the stand-in
+        double light;                      // light on the stand-in
         double weight;
     };
     std::vector<glm::dvec4> out(stand_in.positions.size(), glm::dvec4(0.0));
@@ -214,7 +234,7 @@ std::vector<glm::dvec4> LightPatches::fitted_vertex_colors(const Mesh& stand_in,
                            light_of(std::max(0.0, on_it)),
                            weight});
     }
-    // What is seen beside the stand-in is in the mean of all.
+    // Points that are seen beside the stand-in count in the mean of all.
     glm::dvec3 more(1.0);
     for (int i = 0; i < 3; ++i) {
         if (both[i] > 0)

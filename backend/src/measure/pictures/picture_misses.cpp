@@ -9,7 +9,7 @@
 namespace lodestone::measure {
 namespace {
 
-/// A pixel: means over every other sample, and over those between.
+/// The means over a pixel: over every other sample, and over those between.
 struct HalvedPixel {
     std::array<glm::dvec4, 2> halves;
 
@@ -27,7 +27,7 @@ struct HalvedPixel {
                 return glm::dvec4(low[0], low[1], high[0], high[1]) / static_cast<double>(count);
             }
         };
-        HalfSum first;  // of the half that the row begins with
+        HalfSum first;  // the half that the row begins with
         HalfSum second;
         for (int y = 0; y < side; ++y) {
             const glm::vec4* const row = corner + static_cast<ptrdiff_t>(y) * stride;
@@ -67,6 +67,7 @@ std::vector<PictureRect> picture_rects(const std::vector<glm::vec4>& a,
 
 PixelMisses pixel_misses(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b,
                          const std::vector<PictureRect>& parts, int side, int pixel) {
+    // Law: the smallest alpha of 8 bits that is not 0; compare() covers pixels by the same.
     constexpr double kCovered = 1.0 / 255;
     PixelMisses out;
     for (size_t view = 0; view < parts.size(); ++view) {

@@ -8,6 +8,7 @@
 namespace lodestone::measure {
 namespace {
 
+/// Law: the pairs of opposite faces, edges and corners of a cube (3 + 6 + 4).
 constexpr size_t kSlabs = 13;
 
 struct SlabPlane {
@@ -15,7 +16,7 @@ struct SlabPlane {
     double offset;      // normal . x = offset
 };
 
-/// One of each pair of opposite directions to the faces, edges and corners of a cube.
+/// One direction of each pair of opposite ones to the faces, edges and corners of a cube.
 std::array<glm::dvec3, kSlabs> slab_directions() {
     std::array<glm::dvec3, kSlabs> out;
     size_t count = 0;
@@ -31,14 +32,14 @@ std::array<glm::dvec3, kSlabs> slab_directions() {
     return out;
 }
 
-/// Any two unit vectors that make a right-handed frame with a unit normal.
+/// Makes two unit vectors that are a right-handed frame with a unit normal.
 void tangents(const glm::dvec3& normal, glm::dvec3& side, glm::dvec3& other) {
     const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     side = glm::normalize(glm::cross(helper, normal));
     other = glm::cross(normal, side);
 }
 
-/// The part of a convex polygon behind a plane.
+/// Keeps the part of a convex polygon behind a plane.
 void clip(std::vector<glm::dvec3>& polygon, const SlabPlane& plane,
           std::vector<glm::dvec3>& spare) {
     spare.clear();
@@ -69,7 +70,8 @@ ConvexBound::ConvexBound(std::span<const glm::dvec3> points, const glm::dmat3& a
         low[i] = std::numeric_limits<double>::infinity();
         high[i] = -low[i];
     }
-    // About the first point, so that the planes keep their digits far from the origin.
+    // Coordinates are about the first point, so that the planes keep their digits far from the
+    // origin.
     const glm::dvec3 center = points[0];
     double radius = 0;
     for (const glm::dvec3& point : points) {
@@ -121,7 +123,7 @@ BoundRay ConvexBound::entering_ray(const std::array<double, 4>& u) const {
         [](double value, const BoundFace& candidate) { return value < candidate.area_up_to; });
     if (face == faces_.end())
         --face;
-    // What is left of the first number after the choice of the face is uniform again.
+    // After the choice of the face, the rest of the first number is uniform again.
     const double before = face == faces_.begin() ? 0 : std::prev(face)->area_up_to;
     const double rest = std::clamp((target - before) / (face->area_up_to - before), 0.0, 1.0);
     const glm::dvec2 weights = uniform_in_triangle(rest, u[1]);
@@ -135,7 +137,7 @@ glm::dvec3 cosine_direction(const glm::dvec3& normal, double u, double v) {
     tangents(normal, side, other);
     const double radius = std::sqrt(u);
     const double turn = 2 * std::numbers::pi * v;
-    // Never quite parallel to the surface, where a ray would stay in it.
+    // The direction is never quite parallel to the surface, where a ray would stay in it.
     const double height = std::sqrt(std::max(1 - u, 1e-12));
     return radius * (std::cos(turn) * side + std::sin(turn) * other) + height * normal;
 }

@@ -8,8 +8,11 @@
 namespace lodestone::measure {
 namespace {
 
-/// Variances whose ratio is above this give no reliable axes; see notes on equal eigenvalues.
+/// Variances whose ratio is above this give no reliable axes, for they are nearly equal.
+/// Taste: a larger value leaves near cubes the axes of noise, a smaller one turns more frames.
 constexpr double kNearlyEqual = 0.93;
+/// The rise of in_frame() that is worth a turn.
+/// Taste: noise of rays is below; a larger value leaves rounded boxes at eigenvectors.
 constexpr double kWorthTurning = 0.05;
 
 struct QuarticTerm {
@@ -17,6 +20,7 @@ struct QuarticTerm {
     double count;  // how often x^i y^j z^k occurs in (x + y + z)^4
 };
 
+/// Law: the terms of (x + y + z)^4 and their multinomial coefficients.
 constexpr std::array<QuarticTerm, 15> kPowers{{{4, 0, 0, 1},
                                                {0, 4, 0, 1},
                                                {0, 0, 4, 1},
@@ -60,6 +64,7 @@ glm::dmat3 turned(const glm::dmat3& axes, int i, int j, double angle) {
 /// The best turn in one plane. Over the angle, in_frame is a constant plus one cosine of four
 /// times the angle, so three values give the maximum in closed form.
 glm::dmat3 best_in_plane(const NormalMoments& normals, const glm::dmat3& axes, int i, int j) {
+    // Law: 45 degrees, an eighth of a turn.
     constexpr double kQuarter = std::numbers::pi / 4;
     const double at_0 = normals.in_frame(axes);
     const double at_45 = normals.in_frame(turned(axes, i, j, kQuarter));
@@ -71,8 +76,10 @@ glm::dmat3 best_in_plane(const NormalMoments& normals, const glm::dmat3& axes, i
     return turned(axes, i, j, std::atan2(sine, cosine) / 4);
 }
 
-/// Turns in all three planes by turns until none helps, from a few starts: one may be a saddle.
+/// Turns in all three planes in turn until none helps, from a few starts: one may be a saddle.
 glm::dmat3 best_in_space(const NormalMoments& normals, const glm::dmat3& axes) {
+    // Radians by which a start is turned in a plane.
+    // Taste: any angle between the symmetries of a cube (0 and 1.57) will do.
     constexpr double kStart = 0.5;
     glm::dmat3 best = axes;
     double best_value = normals.in_frame(axes);

@@ -14,6 +14,8 @@
 namespace lodestone::measure {
 namespace {
 
+/// The rays of a large triangle, over those of a mean one, at most.
+/// Taste: a larger value finds large triangles that are seen through narrower gaps, for more rays.
 constexpr double kMostRaysTimes = 64;
 
 }  // namespace
@@ -65,7 +67,7 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& s
         }
         return false;
     };
-    // Half of the rays first. A triangle that they do not find, with no found triangle at its
+    // Half of the rays come first. A triangle that they do not find, with no found triangle at its
     // corners, lies in the dark with everything around it.
     std::vector<uint8_t> bright(mesh.positions.size(), 0);
     const std::vector<uint32_t> welded = weld(mesh);

@@ -13,7 +13,8 @@ SurfaceInertia inertia_of_mesh(const Mesh& mesh, bool both_sides_of_open) {
     SurfaceInertia out;
     if (mesh.empty())
         return out;
-    // About a vertex of the mesh, so that a mesh far from the origin keeps its digits.
+    // Coordinates are about a vertex of the mesh, so that a mesh far from the origin keeps its
+    // digits.
     const glm::dvec3 origin(mesh.positions[mesh.triangles[0].x]);
     glm::dvec3 first(0.0);
     glm::dmat3 second(0.0);
@@ -60,7 +61,7 @@ SurfaceInertia combined(const SurfaceInertia& a, const SurfaceInertia& b) {
 
 namespace {
 
-/// The square of its scale. Throws as transformed() does.
+/// The square of the transform's scale. Throws as transformed() does.
 double square_scale(const Affine& similarity) {
     const glm::dmat3& linear = similarity.linear;
     const glm::dmat3 square = glm::transpose(linear) * linear;
@@ -108,7 +109,8 @@ SymmetricEigen principal_variances(const SurfaceInertia& inertia) {
     const double size = trace(inertia.moments);
     if (inertia.empty() || !(size > 0))
         return out;
-    // Normalised first: fourth powers of tiny lengths would vanish in the solver's squares.
+    // Moments are normalized first: fourth powers of tiny lengths would vanish in the solver's
+    // squares.
     out = eigen_symmetric(inertia.moments / size);
     out.values = glm::max(out.values, glm::dvec3(0.0)) * (size / inertia.area);
     return out;

@@ -10,6 +10,8 @@
 namespace lodestone::measure {
 
 double mean_opacity(const Mesh& mesh, const ray::MeshSkin& skin, uint64_t seed) {
+    // Points that opacity is a mean of.
+    // Taste: a larger value knows patterns better; this one knows half coverage to 0.8 %.
     constexpr int kPoints = 4096;
     if (!skin.transmits() && !skin.see_through(mesh))
         return 1;
@@ -20,7 +22,7 @@ double mean_opacity(const Mesh& mesh, const ray::MeshSkin& skin, uint64_t seed) 
         areas[i] = area > 0 && std::isfinite(area) ? area : 0;
         all += areas[i];
     }
-    // One point in the middle of each of equal steps along the list of triangles.
+    // The points lie one in each of equal steps along the list of triangles.
     PcgRandom random(scramble(seed), 5);
     double up_to = 0;
     double sum = 0;

@@ -9,16 +9,29 @@
 namespace lodestone::measure {
 namespace {
 
-constexpr uint32_t kPilotRays = 256;  // of each kind
-// What rays cost, over a line that is only asked whether it hits: one from the surface starts among
-// things to hit; and one that also looks for the nearest points from both ends.
+/// Rays of the pilot, of each kind.
+/// Taste: a larger value chooses better where both kinds cost about the same, and costs as many
+/// rays.
+constexpr uint32_t kPilotRays = 256;
+// The cost of a ray that leaves the surface, over a line that is only asked whether it hits: the
+// ray starts among things to hit.
+// Taste: about the ratio of their times; a larger value prefers lines.
 constexpr double kCostOfSurfaceRay = 2;
+/// The cost of a line that also looks for the nearest points from both ends, over one that does
+/// not.
+/// Taste: about the ratio of their times; a larger value prefers rays from the surface.
 constexpr double kCostOfLineWithPoints = 4;
-constexpr double kPointsOfLine = 1.5;  // in a fixed number of rays, all of which have points
+/// The points of a line in a fixed number of rays, all of which have points.
+/// Taste: between one and two; a larger value prefers lines.
+constexpr double kPointsOfLine = 1.5;
+/// The misses of a pilot up to which rays leave the surface without a pilot of lines.
+/// Taste: a larger value spares more pilots where lines could be surer.
 constexpr uint32_t kFewMisses = 2;
+/// Triangles in one place that are told apart.
+/// Taste: a larger value counts denser stacks of coincident surfaces right, and costs stack memory.
 constexpr size_t kMostInOnePlace = 16;
 
-/// Every point some triangle with finite corners uses, once.
+/// Every point that a triangle uses and that is finite, once.
 std::vector<glm::dvec3> used_points(const Mesh& mesh) {
     std::vector<uint8_t> used(mesh.positions.size(), 0);
     for (const Triangle& t : mesh.triangles)
@@ -113,7 +126,8 @@ VisibleSampler::AreaDraw::AreaDraw(std::vector<double> area_up_to) : up_to_(std:
 
 size_t VisibleSampler::AreaDraw::at(double share, double& rest) const {
     const double target = share * up_to_.back();
-    // Only near the step that it lies in: a step more on both sides, as rounding may have it.
+    // The search is only near the step that it lies in: a step more on both sides, as rounding may
+    // have it.
     const size_t last = steps_.size() - 1;
     const auto step = static_cast<size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(last));
     auto found = std::upper_bound(up_to_.begin() + steps_[std::max<size_t>(step, 1) - 1],
@@ -127,7 +141,7 @@ size_t VisibleSampler::AreaDraw::at(double share, double& rest) const {
 }
 
 VisibleSampler::PilotRays VisibleSampler::pilot(uint64_t seed) {
-    // Other numbers than those of the measurement, which the choice must not depend on.
+    // These numbers are others than those of the measurement, which the choice must not depend on.
     const StratifiedPoints numbers(~seed, kPilotRays);
     PilotRays out;
     for (uint32_t i = 0; i < kPilotRays; i += 2) {
@@ -141,7 +155,7 @@ VisibleSampler::PilotRays VisibleSampler::pilot(uint64_t seed) {
 }
 
 double VisibleSampler::PilotRays::rays_for(double relative_error) const {
-    const double deviation = relative_error / 1.96;  // of a 95 % interval
+    const double deviation = relative_error / 1.96;  // the standard deviation for a 95 % interval
     return kPilotRays * relative_variance() / (deviation * deviation);
 }
 
@@ -178,7 +192,7 @@ int VisibleSampler::cast_line(const std::array<double, 4>& u,
     if (!near.hit)
         return 0;
     points[0] = {near.point, near.triangle, -line.direction, near.u, near.v};
-    // The same line from its other end: past everything, looking back.
+    // The same line is cast from its other end: past everything, looking back.
     const glm::dvec3 arm = near.point - line.origin;
     const double beyond = std::abs(glm::dot(arm, line.direction)) + 4e5 * lift_;
     const ray::RayHit far =
@@ -216,7 +230,7 @@ VisiblePoint VisibleSampler::drawn(const AreaDraw& from, const std::array<double
 
 bool VisibleSampler::reaches_infinity(const VisiblePoint& from,
                                       const std::array<double, 4>& u) const {
-    // What is drawn as often as it covers is there.
+    // A point that is drawn as often as it covers is there.
     return ((covers_ && scene_->uniform_alpha(from.triangle)) ||
             scene_->ends_ray(from.triangle, from.u, from.v)) &&
            !scene_->occluded(from.point + lift_ * from.seen_from,
