@@ -7,13 +7,18 @@
 namespace lodestone::ray {
 namespace {
 
-/// Rounding a coordinate of the unit sphere to single precision moves it by less than this.
+/// The most that rounding to single precision moves a coordinate of the unit sphere, with a margin.
+/// Law: IEEE 754, half a unit in the last place is 2^-25 below 1.
 constexpr double kRounding = 0x1p-22;
 
 }  // namespace
 
 bool ClosestSearch::find_shown(uint32_t index, geometry::OnTriangle& hidden) const {
-    constexpr int kCells = 8;  // a side: 64 small triangles, looked up at their middles
+    // Cells along a side of a triangle: 64 small triangles, looked up at their middles.
+    // Taste: a larger value finds smaller holes and grains, for time that grows with its square.
+    constexpr int kCells = 8;
+    // Halvings between a hidden and a shown point.
+    // Taste: a larger value places a hole's edge better than 1/64 of their distance.
     constexpr int kHalvings = 6;
     const Triangle& t = triangles[index];
     const glm::dvec3 a(positions[t.x]);
@@ -43,7 +48,7 @@ bool ClosestSearch::find_shown(uint32_t index, geometry::OnTriangle& hidden) con
     }
     if (!std::isfinite(best_square))
         return false;
-    // The edge of the hole lies between what is hidden and what is shown.
+    // The edge of the hole lies between a hidden point and a shown one.
     glm::dvec2 out(hidden.u, hidden.v);
     glm::dvec2 in(best.u, best.v);
     for (int i = 0; i < kHalvings; ++i) {

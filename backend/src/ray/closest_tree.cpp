@@ -12,16 +12,30 @@
 namespace lodestone::ray {
 namespace {
 
+/// Bins in which a split is looked for.
+/// Taste: a larger value finds slightly better trees in more time.
 constexpr int kBins = 16;
-constexpr int kMostUneven = 40;  // splits, after which they are in the middle: the depth is bounded
-constexpr size_t kStack = 256;   // three a level, and fewer levels than kMostUneven / 2 + 16
+/// Uneven splits after which nodes are split in the middle: the depth is bounded.
+/// Taste: a larger value needs a larger kStack.
+constexpr int kMostUneven = 40;
+/// Nodes that wait to be visited.
+/// Law: three a level, and fewer levels than kMostUneven / 2 + 16 at four children a node.
+constexpr size_t kStack = 256;
+/// Triangles that wait to be decided in double precision.
+/// Taste: a larger value decides fewer triangles in crowds, for more memory on the stack.
 constexpr size_t kCandidates = 32;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A distance in single precision is off by less than this share of itself and of the longest edge,
-// but for needles. Their edges are right to a few times as much; what is inside of them is not to
-// be relied on, but no farther from an edge than half of the height.
+// but for needles.
+// Taste: a larger value is safer than rounding asks for (6e-8 times the terms of a needle) and
+// decides more triangles in double precision.
 constexpr float kOff = 4e-4f;
-constexpr float kNeedle = 1e-3f;  // square of height over length
+/// Triangles with a smaller square of height over length are needles: the inside is not to be
+/// relied on, but no farther from an edge than half of the height.
+/// Taste: a larger value takes more triangles for needles.
+constexpr float kNeedle = 1e-3f;
+/// The same share for needles, whose edges are right to a few times as much.
+/// Taste: as kOff.
 constexpr float kOffNeedle = 4 * kOff;
 
 template <typename Four>
@@ -53,11 +67,15 @@ struct GrowingBox {
 };
 
 /// The axes that most of the surface is square to, when boxes along them are much smaller than
-/// those along x, y, z: of what was modelled straight and placed askew. Otherwise none.
+/// those along x, y, z: of things modelled straight and placed askew. Otherwise none.
 std::optional<glm::dmat3> better_axes(const std::vector<glm::vec3>& positions,
                                       const std::vector<Triangle>& triangles) {
+    // Boxes along the axes must be smaller by this factor.
+    // Taste: a larger value turns the tree, which costs a copy of the positions, for less gain.
     constexpr double kWorthIt = 0.8;
-    constexpr size_t kMostTriangles = 4096;  // evenly chosen ones tell
+    // Triangles, evenly chosen, that tell.
+    // Taste: a larger value takes longer and tells the same of most meshes.
+    constexpr size_t kMostTriangles = 4096;
     const size_t step = triangles.size() / kMostTriangles + 1;
     const auto each = [&](const auto& visit) {
         for (size_t i = 0; i < triangles.size(); i += step) {
@@ -205,7 +223,8 @@ int32_t ClosestTree::add_leaf(const TreeGeometry& given,
     return ~static_cast<int32_t>(leaves_.size() - 1);
 }
 
-/// Puts those whose corners no lower triangle has to the range's front, and returns their end.
+/// Puts the references whose corners no lower triangle has to the front of the range, and returns
+/// their end.
 size_t ClosestTree::end_of_distinct(const TreeGeometry& given,
                                     std::vector<TriangleReference>& references,
                                     ReferenceRange range) {
@@ -230,7 +249,8 @@ size_t ClosestTree::end_of_distinct(const TreeGeometry& given,
     return static_cast<size_t>(distinct - references.begin());
 }
 
-/// The first reference of the second half; none: all have one middle.
+/// Splits a range; returns the first reference of the second half, or none where all have one
+/// middle.
 std::optional<size_t> ClosestTree::split(std::vector<TriangleReference>& references,
                                          ReferenceRange range) {
     const auto begin = references.begin() + static_cast<ptrdiff_t>(range.begin);
@@ -243,7 +263,7 @@ std::optional<size_t> ClosestTree::split(std::vector<TriangleReference>& referen
     int axis = size[0] > size[1] ? 0 : 1;
     axis = size[2] > size[axis] ? 2 : axis;
     const float scale = kBins / size[axis];
-    if (!std::isfinite(scale))  // one place but for rounding: what is far from all else makes it so
+    if (!std::isfinite(scale))  // one place but for rounding: a far outlier makes it so
         return std::nullopt;
     if (range.depth >= kMostUneven) {
         std::nth_element(begin, references.begin() + static_cast<ptrdiff_t>(half), end,
@@ -264,7 +284,7 @@ std::optional<size_t> ClosestTree::split(std::vector<TriangleReference>& referen
     for (auto at = begin; at != end; ++at) {
         bins[static_cast<size_t>(bin_of(*at))].add(at->low, at->high, 1);
     }
-    // The cost of a side: its surface times the leaves it needs.
+    // The cost of a side is its surface times the leaves that it needs.
     const auto cost = [](const Bin& side) {
         const size_t leaves = (side.count + kWidth - 1) / kWidth;
         return side.half_area() * static_cast<float>(leaves);
@@ -326,7 +346,7 @@ ClosestTree::Four ClosestTree::square_distances(const TriangleLeaf& leaf, const 
         return sum;
     };
     const auto least = [](Four a, Four b) { return a < b ? a : b; };
-    // On the three edges, and above the inside.
+    // The distances to the three edges, and to the inside.
     Four best = square_at(clamped(b_p / (b_b > tiny ? b_b : tiny)), zero);
     best = least(best, square_at(zero, clamped(c_p / (c_c > tiny ? c_c : tiny))));
     const Four e_e = b_b + c_c - 2.0f * b_c;
@@ -351,7 +371,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
     size_t size = 0;
     const glm::vec3 point(axes_ ? *axes_ * search.point : search.point);
     const float rounding = search.reach(0);
-    // Within which distance anything matters, and its square, both rounded up.
+    // The distance within which anything matters, and its square, both rounded up.
     float reach = 0;
     float square = 0;
     const auto set_reach = [&](float to) {
@@ -360,7 +380,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
     };
     set_reach(search.reach(radius));
     const auto enough_here = static_cast<float>(enough);
-    // What may be the nearest, to be decided when all is seen.
+    // Triangles that may be the nearest, to be decided when all is seen.
     struct ClosestCandidate {
         float square;
         float slack;
@@ -373,7 +393,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
         return off_square <= far * far;
     };
     const auto decide = [&] {
-        // The nearest first: mostly no other is left then.
+        // The nearest one comes first: mostly no other is left then.
         for (size_t i = 1; i < waiting; ++i) {
             if (candidates[i].square < candidates[0].square)
                 std::swap(candidates[0], candidates[i]);
@@ -397,7 +417,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
             const TriangleLeaf& leaf = leaves_[static_cast<size_t>(index)];
             const Four distances = square_distances(leaf, point);
             for (int i = 0; i < kWidth; ++i) {
-                // The nearest so far, as the one that was tried first, is known exactly.
+                // The nearest triangle so far, like the one that was tried first, is known exactly.
                 if (leaf.triangles[static_cast<size_t>(i)] == search.triangle ||
                     !may_be_near(distances[i], leaf.slack[i]))
                     continue;
@@ -426,7 +446,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
             out = out > 0.0f ? out : Four{};
             squares += out * out;
         }
-        // The nearest comes to lie on top.
+        // The nearest child comes to lie on top.
         const size_t first = size;
         for (int i = 0; i < kWidth; ++i) {
             if (!(squares[i] <= square) || !(squares[i] < kInfinity))

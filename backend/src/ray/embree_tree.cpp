@@ -57,7 +57,7 @@ void look_up(void* library, const char* name, Function& function, std::string& m
         function = reinterpret_cast<Function>(symbol);
 }
 
-/// A ray context that remembers the best hit so far, for ties; or lists all of them.
+/// A ray context that remembers the best hit so far, for ties; or lists all hits.
 struct TieContext {
     RTCIntersectContext embree;
     float t;
@@ -66,7 +66,7 @@ struct TieContext {
     size_t listed;
 };
 
-/// Among hits at one distance the lowest triangle wins: else the answer would depend on the order
+/// Keeps the lowest triangle among hits at one distance: else the answer would depend on the order
 /// of leaves, and with it on the number of threads that built the tree.
 void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
     auto* best =
@@ -105,7 +105,7 @@ void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
         arguments->valid[0] = 0;
 }
 
-/// A ray context that is told what blocks the ray.
+/// A ray context that is told which triangle blocks the ray.
 struct BlockerContext {
     RTCIntersectContext embree;
     unsigned triangle;
@@ -175,7 +175,7 @@ RTCRayHit trace(const EmbreeFunctions& embree, RTCScene scene, const glm::dvec3&
     return ray;
 }
 
-/// One hit and one miss with known answers. Empty when both are right.
+/// Casts one hit and one miss with known answers. Empty when both are right.
 std::string test(const EmbreeFunctions& embree) {
     const std::vector<glm::vec3> padded{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
     const std::vector<Triangle> triangles{{0, 1, 2}};
@@ -194,8 +194,8 @@ std::string test(const EmbreeFunctions& embree) {
     return {};
 }
 
-/// Opens one candidate; the reason says why it cannot be used. A library once opened stays open:
-/// its worker threads may be running its code.
+/// Opens one candidate; the reason says why it cannot be used. A library that was opened stays
+/// open: its worker threads may be running its code.
 EmbreeFunctions open(const std::string& path) {
     EmbreeFunctions embree;
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -271,8 +271,8 @@ EmbreeFunctions find() noexcept {
 }
 
 const EmbreeFunctions& found() {
-    // On a thread of its own: Embree waits by working on whatever tasks its thread may take, and a
-    // task of the caller's loop could come back here before this is done.
+    // The library is opened on a thread of its own: Embree waits by working on whatever tasks its
+    // thread may take, and a task of the caller's loop could come back here before this is done.
     static const EmbreeFunctions* const kFoundOnce = [] {
         auto* const embree = new EmbreeFunctions;
         try {
@@ -297,10 +297,12 @@ const EmbreeFunctions& embree_or_throw() {
 
 #if defined(__SSE2__)
 namespace {
-constexpr unsigned kFlushDenormals = 0x8040;  // flush to zero, denormals are zero
+/// Flush to zero, and denormals are zero.
+/// Law: bits 15 and 6 of MXCSR (Intel's manual, volume 1, 10.2.3).
+constexpr unsigned kFlushDenormals = 0x8040;
 }  // namespace
 
-// Blender and Python want their own setting back.
+// Flushes denormals until the end: Blender and Python want their own setting back.
 FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
     if ((saved_ & kFlushDenormals) != kFlushDenormals)
         _mm_setcsr(saved_ | kFlushDenormals);

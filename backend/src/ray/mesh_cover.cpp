@@ -6,12 +6,15 @@
 namespace lodestone::ray {
 namespace {
 
-constexpr double kLeastShown = 1.0 / 64;  // nobody sees less
-// What is there is looked up a little inside of the triangle: on the very edge of a card a picture
-// that repeats shows its other side.
+/// A point with less alpha shows nothing.
+/// Taste: nobody sees less; a larger value loses thin veils.
+constexpr double kLeastShown = 1.0 / 64;
+// Points are looked up a little inside the triangle: on the very edge of a card a repeated picture
+// shows its other side.
+// Taste: the share of the way to the middle; a larger value may step over a narrow edge.
 constexpr double kInside = 1.0 / 256;
 
-/// Uniform in [0, 1), by the point alone.
+/// A number uniform in [0, 1), by the point alone.
 double chance(uint32_t triangle, double u, double v) {
     const auto bits = [](double value) {
         return uint64_t{std::bit_cast<uint32_t>(static_cast<float>(value))};

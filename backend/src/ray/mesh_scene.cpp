@@ -13,9 +13,12 @@
 namespace lodestone::ray {
 namespace {
 
-/// Everything is scaled into the unit sphere; rays start at most on a sphere a little larger.
+/// Everything is scaled into the unit sphere; rays start at most on a sphere of this radius.
+/// Taste: a sixteenth more than 1 is enough for rounding; a larger value spends precision on
+/// nothing.
 constexpr double kRimRadius = 1.0625;
-/// Squares of lengths this near to 1 are 1 but for rounding.
+/// Directions whose squared length is this near to 1 are of unit length but for rounding.
+/// Taste: well above double precision's 2e-16; a larger value makes distances wrong.
 constexpr double kUnitLength = 1e-12;
 
 }  // namespace
@@ -33,9 +36,9 @@ struct MeshScene::Data {
     std::vector<Triangle> triangles;
     std::unique_ptr<MeshCover> cover;  // null: opaque
     SceneUse uses = SceneUse::Everything;
-    std::optional<EmbreeTree> tree;  // none: nothing can be hit
+    std::optional<EmbreeTree> tree;  // none: no ray can hit
     std::once_flag once;
-    std::optional<ClosestTree> boxes;  // made when the first closest point is asked for
+    std::optional<ClosestTree> boxes;  // made for the first closest point
 
     glm::dvec3 corner(uint32_t triangle, int i) const {
         return glm::dvec3(positions[triangles[triangle][i]]);
@@ -46,11 +49,12 @@ struct MeshScene::Data {
         glm::dvec3 origin;
         glm::dvec3 direction;  // unit
         double skipped = 0;    // local length from the ray's origin to this one
-        double far = 0;
-        double unit = 1;  // local length of t = 1
+        double far = 0;        // local length of the ray that can hit
+        double unit = 1;       // local length of t = 1
     };
 
-    /// False when the ray cannot hit. Far origins are brought to the rim in double precision.
+    /// Clips a ray; false when it cannot hit. Far origins are brought to the rim in double
+    /// precision.
     bool clip(const glm::dvec3& origin, const glm::dvec3& direction, double far,
               RaySegment& part) const {
         if (uses == SceneUse::ClosestPoints)
@@ -106,14 +110,14 @@ MeshScene::MeshScene(const Mesh& mesh, SkinPtr skin, SceneUse uses)
     data.center = box.center();
     const double radius = 0.5 * glm::length(box.size());
     if (radius > 0) {
-        // Scaling by a power of two is exact.
+        // A power of two is exact as a scale.
         int exponent = 0;
         std::frexp(radius, &exponent);
         data.scale = std::ldexp(1.0, -exponent);
     }
     data.positions.reserve(mesh.positions.size() + 1);
     for (const glm::vec3& position : mesh.positions) {
-        // What is not in the unit sphere is not finite or no triangle's; Embree skips NaN.
+        // A point that is not in the unit sphere is not finite or no triangle's; Embree skips NaN.
         const glm::dvec3 local = (glm::dvec3(position) - data.center) * data.scale;
         if (glm::dot(local, local) < 2)
             data.positions.emplace_back(local);
@@ -224,15 +228,17 @@ ClosestPoint MeshScene::closest_point(const glm::dvec3& point, double radius, ui
         std::max({std::abs(search.point.x), std::abs(search.point.y), std::abs(search.point.z)});
     if (perhaps < data.triangles.size())
         search.visit(perhaps);
-    // Squares of larger coordinates do not fit single precision.
+    // Larger coordinates are searched otherwise.
+    // Law: their squares do not fit single precision (3.4e38), with a margin.
     constexpr double kFarthest = 1e15;
     if (far < kFarthest) {
-        // On this thread alone: one that waits for others could be given work that comes back here.
+        // The tree is made on this thread alone: one that waits for others could be given work that
+        // comes back here.
         std::call_once(data.once, [&] {
-            // What covers may show one of two triangles in one place.
+            // A mesh with a cover may show one of two triangles in one place.
             data.boxes.emplace(data.positions, data.triangles, data.cover != nullptr);
         });
-        // What the radius alone keeps near is not found yet.
+        // A triangle that the radius alone keeps near is not found yet.
         if (search.triangle == kNoTriangle && radius <= enough)
             enough = 0;
         data.boxes->search(search, std::min(radius * data.scale, std::sqrt(search.square)),

@@ -12,7 +12,8 @@
 namespace lodestone::ray {
 namespace {
 
-// An alpha that is this near to 1 everywhere is 1: a picture's rounding.
+// An alpha that is this near to 1 everywhere is 1.
+// Law: half of a picture's rounding to 8 bits.
 constexpr double kOpaque = 1 - 1.0 / 512;
 
 template <typename T>
@@ -46,7 +47,7 @@ struct MeshSkin::Slot {
     TextureSampler alpha;
     TextureSampler mix;
     bool cut_by_texel = false;  // the alpha sampler gives the share that is there, not the alpha
-    bool opaque = true;         // but for vertex colors
+    bool opaque = true;         // opaque but for vertex colors
     std::unique_ptr<Slot> other;
 
     Slot(const Material& source, image::TexelCache& texels)
@@ -72,8 +73,8 @@ struct MeshSkin::Slot {
         const bool clip = material.alpha_mode == AlphaMode::Clip;
         opaque = plain ? covers_all(texture, plain) && !(clip && material.alpha_cutoff > kOpaque)
                        : (clip ? material.alpha >= material.alpha_cutoff : material.alpha >= 1);
-        // Where texels stand for blocks, they must be cut before they are averaged. (Vertex colors
-        // come after the texture; outside a clipped picture there is no texel to cut.)
+        // Texels that stand for blocks must be cut before they are averaged. (Vertex colors come
+        // after the texture; outside a clipped picture there is no texel to cut.)
         const bool there_outside = texture.extension == TextureExtension::Clip &&
                                    texture.offset.x >= material.alpha_cutoff;
         if (clip && plain && plain->reduced && !opaque && !material.vertex_colors &&
@@ -205,7 +206,7 @@ bool MeshSkin::transmits() const {
 
 namespace {
 
-/// What a point's look-ups need of the mesh.
+/// The facts about a point that the look-ups of its mesh need.
 struct SkinLookup {
     std::optional<glm::dvec2> uv;
     glm::dvec4 tint{1.0};

@@ -11,18 +11,24 @@
 namespace lodestone::ray {
 namespace {
 
-constexpr uint32_t kLeaf = 2;   // placements of a cell that is not split
-constexpr size_t kSplits = 16;  // slices of an axis that may part them
-constexpr int kDeepest = 30;    // splits above that are by area; 32 halves more end any tree
+/// Placements of a cell that is not split.
+/// Taste: a larger value saves cells, for more rays into meshes.
+constexpr uint32_t kLeaf = 2;
+/// Slices of an axis that may part placements.
+/// Taste: a larger value finds slightly better trees in more time.
+constexpr size_t kSplits = 16;
+/// Splits up to this depth are by area; 32 halves more end any tree.
+/// Law: walk() has a stack of 64.
+constexpr int kDeepest = 30;
 
-/// Where a ray enters a box within [0, far]; infinite where it does not.
+/// The distance at which a ray enters a box within [0, far]; infinite where it does not.
 double entry(const Box3& box, const glm::dvec3& origin, const glm::dvec3& inverse, double far) {
     double near = 0;
     for (int i = 0; i < 3; ++i) {
         const double a = (box.low[i] - origin[i]) * inverse[i];
         const double b = (box.high[i] - origin[i]) * inverse[i];
-        // A ray in the plane of a face gives NaN, which keeps the box. Written so that they are
-        // instructions, not branches, which nobody could predict.
+        // A ray in the plane of a face gives NaN, which keeps the box. Both lines are written so
+        // that they are instructions, not branches, which nobody could predict.
         const double enters = b < a ? b : a;
         const double leaves = a > b ? a : b;
         near = enters > near ? enters : near;
@@ -44,7 +50,7 @@ void PlacedScenes::add(std::shared_ptr<const MeshScene> scene, const Bound& boun
     if (!placed.inverse.finite())
         return;
     placed.box = transformed(bound, world).box;
-    // What is flat has a box that rounding could miss.
+    // A flat placement has a box that rounding could miss.
     const double margin = 1e-6 * (glm::length(placed.box.size()) +
                                   glm::length(glm::abs(placed.box.low) + placed.box.high));
     placed.box.low -= margin;
@@ -61,8 +67,9 @@ void PlacedScenes::finish() {
         split(0, static_cast<uint32_t>(placed_.size()), 0);
 }
 
-/// Where both sides together are hit least: by the surface area heuristic over kSplits slices of
-/// each axis. source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
+/// Divides a range where both sides together are hit least: by the surface area heuristic over
+/// kSplits slices of each axis.
+/// source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies" (2007)
 uint32_t PlacedScenes::divide(uint32_t first, uint32_t last, const Box3& middles) {
     const auto bin_of = [&](const PlacedScene& placed, int axis) {
         const double size = middles.high[axis] - middles.low[axis];
@@ -162,7 +169,7 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
             continue;
         const SceneCell& cell = cells_[index];
         if (cell.count == 0) {
-            // The nearer one first: what it hides is not looked at.
+            // The nearer child comes first: cells that it hides are not looked at.
             const double left = entry(cells_[index + 1].box, origin, inverse, far);
             const double right = entry(cells_[cell.first].box, origin, inverse, far);
             if (right < left) {

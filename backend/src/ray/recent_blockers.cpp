@@ -10,7 +10,8 @@
 namespace lodestone::ray {
 
 void RecentBlockers::add(const std::array<glm::vec3, 3>& corners) {
-    // Of the longest edge; rounding is some fiftieth of that.
+    // The share of the longest edge by which a ray must pass an edge.
+    // Taste: some fifty times rounding; a larger value tells fewer blockers, none wrongly.
     constexpr float kSlack = 1e-5f;
     PlueckerTriangles& four = fours_[next_ / 4];
     const size_t lane = next_ % 4;
@@ -40,7 +41,8 @@ bool RecentBlockers::block(const glm::vec3& origin, const glm::vec3& direction) 
     };
     decltype(Four{} < Four{}) found{};
     for (const PlueckerTriangles& four : fours_) {
-        // Ahead where the ray passes all edges on one side: that of the front, or of the back.
+        // The triangle is ahead where the ray passes all edges on one side: that of the front, or
+        // of the back.
         const Four below = four.height - dot(four.normal, origin);
         auto front = below < -four.slack;
         auto back = below > four.slack;
