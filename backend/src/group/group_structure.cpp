@@ -32,13 +32,13 @@ Hash hash_of_place(const Affine& transform) {
     return hasher.result();
 }
 
-/// In any order.
+/// The hash of a group's members, in any order.
 Hash members_of(std::vector<Hash>& members) {
     std::sort(members.begin(), members.end());
     return Hasher().array(std::span<const Hash>(members)).result();
 }
 
-/// Makes objects of a tree's groups.
+/// A maker of objects for a tree's groups.
 class GroupMaker {
 public:
     GroupMaker(Model& model, ObjectIndex group)
@@ -56,7 +56,8 @@ public:
         Placement placement;
     };
 
-    /// What a tree's root holds; `places` are the items' in the group's assembly.
+    /// The children that a tree's node gets; `places` are the items' places in the group's
+    /// assembly.
     std::vector<GroupChild> children_of(const GroupingTree& tree, uint32_t node,
                                         const std::vector<uint32_t>& places) {
         std::vector<GroupChild> out;
@@ -204,7 +205,8 @@ StructureReport structure_groups(Model& model, std::span<const ObjectIndex> grou
         const size_t first = model.objects.size();
         apply_grouping(model, flat[i], sorted[i], trees[i]);
         report.structured += model.objects.size() > first ? 1 : 0;
-        // What is forced into a full group, and what cannot be grouped.
+        // Groups that were full when more was forced into them, and children that cannot be
+        // grouped.
         for (size_t made = model.objects.size(); made-- > first;)
             group_by_position(model, static_cast<ObjectIndex>(made), options.most);
         group_by_position(model, flat[i], options.most);
@@ -224,7 +226,7 @@ std::vector<ObjectIndex> flat_groups(const Model& model, size_t fewest) {
 
 namespace {
 
-/// Of a group's members; and, where it was made below `whole`, its children in place of it.
+/// The hash of a group's members; where the group was made below `whole`, its children replace it.
 Hash dissolved(const Model& model, const Object& whole, const Placement& placement,
                std::vector<Placement>& out, size_t& count) {
     const Object& child = model.objects[placement.object];

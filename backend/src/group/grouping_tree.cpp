@@ -6,7 +6,7 @@
 namespace lodestone::group {
 namespace {
 
-/// Reachable nodes, parents before children.
+/// The reachable nodes, parents before children.
 std::vector<uint32_t> top_down(const GroupingTree& tree) {
     std::vector<uint32_t> order;
     if (tree.root == kNoNode)

@@ -13,18 +13,31 @@
 namespace lodestone::group {
 namespace {
 
-constexpr uint32_t kExpansions = 16;   // groups looked into for one insertion
-constexpr uint32_t kDeepest = 40;      // groups one inside the other
-constexpr double kLeastArea = 1e-12;   // of the whole's: so that more is never free
-constexpr size_t kMany = 4096;         // more than these are put elsewhere once
-constexpr double kAsCheap = 1 - 1e-9;  // what costs as little but for rounding is no better
-constexpr double kWorthAPass = 1e-3;   // of the cost
+/// Groups that are looked into for one insertion.
+/// Taste: a larger value finds cheaper places, for time in proportion.
+constexpr uint32_t kExpansions = 16;
+/// Groups that lie one inside the other, at most.
+/// Taste: a larger value lets chains of groups grow; POV-Ray and hosts recurse over them.
+constexpr uint32_t kDeepest = 40;
+/// The share of the whole's area that every box has at least.
+/// Taste: any small value will do, so that a child more is never free.
+constexpr double kLeastArea = 1e-12;
+/// More items than these are put elsewhere once only.
+/// Taste: a larger value finds cheaper groups of many things, in more time.
+constexpr size_t kMany = 4096;
+/// A place must cost less than the best by this factor.
+/// Law: a difference that is rounding alone is none; double precision adds up to 1e-9 over many
+/// items.
+constexpr double kAsCheap = 1 - 1e-9;
+/// The share of the cost that a pass must gain, for another one.
+/// Taste: a larger value ends sooner at slightly dearer groups.
+constexpr double kWorthAPass = 1e-3;
 
-/// What a group's cost depends on; sums over its items.
+/// The sums over a group's items on which its cost depends.
 struct GroupSums {
     Box3 box;
     double weight = 0;
-    double squares = 0;  // of the features' lengths
+    double squares = 0;  // squares of the features' lengths
     Features features{};
 
     void add(const GroupSums& other) {
@@ -35,7 +48,7 @@ struct GroupSums {
             features[i] += other.features[i];
     }
 
-    /// Variance of the features.
+    /// The variance of the features.
     double spread() const {
         double of_mean = 0;
         for (const double sum : features)
@@ -55,7 +68,7 @@ GroupSums sums_of(const GroupingItem& item) {
     return sums;
 }
 
-/// Where something could go: with `child` into a new group in its place, or into `child`.
+/// A place where something could go: with `child` into a new group in its place, or into `child`.
 struct InsertionPlace {
     double cost = std::numeric_limits<double>::infinity();
     uint32_t node = kNoNode;
@@ -63,7 +76,7 @@ struct InsertionPlace {
 };
 
 struct InsertionStep {
-    double least;  // what anything below costs at least
+    double least;  // the least cost of anything below
     uint32_t node;
     uint32_t depth;
 };
@@ -138,14 +151,15 @@ private:
         const GroupSums& added = sums_[inserted];
         const uint32_t height = heights_[inserted];
         InsertionPlace best;
-        InsertionPlace forced;  // where there is room when all groups are full or too deep
+        InsertionPlace forced;  // a place with room, for when all groups are full or too deep
         steps_.clear();
         const GroupingNode& root = tree_.nodes[tree_.root];
         if (root.children.empty())
             return {0, tree_.root, false};
-        // What going somewhere adds at least: a child of a group no smaller than it is itself.
+        // The least that going somewhere adds: a child of a group no smaller than the thing is
+        // itself.
         const double last = cost_of(added, 1) - cost_of(added, 0);
-        const double paired = cost_of(added, 2);  // ... where nothing else is possible
+        const double paired = cost_of(added, 2);  // where nothing else is possible
         steps_.push_back({grown(tree_.root, added) - costs_[tree_.root], tree_.root, 0});
         const auto later = [](const InsertionStep& a, const InsertionStep& b) {
             return std::tie(a.least, a.node) > std::tie(b.least, b.node);
@@ -187,7 +201,7 @@ private:
         return best.node != kNoNode ? best : forced;
     }
 
-    /// A root that holds one group alone takes over that one's children.
+    /// Lets a root that holds one group alone take over the children of that group.
     void unwrap_root() {
         std::vector<uint32_t>& top = tree_.nodes[tree_.root].children;
         while (top.size() == 1 && !tree_.is_item(top.front())) {
@@ -204,7 +218,7 @@ private:
             best = place;
     }
 
-    /// A group's cost with more in it, but no more children.
+    /// The cost of a group with more in it, but no more children.
     double grown(uint32_t node, const GroupSums& added) const {
         GroupSums with = sums_[node];
         with.add(added);
@@ -289,7 +303,8 @@ private:
     uint32_t inserted_ = 0;
 };
 
-/// In the unit cube: areas neither overflow nor vanish, and scale and origin do not matter.
+/// The sums of items moved into the unit cube: areas neither overflow nor vanish, and scale and
+/// origin do not matter.
 std::vector<GroupSums> normalized(std::span<const GroupingItem> items) {
     Box3 whole;
     for (const GroupingItem& item : items)
@@ -309,7 +324,7 @@ std::vector<GroupSums> normalized(std::span<const GroupingItem> items) {
     return out;
 }
 
-/// A number for each item that does not depend on their order, as far as they differ.
+/// A number for each item that does not depend on the items' order, as far as they differ.
 std::vector<uint32_t> ranks_of(std::span<const GroupSums> items) {
     std::vector<uint32_t> order(items.size());
     std::iota(order.begin(), order.end(), 0u);

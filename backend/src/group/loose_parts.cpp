@@ -16,15 +16,29 @@
 namespace lodestone::group {
 namespace {
 
-// Below this even all of it costs POV-Ray 12 MB and a twentieth of a second.
+// A mesh with fewer triangles stays one.
+// Taste: all of it costs POV-Ray 12 MB and a twentieth of a second; a larger value spares more
+// models the groups.
 constexpr size_t kManyTriangles = 50000;
+/// A mesh with fewer parts stays one.
+/// Taste: a larger value leaves machines of many parts one object.
 constexpr size_t kManyParts = 64;
-constexpr double kSmallPart = 1.0 / 8;  // of the whole's extent
-constexpr double kLargePart =
-    1.0 / 4;  // these lie across everything: they are clusters of their own
-constexpr size_t kFewestClusters = 8;  // of fewer no groups are made
+/// Parts up to this share of the whole's extent are small.
+/// Taste: a larger value splits meshes whose parts lie across each other.
+constexpr double kSmallPart = 1.0 / 8;
+/// Parts above this share of the extent lie across everything: they are clusters of their own.
+/// Taste: a larger value gives clusters wide bounds.
+constexpr double kLargePart = 1.0 / 4;
+/// With fewer clusters no groups are made.
+/// Taste: a larger value leaves small meshes one, a smaller one makes groups that hardly save
+/// anything.
+constexpr size_t kFewestClusters = 8;
+/// Bins in which a cut is looked for.
+/// Taste: a larger value finds slightly tighter clusters in more time.
 constexpr int kBins = 32;
-constexpr uint32_t kDeepestCut = 64;  // cuts one inside the other; then by number
+/// Cuts that lie one inside the other, at most; deeper ones go by number.
+/// Taste: any value above the logarithm of the number of parts will do.
+constexpr uint32_t kDeepestCut = 64;
 
 struct LoosePart {
     Box3 box;
@@ -66,8 +80,9 @@ bool pays(const std::vector<LoosePart>& parts, size_t triangles) {
     return 2 * in_small >= triangles;
 }
 
-/// Cuts lists of parts in two until each has few triangles: where the sum of (surface of the bound)
-/// x (triangles) of both sides is least, so that what is near shares a cluster (4.5.3).
+/// A cutter of lists of parts: it cuts them in two until each has few triangles, where the sum of
+/// (surface of the bound) x (triangles) of both sides is least, so that near parts share a cluster
+/// (4.5.3).
 class PartCutter {
 public:
     PartCutter(const std::vector<LoosePart>& parts, size_t triangles, const Job& job)
@@ -115,7 +130,7 @@ private:
         return sum;
     }
 
-    /// Leaves the low side in the list. Neither is empty.
+    /// Takes the high side out of the list and leaves the low one. Neither is empty.
     std::vector<uint32_t> take_high(std::vector<uint32_t>& list, uint32_t depth) const {
         Box3 middles;
         for (const uint32_t part : list)
@@ -137,7 +152,7 @@ private:
             for (const uint32_t part : list)
                 bins[static_cast<size_t>(bin_of(part, axis))].add(
                     {parts_[part].box, parts_[part].triangles});
-            std::array<PartBin, kBins> above;  // bins from here on
+            std::array<PartBin, kBins> above;  // the bins from here on
             for (size_t i = kBins; i-- > 0;) {
                 above[i] = bins[i];
                 if (i + 1 < kBins)
@@ -158,7 +173,7 @@ private:
             }
         }
         const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
-        auto at = middle;  // all in one place, or too deep: by their numbers
+        auto at = middle;  // by their numbers where all are in one place, or too deep
         if (best_axis >= 0)
             at = std::stable_partition(list.begin(), list.end(), [&](uint32_t part) {
                 return bin_of(part, best_axis) < best_bin;
@@ -194,8 +209,8 @@ std::vector<std::vector<uint32_t>> clusters_of(const std::vector<LoosePart>& par
     return cutter.take();
 }
 
-/// Some of a mesh's triangles, in their order, with the vertices they use in theirs. `moved` has as
-/// many entries as the mesh has vertices, all kNone before and after.
+/// Takes some of a mesh's triangles, in their order, with the vertices they use in theirs. `moved`
+/// has as many entries as the mesh has vertices, all kNone before and after.
 constexpr uint32_t kNone = ~uint32_t{0};
 Mesh taken(const Mesh& mesh, const std::vector<uint32_t>& triangles, std::vector<uint32_t>& moved) {
     std::vector<uint32_t> vertices;
@@ -241,7 +256,7 @@ void keep_used(Mesh& mesh, std::vector<uint32_t>& materials) {
         return;
     std::vector<uint32_t> moved(materials.size(), kNone);
     std::vector<uint32_t> used;
-    // A slot beyond the materials shows the first, like one that is not given.
+    // A slot beyond the materials shows the first material, like a slot that is not given.
     const auto known = [&](size_t i) -> size_t {
         const uint16_t slot = mesh.slot(i);
         return slot < materials.size() ? slot : size_t{0};
@@ -276,7 +291,7 @@ bool may_split(const Model& model, const Object& object) {
                         [&](uint32_t material) { return refracts(model.materials.at(material)); });
 }
 
-/// What a mesh becomes; no clusters: it stays one.
+/// The result for a mesh; without clusters it stays one.
 struct SplitMesh {
     size_t parts = 0;
     std::vector<Representation> clusters;
@@ -313,7 +328,7 @@ SplitMesh found_in(const Model& model, const Object& object, const LooseOptions&
     std::vector<std::vector<uint32_t>> triangles(clusters.size());
     for (uint32_t i = 0; i < count; ++i)
         triangles[cluster_of[part_of[i]]].push_back(i);
-    std::sort(triangles.begin(), triangles.end());  // by their first
+    std::sort(triangles.begin(), triangles.end());  // sorted by their first triangle
     std::vector<uint32_t> moved(mesh.positions.size(), kNone);
     found.parts = parts.size();
     for (const std::vector<uint32_t>& own : triangles) {

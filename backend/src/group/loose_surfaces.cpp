@@ -14,22 +14,27 @@
 namespace lodestone::group {
 namespace {
 
-constexpr size_t kMostAround = 64;  // faces of one edge that are told apart
+/// Faces of one edge that are told apart.
+/// Taste: a larger value tells denser fans apart, for time that grows with its square.
+constexpr size_t kMostAround = 64;
 
 /// A triangle's edge.
 struct EdgeSide {
-    uint64_t edge;  // its welded vertices, the lower one first
+    uint64_t edge;  // the two welded vertices, the lower one first
     uint32_t triangle;
-    uint32_t opposite;  // vertex
-    bool forward;       // the triangle goes around it from the lower vertex to the higher
-    double angle = 0;   // around it
+    uint32_t opposite;  // the opposite vertex
+    bool forward;       // the triangle goes around the edge from the lower vertex to the higher
+    double angle = 0;   // the angle around the edge
 };
 
-/// Where several surfaces meet in one edge, a face goes on in the first that closes the same solid:
-/// boxes that touch stay apart, and so do the two sides of a sheet.
+/// Joins faces where several surfaces meet in one edge: a face goes on in the first one that closes
+/// the same solid. Boxes that touch stay apart, and so do the two sides of a sheet.
 template <typename Join>
 void join_surfaces(const Mesh& mesh, std::span<EdgeSide> around, const Join& join) {
-    constexpr double kSamePlane = 1e-4;  // radians
+    // Faces within this angle in radians lie in one plane.
+    // Taste: rounding of positions turns faces by less; a larger value joins wedges.
+    constexpr double kSamePlane = 1e-4;
+    // Law: a full turn in radians.
     constexpr double kTurn = 2 * std::numbers::pi;
     const glm::dvec3 from(mesh.positions[around[0].edge >> 32u]);
     const glm::dvec3 to(mesh.positions[around[0].edge & 0xffffffffu]);
@@ -45,7 +50,7 @@ void join_surfaces(const Mesh& mesh, std::span<EdgeSide> around, const Join& joi
         const glm::dvec3 arm = glm::dvec3(mesh.positions[side.opposite]) - from;
         side.angle = std::atan2(glm::dot(arm, up), glm::dot(arm, right));
     }
-    // A face that goes forward has its inside where angles fall.
+    // A face that goes forward has its inside on the side where angles fall.
     const auto inside = [&](const EdgeSide& face, const EdgeSide& other) {
         const double turn = std::fmod(face.angle - other.angle + kTurn, kTurn);
         return turn < kSamePlane ? turn + kTurn : turn;

@@ -10,11 +10,20 @@
 namespace lodestone::group {
 namespace {
 
-// Differences that keep things apart as much as twice the area does.
-constexpr double kColorApart = 0.25;  // of display-encoded color, each channel
-constexpr double kSizeApart = 2.0;    // factors of two
-constexpr double kShapeApart = 0.5;   // of a principal variance's share
-constexpr double kTurnedApart = 0.7;  // likewise, along fixed axes
+// The next four are differences that keep things apart as much as twice the area does.
+//
+// Display-encoded colors, in each channel.
+// Taste: a larger value groups by place more than by color.
+constexpr double kColorApart = 0.25;
+/// Sizes, in factors of two.
+/// Taste: a larger value groups by place more than by size.
+constexpr double kSizeApart = 2.0;
+/// A principal variance's share of all three.
+/// Taste: a larger value groups by place more than by shape.
+constexpr double kShapeApart = 0.5;
+/// A variance's share along fixed axes.
+/// Taste: a larger value groups by place more than by orientation.
+constexpr double kTurnedApart = 0.7;
 
 double encoded(double linear) {
     const double x = std::clamp(linear, 0.0, 1.0);
@@ -33,7 +42,7 @@ glm::dvec4 look_of(const Material& material) {
     return look;
 }
 
-/// Mean look of a mesh's triangles, by area.
+/// The mean look of a mesh's triangles, by area.
 glm::dvec4 mean_look(const Mesh& mesh, const Model& model, const Representation& finest) {
     std::vector<glm::dvec4> looks;
     for (const uint32_t material : finest.materials)
@@ -55,7 +64,7 @@ glm::dvec4 mean_look(const Mesh& mesh, const Model& model, const Representation&
     return mean;
 }
 
-/// By its bound alone.
+/// Sets the traits by the bound alone.
 void set_from_bound(ObjectTraits& traits) {
     const glm::dvec3 size = traits.bound.box.size();
     traits.area = 2 * half_area(traits.bound.box);
@@ -84,12 +93,12 @@ void set_leaf(ObjectTraits& traits, const Model& model, const Object& object) {
     set_from_bound(traits);
 }
 
-/// The spread of something placed. Exact but for non-uniform stretches.
+/// The spread of a placed object. It is exact but for non-uniform stretches.
 glm::dmat3 placed(const glm::dmat3& spread, const glm::dmat3& linear) {
     return linear * spread * glm::transpose(linear);
 }
 
-/// By how much a transform enlarges areas, on average over directions.
+/// The factor by which a transform enlarges areas, on average over directions.
 double area_scale(const glm::dmat3& linear) {
     return std::pow(std::abs(glm::determinant(linear)), 2.0 / 3);
 }
@@ -135,6 +144,8 @@ bool finite(const glm::dmat3& matrix) {
     return true;
 }
 
+/// Objects that lie one below the other, at most.
+/// Taste: a larger value may overflow the stack of a thread.
 constexpr int kDeepestModel = 10000;
 
 /// Adds an object after all below it, each once.
@@ -214,7 +225,9 @@ GroupingItem item_of(const ObjectTraits& traits, const Placement& placement) {
     size_t at = 5;
     for (int i = 0; i < 3; ++i)
         item.features[at++] = eigen.values[i] / kShapeApart;
-    constexpr double kBothSides = 1.4142135623730951;  // an entry off the diagonal stands for two
+    // An entry off the diagonal stands for two.
+    // Law: the square root of 2.
+    constexpr double kBothSides = 1.4142135623730951;
     for (int i = 0; i < 3; ++i) {
         for (int k = i; k < 3; ++k)
             item.features[at++] = shares[i][k] / kTurnedApart * (i == k ? 1.0 : kBothSides);

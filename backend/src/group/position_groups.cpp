@@ -12,9 +12,13 @@ namespace {
 
 using Items = std::vector<uint32_t>;  // places in the group's assembly, rising
 
-// Below 2^-32 of the whole everything counts as one place.
+// Levels of cells below the highest.
+// Taste: things within 2^-32 of the whole count as in one place; a larger value makes deeper chains
+// of groups.
 constexpr int kLevels = 32;
-constexpr int kDigits = 50;  // a cell's number must stay exact
+/// Binary digits of a cell's number.
+/// Law: a double holds 53; the number must stay exact.
+constexpr int kDigits = 50;
 
 class PositionGrouper {
 public:
@@ -50,7 +54,7 @@ private:
         return model_.objects[group_].representations[0].assembly();
     }
 
-    /// The lowest level at which the whole is in at most two cells along each axis.
+    /// Finds the lowest level at which the whole is in at most two cells along each axis.
     int highest_level() {
         Box3 box;
         double farthest = 0;
@@ -76,13 +80,13 @@ private:
                 std::floor(std::ldexp(p.z, -level))};
     }
 
-    /// At most `most_` placements that hold the items; there are more items than that.
+    /// Makes at most `most_` placements that hold the items; there are more items than that.
     std::vector<Placement> part(const Items& items, int level) {
         const auto key = [&](uint32_t item) {
             const glm::dvec3 cell = cell_of(item, level);
             return std::tuple(cell.z, cell.y, cell.x);
         };
-        for (; level >= lowest_; --level) {  // cells that all are in are no groups
+        for (; level >= lowest_; --level) {  // a cell that holds all of them is no group
             const auto first = key(items.front());
             if (std::any_of(items.begin(), items.end(),
                             [&](uint32_t item) { return key(item) != first; }))
@@ -118,9 +122,9 @@ private:
         return out;
     }
 
-    /// The same for what is in one place.
+    /// Makes placements of items that are in one place.
     std::vector<Placement> in_order(const Items& items) {
-        size_t share = 1;  // in each: a power of most_, so that groups below are full
+        size_t share = 1;  // items in each: a power of most_, so that groups below are full
         while (share * most_ < items.size())
             share *= most_;
         std::vector<Placement> out;
